@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.contact.contact_state import given_entries
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -68,10 +69,13 @@ def scales(model: SystemFunctions, variables: DecisionVariables, start: Equilibr
     Half the range where there is one; else what changes the dimensionless balance by one unit; else the value itself,
     or the length of the rod whose base moves.
     """
-    jacobian = model.input_jacobian(start.x, start.inputs).full()
+    given = given_entries(start.model)
+    # In exact contact the model of the start has elements that end at the contacts.
+    solved_model = start.model if model.scene.touches_exactly else model
+    jacobian = solved_model.input_jacobian(start.x, start.inputs).full()[:, given]
     sensitivity = np.linalg.norm(jacobian, axis=0)[variables.indices]
     largest = sensitivity.max(initial=0.0)
-    own_size = _own_sizes(model, start.inputs)[variables.indices]
+    own_size = _own_sizes(model, start.inputs[given])[variables.indices]
     # Ones where a division would fail: these entries are not taken.
     divisor = np.where(sensitivity > 0.0, sensitivity, 1.0)
     unbounded_scale = np.where(sensitivity > UNFELT * largest, 1.0 / divisor, own_size)

@@ -14,15 +14,17 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import solve
+from cosserat_casadi.control.contact_problem import contact_problem
 from cosserat_casadi.control.decision_variables import decision_variables
 from cosserat_casadi.control.inverse_levels import with_error
 from cosserat_casadi.control.inverse_result import Inverse, gap_left, with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.control.nearby_inputs import followed
-from cosserat_casadi.equilibrium.solution import Equilibrium
+from cosserat_casadi.control.sought_inputs import SoughtInputs
+from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 STARTS = 8
@@ -56,16 +58,34 @@ def inverse(
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
-    refuse_obstacles(model.scene, "an inverse problem")
     model = model.at()
     check_targets(model.scene.targets)
     if start is None:
         start = first_solution(model)
-    problem = lifted_problem(model, model.scene.targets, start, stable)
+    problem = inverse_problem(model, model.scene.targets, start, stable)
     found = search(problem, start, stable, starts)
     if estimate_error and found.solution.converged:
         found = replace(found, solution=with_error(found.solution))
     return with_verdict(found, stable)
+
+
+def inverse_problem(
+    model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Equilibrium[Any], stable: bool
+) -> SoughtInputs:
+    """The problem of a model, ready for searches.
+
+    Args:
+        model: as in :func:`inverse`.
+        targets: poses and positions to reach.
+        start: the equilibrium whose inputs and sensitivities scale the problem.
+        stable: as in :func:`inverse`.
+
+    Raises:
+        SceneError: as there.
+    """
+    if isinstance(start, Solution) and model.scene.touches_exactly:
+        return contact_problem(model, targets, start, stable)
+    return lifted_problem(model, targets, start, stable)
 
 
 def check_targets(targets: tuple[scenes.Target, ...]) -> None:
@@ -84,7 +104,7 @@ def first_solution(model: SystemFunctions) -> Equilibrium[Any]:
     return solve(model, model.inputs.unpack(first_inputs), estimate_error=False)
 
 
-def search(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
+def search(problem: SoughtInputs, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
     """The inverse problem from a start, and from scattered ones, without a verdict on its targets.
 
     Args:
@@ -94,7 +114,7 @@ def search(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, starts
         starts: as there.
     """
     model = problem.model
-    result = _from_start(problem, start, problem.change(start.inputs), stable)
+    result = _from_start(problem, start, problem.change(given_inputs(start.model, start.inputs)), stable)
     for tried, change in enumerate(problem.scattered(starts), 1):
         if _satisfies(result, stable):
             break
@@ -107,7 +127,7 @@ def search(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, starts
     return result
 
 
-def search_near(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
+def search_near(problem: SoughtInputs, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
     """The inverse problem from an equilibrium near its targets: by Newton's method, else by :func:`search`.
 
     Args:
@@ -116,13 +136,14 @@ def search_near(problem: LiftedProblem, start: Equilibrium[Any], stable: bool, s
         stable: as in :func:`inverse`.
         starts: as there.
     """
-    found = followed(problem, start)
-    if found is not None and found.met and not found.unstable:
-        return found
+    if isinstance(problem, LiftedProblem):
+        found = followed(problem, start)
+        if found is not None and found.met and not found.unstable:
+            return found
     return search(problem, start, stable, starts)
 
 
-def _from_start(problem: LiftedProblem, start: Equilibrium[Any], change: FloatArray, stable: bool) -> Inverse:
+def _from_start(problem: SoughtInputs, start: Equilibrium[Any], change: FloatArray, stable: bool) -> Inverse:
     """The search from one start.
 
     Args:
@@ -131,9 +152,7 @@ def _from_start(problem: LiftedProblem, start: Equilibrium[Any], change: FloatAr
         change: these inputs as changes from the origin, in their scales, shape (n,).
         stable: whether a stable equilibrium is wanted.
     """
-    # A failed first solve may end at no numbers.
-    x = start.x if np.all(np.isfinite(start.x)) else problem.model.unloaded()
-    result = problem.solve(x, change)
+    result = problem.solve(start, change)
     if stable and result.solution.stable is False:
         return _from_relaxed(problem, result)
     return result
@@ -149,14 +168,14 @@ def _rank(result: Inverse, stable: bool) -> tuple[bool, bool, float]:
     return not result.solution.converged, stable and result.unstable, gap_left(result)
 
 
-def _from_relaxed(problem: LiftedProblem, result: Inverse) -> Inverse:
+def _from_relaxed(problem: SoughtInputs, result: Inverse) -> Inverse:
     """The search once more, from where the rod relaxes to; the first result where that leads to nothing stable."""
     relaxed = solve(problem.model, result.values, start=result.solution, stable=True, estimate_error=False)
     if not relaxed.stable:
         return result
     # Damped about the relaxed inputs now, so that the search stays near the stable branch.
     relaxed_problem = replace(problem, origin=relaxed.inputs)
-    second = relaxed_problem.solve(relaxed.x, np.zeros(len(problem.scale)))
+    second = relaxed_problem.solve(relaxed, np.zeros(len(problem.scale)))
     if second.solution.stable:
         return second
     return result

@@ -10,13 +10,20 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
-from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search, search_near
+from cosserat_casadi.control.inverse import (
+    STARTS,
+    check_targets,
+    first_solution,
+    inverse_problem,
+    search,
+    search_near,
+)
 from cosserat_casadi.control.inverse import inverse as inverse_model
 from cosserat_casadi.control.inverse_levels import levels_of
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
-from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
+from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.pose_change import rotation_angles
@@ -152,7 +159,7 @@ def _searched(
 ) -> dict[int, Inverse]:
     """The search of every row on the first discretisation, each from its nearest neighbour that is met."""
     first = first_solution(model)
-    problem = lifted_problem(model, rows[0], first, stable)
+    problem = inverse_problem(model, rows[0], first, stable)
     lengths = np.array([length_of(model, target) for target in rows[0]])
     wanted = np.array([wanted_poses(targets).reshape(-1, POSE_SIZE) for targets in rows])
     starts = [first] * len(rows)
@@ -184,10 +191,10 @@ def _refined(
 ) -> dict[int, Inverse]:
     """The search of rows on a finer discretisation, each from its own end on the coarser one."""
     first_row, first_start = next(iter(starts.items()))
-    problem = lifted_problem(model, before[first_row].targets, first_start, stable)
+    problem = inverse_problem(model, before[first_row].targets, first_start, stable)
     found = {}
     for row, start in starts.items():
-        origin = problem.variables.clipped(start.inputs)
+        origin = problem.variables.clipped(given_inputs(start.model, start.inputs))
         of_row = replace(problem, targets=before[row].targets, origin=origin)
         # Scattered on the first discretisation alone: the next ones start from its end.
         result = search_near(of_row, start, stable, 0)

@@ -10,10 +10,11 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve
 from cosserat_casadi.equilibrium.answer_error import estimated
+from cosserat_casadi.equilibrium.contact.contact_answer_error import beside_finer, estimated_in_contact
+from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -75,13 +76,16 @@ class LevelsOfRods:
 
     def reference(self, solution: Solution, finer: Model) -> Solution:
         """The equilibrium of a finer model beside a solution, at the same inputs."""
-        values = solution.model.inputs.unpack(solution.inputs)
-        return solve(finer, values, start=prolong(solution, finer), estimate_error=False)
+        start = solution if self.scene.touches_exactly else prolong(solution, finer)
+        given = given_inputs(solution.model, solution.inputs)
+        return solve(finer, finer.inputs.unpack(given), start=start, estimate_error=False)
 
     def judged(self, solution: Solution, reference: Solution) -> Solution:
         """A solution with the error that its reference gives it, where both are equilibria."""
         if not solution.converged or not reference.converged:
             return solution
+        if self.scene.touches_exactly:
+            return beside_finer(solution, reference)
         return with_estimate(solution, reference)
 
 
@@ -119,20 +123,15 @@ class LevelsOfTubes:
 
 
 def levels_of(scene: scenes.Scene) -> Levels:
-    """The levels of a scene of rods or of concentric tubes.
-
-    Raises:
-        SceneError: rods of the scene meet obstacles.
-    """
+    """The levels of a scene of rods or of concentric tubes."""
     if scene.tubes:
         return LevelsOfTubes(scene)
-    refuse_obstacles(scene, "an inverse problem")
     return LevelsOfRods(scene.baked())
 
 
 def with_error(solution: Equilibrium[Any]) -> Equilibrium[Any]:
     """An equilibrium of a model with the estimate of its error, its message as it is."""
     if isinstance(solution, Solution):
-        return estimated(solution)
+        return estimated(solution) if not solution.model.scene.touches_exactly else estimated_in_contact(solution)
     assert isinstance(solution, TubeSolution)
     return replace(solution, error_estimate=error_beside(solution, finer_than(solution)))

@@ -12,6 +12,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
 from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
 from cosserat_casadi.equilibrium.answer_error import with_notes
+from cosserat_casadi.equilibrium.contact.contact_state import given_names
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.result import Result
 
@@ -55,7 +56,9 @@ class Inverse(Result):
     def values(self) -> dict[str, Any]:
         """The inputs found, by name: a number for one entry, else an array of shape (components, k)."""
         values: dict[str, Any] = {}
-        for name, value in self.solution.model.inputs.unpack(self.solution.inputs).items():
+        unpacked = self.solution.model.inputs.unpack(self.solution.inputs)
+        for name in given_names(self.solution.model):
+            value = unpacked[name]
             values[name] = value
             if value.size == 1:
                 values[name] = np.float64(value.item())

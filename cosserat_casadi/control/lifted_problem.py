@@ -9,10 +9,10 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
-from cosserat_casadi.control.inverse_result import Inverse, gap_left, meets_all
-from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
+from cosserat_casadi.control.inverse_result import Inverse, gap_left
+from cosserat_casadi.control.sought_inputs import SoughtInputs
+from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.maths.pose import POSE_SIZE
@@ -45,50 +45,32 @@ IPOPT = {
 LEARNED_HESSIAN = {"hessian_approximation": "limited-memory"}
 """Further options where exact second derivatives cost too much."""
 
-SEED = 20_240
-"""Of the generator that scatters them: the same scene has the same starts."""
-
-AT_BOUND = 1e-6
-"""Distance from a bound, in half its range, below which an input is at it."""
-
 NEAR_BOUND = 1e-3
 """Distance from a bound, in the scales, below which an input is tried at the bound itself."""
 
 
 @dataclass(frozen=True)
-class LiftedProblem:
-    """Unknowns and n decision variables, these as changes in their scales from an origin.
+class LiftedProblem(SoughtInputs):
+    """Unknowns and n decision variables.
 
     Attributes:
-        model: the model.
-        targets: poses and positions to reach.
-        variables: the decision variables.
-        scale: a change of each that matters, shape (n,).
-        origin: stacked inputs that changes count from.
         optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
             the same kinds share it.
         errors: x, change, origin, wanted poses ↦ weighted errors of the targets, their derivatives by x and by change;
             shared likewise.
     """
 
-    model: SystemFunctions
-    targets: tuple[scenes.Target, ...]
-    variables: DecisionVariables
-    scale: FloatArray
-    origin: FloatArray
     optimiser: ca.Function
     errors: ca.Function
 
-    def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
+    def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
 
         The damping picks one of many solutions and keeps the problem regular; moving its centre takes the error that
         it makes out of the result.
-
-        Args:
-            x: unknowns to start from, shape (size,).
-            change: decision variables to start from, as changes from the origin in their scales, shape (n,).
         """
+        # A failed first solve may end at no numbers.
+        x = start.x if np.all(np.isfinite(start.x)) else self.model.unloaded()
         bounds = self._bounds()
         size = self.model.size
         centre = change
@@ -145,68 +127,9 @@ class LiftedProblem:
         polished = self.judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
         return min(polished, replace(result, rounds=rounds), key=gap_left)
 
-    def judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
-        """The equilibrium at the inputs found, solved and judged like any other.
-
-        Args:
-            x: unknowns to start the solve from, shape (size,).
-            change: decision variables found, as changes from the origin in their scales, shape (n,).
-            rounds: runs of the optimiser that it took.
-        """
-        inputs = self.inputs(change)
-        values = self.model.inputs.unpack(inputs)
-        solution = solve(self.model, values, start=x, estimate_error=False)
-        gaps = target_errors(solution, self.targets)
-        result = Inverse(solution, self.targets, gaps, False, rounds, at_bounds=self._at_bounds(inputs))
-        return replace(result, met=meets_all(result))
-
-    def change(self, inputs: FloatArray) -> FloatArray:
-        """Decision variables of stacked inputs, brought into their ranges, as changes from the origin, shape (n,)."""
-        difference = self.variables.clipped(inputs) - self.origin
-        return np.asarray(difference[self.variables.indices] / self.scale)
-
-    def inputs(self, change: FloatArray) -> FloatArray:
-        """Stacked inputs for a change of the decision variables, shape (inputs,)."""
-        inputs = self.origin.copy()
-        inputs[self.variables.indices] += self.scale * change
-        # Rounding may leave a range by the last digit.
-        return self.variables.clipped(inputs)
-
-    def scattered(self, count: int) -> FloatArray:
-        """Changes of the decision variables to start from, shape (count, n); none where no range is closed.
-
-        Entries without a range on both sides stay at the origin.
-        """
-        lower, upper = self.ranges()
-        closed = np.isfinite(upper - lower) & (upper > lower)
-        if not np.any(closed):
-            return np.zeros((0, len(self.scale)))
-        shares = np.random.default_rng(SEED).random((count, len(self.scale)))
-        least = np.where(closed, lower, 0.0)
-        most = np.where(closed, upper, 0.0)
-        return np.asarray(least + shares * (most - least))
-
-    def _at_bounds(self, inputs: FloatArray) -> tuple[str, ...]:
-        """Names of the decision variables that are at a bound, those aside that their bounds hold at one value."""
-        variables = self.variables
-        values = inputs[variables.indices]
-        near = AT_BOUND * self.scale
-        at_bound = (values <= variables.lower + near) | (values >= variables.upper - near)
-        free = variables.upper > variables.lower
-        stacked = set(variables.indices[at_bound & free].tolist())
-        slices = self.model.inputs.slices.items()
-        return tuple(name for name, entries in slices if stacked & set(range(entries.start, entries.stop)))
-
     def _parameters(self, centre: FloatArray, damping: float) -> FloatArray:
         """Parameters of the optimiser."""
         return np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)])
-
-    def ranges(self) -> tuple[FloatArray, FloatArray]:
-        """Least and largest changes of the decision variables, each of shape (n,)."""
-        start = self.origin[self.variables.indices]
-        lower = (self.variables.lower - start) / self.scale
-        upper = (self.variables.upper - start) / self.scale
-        return lower, upper
 
     def _bounds(self) -> dict[str, FloatArray]:
         """Ranges of the changes; the unknowns have none."""

@@ -67,7 +67,7 @@ def followed(problem: LiftedProblem, start: Equilibrium[Any]) -> Inverse | None:
         linear = _linearised(problem, x, change)
         if linear is None:
             return None
-        step = _shortest(linear.moved, linear.balanced, lower - change, upper - change)
+        step = shortest(linear.moved, linear.balanced, lower - change, upper - change)
         x_step = -linear.follows[:, 0] - linear.follows[:, 1:] @ step
         largest = float(np.abs(np.concatenate([x_step, step])).max())
         if largest <= SETTLED:
@@ -99,7 +99,7 @@ def _linearised(problem: LiftedProblem, x: FloatArray, change: FloatArray) -> _L
     return _Linearised(follows, errors[:, 0], balanced, moved)
 
 
-def _shortest(moved: FloatArray, errors: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+def shortest(moved: FloatArray, errors: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
     """A short change of n inputs within ranges that takes m errors away, as far as inputs not at an end of theirs can.
 
     Args:

@@ -139,7 +139,7 @@ def solve(
         values = _values_in_contact(model, values)
         solution = _in_contact(model, values, start, method, limits, progress)
         if estimate_error:
-            solution = with_error_in_contact(solution, values, limits.newton)
+            solution = with_error_in_contact(solution, limits.newton)
         if stable:
             check_potential(solution.model, solution.inputs)
             solution = noted_unstable(solution)

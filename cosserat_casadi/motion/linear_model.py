@@ -17,6 +17,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.pressing_contacts import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
@@ -24,7 +25,6 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.eigenproblem import NOTHING, natural_shift, undamped_modes
 from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
-from cosserat_casadi.motion.motions_in_contact import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.motion.relaxing_rows import integrated
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
 from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
@@ -181,7 +181,7 @@ class _Equations:
         derivatives = ca.Function("by_inputs", symbols, [ca.jacobian(residual, symbol) for symbol in symbols])
         held = np.zeros(model.inputs.size)
         matrices = [matrix.full() for matrix in derivatives(solution.inputs, held, held)]
-        matrices[0] += contacts.stiffness_by_inputs
+        matrices[0][: solution.model.size] += contacts.stiffness_by_inputs
         by_value, by_rate, by_acceleration = integrated(motions.branches, matrices)
         return _Equations(model, motions, (by_value, by_rate, by_acceleration), contacts)
 
@@ -372,7 +372,7 @@ def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
     A[rates, held] = -motions.stiffness[np.ix_(moving, algebraic)]
     A[held, positions] = -motions.stiffness[np.ix_(algebraic, moving)]
     A[held, held] = -motions.stiffness[np.ix_(algebraic, algebraic)]
-    gradients = contacts.held[:, moving]
+    gradients = motions.held[len(motions.held) - len(contacts.held) :, moving]
     A[rates, pressed] = (gradients / motions.roots**2).T
     A[pressed, positions] = gradients
     by_inputs = -equations.joined(equations.by_inputs)

@@ -18,7 +18,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
 from cosserat_casadi.accuracy.scene_solver import TIGHT
-from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, without_contacts
+from cosserat_casadi.equilibrium.contact.pressing_contacts import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
 from cosserat_casadi.equilibrium.solution import Solution
@@ -31,7 +32,6 @@ from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
-from cosserat_casadi.motion.motions_in_contact import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -221,8 +221,11 @@ def small_motions(
     matrices = [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
     held_gradients = _quaternion_growth(model, x)
     if contacts is not None:
-        matrices[0] = matrices[0] + contacts.stiffness
-        held_gradients = np.vstack([held_gradients, contacts.held])
+        # Flows, which relaxing stress has in motion, are behind the unknowns of the equilibrium.
+        size = contacts.stiffness.shape[0]
+        matrices[0][:size, :size] += contacts.stiffness
+        held = np.pad(contacts.held, ((0, 0), (0, model.size - size)))
+        held_gradients = np.vstack([held_gradients, held])
     unknowns = model.discrete.unknowns
     branches = branch_rows(model.discrete, *matrices[1:])
     stiffness, damping, mass = integrated(branches, matrices)
@@ -379,17 +382,17 @@ def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Sol
     model = build(scene, discretise(scene, polynomials, nodes, transport))
     if report is not None:
         report(f"equilibrium of {model.size} unknowns, {nodes} intervals")
-    values = coarser.model.inputs.unpack(coarser.inputs)
+    inputs = given_inputs(coarser.model, coarser.inputs)
+    values = model.inputs.unpack(inputs)
     newton = ContinuationSettings().newton
     if scene.touches_exactly:
-        given = {name: values[name] for name in model.inputs.names}
-        solution = solve(model, given, start=coarser, estimate_error=False)
+        solution = solve(model, values, start=coarser, estimate_error=False)
     else:
-        corrected = correct(model, coarser.inputs, prolong(coarser, model), newton)
+        corrected = correct(model, inputs, prolong(coarser, model), newton)
         if corrected is None:
             return solve(model, values, estimate_error=False)
         x, ended = corrected.x, corrected.outcome
-        solution = judge(model, coarser.inputs, x, ended, corrected.iterations, 1.0, newton.tolerance)
+        solution = judge(model, inputs, x, ended, corrected.iterations, 1.0, newton.tolerance)
     # What is known of the coarser solution holds for the finer one all the more.
     return replace(
         solution,

@@ -15,7 +15,7 @@ from cosserat_casadi import Model, Solution, build, solve
 from cosserat_casadi.control.inverse import search, search_near
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
-from cosserat_casadi.control.nearby_inputs import _shortest, followed
+from cosserat_casadi.control.nearby_inputs import followed, shortest
 from cosserat_casadi.scene.target_records import PoseTarget, PositionTarget
 from tests.scenes import push, scene
 
@@ -106,10 +106,10 @@ def test_the_shortest_change() -> None:
     reached = 0
     for _ in range(50):
         moved, errors = rng.normal(size=(2, 5)), rng.normal(size=2)
-        step = _shortest(moved, errors, -free, free)
+        step = shortest(moved, errors, -free, free)
         assert_allclose(step, -np.linalg.pinv(moved) @ errors, rtol=1e-12, atol=1e-12)
         limit = 0.8 * np.abs(step).max() * np.ones(5)
-        within = _shortest(moved, errors, -limit, limit)
+        within = shortest(moved, errors, -limit, limit)
         assert np.all(np.abs(within) <= limit * (1 + 1e-15))
         best = lsq_linear(moved, -errors, (-limit, limit), tol=1e-14)
         if best.cost < 1e-20:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, SolveError, build, linearise, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi.equilibrium.contact.pressing_contacts import unknowns_by_inputs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.linear_model import DescriptorModel, LinearModel
+from cosserat_casadi.motion.linear_outputs import outputs_of
 from cosserat_casadi.motion.vibration_modes import WHILE_PRESSED, ModesOutcome
 
 STIFFNESS = 0.02
@@ -73,34 +76,84 @@ def gain(linear: LinearModel | DescriptorModel) -> FloatArray:
     return np.asarray(linear.D - linear.C @ states)
 
 
+def carriers() -> Scene:
+    """A soft and a stiff rod that carry a ball onto a ramp; the soft one lies on a peg."""
+    rods = []
+    for name, height, stiffness in (("soft", 0.0, STIFFNESS), ("stiff", 0.1, 4 * STIFFNESS)):
+        bending = {"bending_x": stiffness, "bending_y": stiffness, "torsion": stiffness}
+        base = {"position": [0, 0, height], "tangent": [1, 0, 0]}
+        rods.append(
+            {"name": name, "length": 1.0, "strain": "planar", "stiffness": bending, "linear_density": 0.1, "base": base}
+        )
+    ball = {"name": "ball", "mass": 0.05, "radius": 0.02}
+    joints = [
+        {
+            "body": "ball",
+            "rod": name,
+            "kind": "fixed",
+            "position": [-0.05, 0, height],
+            "quaternion": [0.5**0.5, 0, 0.5**0.5, 0],
+        }
+        for name, height in (("soft", -0.05), ("stiff", 0.05))
+    ]
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+    push = {"name": "push", "kind": "point_wrench", "rod": "soft", "at": 0.8, "force": [0, 0, -0.2]}
+    tables = {
+        "schema": 1,
+        "rods": rods,
+        "bodies": [ball],
+        "joints": joints,
+        "loads": [weight, push],
+        "obstacles": [
+            {
+                "name": "ramp",
+                "kind": "plane",
+                "point": [1, 0, -0.02],
+                "normal": [0.2, 0, 1],
+                "bodies": ["ball"],
+            },
+            {"name": "peg", "kind": "sphere", "centre": [0.5, 0, -0.12], "radius": 0.1, "rods": ["soft"]},
+        ],
+        "inputs": ["push.force"],
+        "accuracy": {"modes": 5, "nodes": 10},
+    }
+    return scene_from_dict(tables)
+
+
+def over_bar() -> Scene:
+    return touching(BAR, weight=2.0, strain="kirchhoff", inputs=["push.force", "rod.base.position"])
+
+
+def on_table() -> Scene:
+    return touching(floor(0.05), weight=2.0, inputs=["push.force", "rod.base.position"])
+
+
 @pytest.mark.parametrize(
-    ("obstacle", "kind", "strain"),
-    [pytest.param(BAR, "point", "kirchhoff", id="askew-bar"), pytest.param(floor(0.05), "line", "planar", id="table")],
+    ("scene", "kinds"), [(over_bar, ["point"]), (on_table, ["line"]), (carriers, ["point", "point"])]
 )
-def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(
-    obstacle: dict[str, Any], kind: str, strain: str
-) -> None:
+def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(scene: Callable[[], Scene], kinds: list[str]) -> None:
     """Of a push and of a base that moves: the place of contact slides, a line becomes longer."""
-    scene = touching(obstacle, weight=2.0, strain=strain, inputs=["push.force", "rod.base.position"])
-    model = build(scene)
+    model = build(scene())
     rest = solve(model, estimate_error=False)
-    (contact,) = rest.contacts
-    assert contact.kind == kind and contact.start < 1.0
-    linear = linearise(rest, [("rod", 0.2), "rod.tip.position"])
+    assert rest.converged and [contact.kind for contact in rest.contacts] == kinds
+    rod, *_ = model.discretisation
+    linear = linearise(rest, [(rod, 0.2), f"{rod}.tip.position"])
     assert not any(name.startswith("contact") for name in linear.inputs)
-    change = np.array([0.002, 0.0, -0.005, 0.03, 0.01, 0.05])
-    if strain == "planar":
-        change[4] = 0.0
+    given = model.inputs.size
+    change = np.array([0.002, 0.0, -0.005, 0.03, 0.01 * (scene is over_bar), 0.05])[:given]
     step = 3e-3
     ends = []
-    for moved in (step * change, -step * change):
-        values = {"push.force": moved[:3], "rod.base.position": moved[3:]}
+    for sign in (1.0, -1.0):
+        values = model.inputs.unpack(rest.inputs[:given] + sign * step * change)
         end = solve(model, values, start=rest, estimate_error=False)
         assert end.converged
-        ends.append(np.concatenate([end.pose(0.2).position, end.tip().position]))
+        ends.append(np.concatenate([end.pose(0.2, rod).position, end.tip(rod).position]))
     wanted = (ends[0] - ends[1]) / (2 * step)
-    assert_allclose(gain(linear)[:, :6] @ change, wanted, rtol=0, atol=2e-7)
-    assert_allclose(gain(linear.descriptor)[:, :6] @ change, wanted, rtol=0, atol=2e-7)
+    assert_allclose(gain(linear)[:, :given] @ change, wanted, rtol=0, atol=2e-7)
+    assert_allclose(gain(linear.descriptor)[:, :given] @ change, wanted, rtol=0, atol=2e-7)
+    followed = outputs_of(rest, [(rod, 0.2), f"{rod}.tip.position"])
+    by_inputs = followed.by_x[:, : rest.model.size] @ unknowns_by_inputs(rest) + followed.by_inputs[:, :given]
+    assert_allclose(by_inputs @ change, wanted, rtol=0, atol=2e-7)
 
 
 def test_a_rod_on_its_tip_swings_in_motion_as_its_modes_do() -> None:
@@ -126,11 +179,15 @@ def test_a_rod_on_its_tip_swings_in_motion_as_its_modes_do() -> None:
     assert unexplained(frequencies) < 5e-3 < 4e-2 < others
 
 
-@pytest.mark.parametrize("depth", [0.0, 1e-12])
-def test_a_contact_that_hardly_presses_has_no_modes(depth: float) -> None:
-    """A straight rod without weight on a ball, and just above it."""
-    ball = {"kind": "sphere", "centre": [0.9, 0, -0.05 - depth], "radius": 0.05}
-    rest = solve(build(touching(ball, 2, weight=0.0)), estimate_error=False)
+@pytest.mark.parametrize("pressed", [False, True])
+def test_a_contact_that_hardly_presses_has_no_modes(pressed: bool) -> None:
+    """A straight rod without weight on a ball: just above it, and where a push has gone."""
+    ball = {"kind": "sphere", "centre": [0.9, 0, -0.05 - 1e-12], "radius": 0.05}
+    model = build(touching(ball, 2, weight=0.0))
+    rest = solve(model, estimate_error=False)
+    if pressed:
+        rest = solve(model, start=solve(model, {"push.force": [0, 0, -0.1]}), estimate_error=False)
+    assert len(rest.contacts) == pressed
     found = modes_of(rest)
     assert found.outcome is ModesOutcome.MARGINAL_CONTACT and not found.modes
     assert "'rod' is" in found.message

@@ -2,46 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_notes
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
-from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, without_contacts
 from cosserat_casadi.equilibrium.metrics import SAFETY, with_estimate
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.model.discretise import enriched
+from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.scene import Scene
 
 
-def with_error_in_contact(
-    solution: Solution, values: Mapping[str, npt.ArrayLike] | None, newton: NewtonSettings
-) -> Solution:
-    """A solution in contact with the estimates of its errors; as it is where it is no equilibrium.
+def with_error_in_contact(solution: Solution, newton: NewtonSettings) -> Solution:
+    """A solution in contact with the estimates of its errors, told; as it is where it is no equilibrium."""
+    if not solution.converged:
+        return solution
+    return with_notes(estimated_in_contact(solution, newton))
+
+
+def estimated_in_contact(solution: Solution, newton: NewtonSettings | None = None) -> Solution:
+    """An equilibrium in contact with the estimates of its errors, its message as it is.
 
     Places and forces of contact are unknowns that the sweeps of answers without contact do not have: the same contacts
-    are solved on the richer modes, from this solution. Where other contacts come out the error is not known.
+    are solved on the richer modes, from this solution.
 
     Args:
         solution: of a scene with obstacles.
-        values: its inputs by name.
         newton: limits of the solve.
     """
-    if not solution.converged:
-        return solution
-    scene = without_contacts(solution.model.scene)
-    finer = solve_contact(
-        scene, richer(Grids(solution.model.discretisation), scene), values, start=solution, newton=newton
-    )
+    model = solution.model
+    scene = without_contacts(model.scene)
+    values = input_layout(scene).unpack(given_inputs(model, solution.inputs))
+    grids = richer(Grids(model.discretisation), scene)
+    return beside_finer(solution, solve_contact(scene, grids, values, start=solution, newton=newton))
+
+
+def beside_finer(solution: Solution, finer: Solution) -> Solution:
+    """A solution with the error that a finer one gives it, which is not known where other contacts come out."""
     if finer.converged and same_contacts(solution, finer):
-        return with_notes(with_contact_error(solution, finer))
-    return with_notes(replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN))
+        return with_contact_error(solution, finer)
+    return replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN)
 
 
 def richer(grids: Grids, scene: Scene) -> Grids:

@@ -23,6 +23,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import (
     TIP,
     ContactState,
     Touch,
+    given_inputs,
     load_sections,
     state_in,
     without_contacts,
@@ -301,11 +302,8 @@ def contact_equilibrium(equations: ContactEquations, z: FloatArray, given: Float
 def equilibrium_in(solution: Solution) -> ContactEquilibrium:
     """The contacts among the loads of a solution's scene, with their forces."""
     model = solution.model
-    scene = without_contacts(model.scene)
-    modes = Grids(model.discretisation).bending_modes(scene)
-    placed = Placed(model, state_in(model.scene), np.zeros(0), modes)
-    others = np.setdiff1d(np.arange(model.inputs.size), placed.force_entries)
-    placed = replace(placed, given=solution.inputs[others])
+    modes = Grids(model.discretisation).bending_modes(without_contacts(model.scene))
+    placed = Placed(model, state_in(model.scene), given_inputs(model, solution.inputs), modes)
     forces = solution.inputs[placed.force_entries] / placed.force_units
     return ContactEquilibrium(placed, solution.x, forces, solution)
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.solution import SectionForce
@@ -16,6 +17,7 @@ from cosserat_casadi.loads.contact_point import ContactPoint
 from cosserat_casadi.maths.numbers import is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.system_functions import SystemFunctions
 
 Place = Any
 """An abscissa X: a number, or an expression while it is sought."""
@@ -348,6 +350,23 @@ def without_contacts(scene: scenes.Scene) -> scenes.Scene:
         inputs = {f"{name}.force" for name in names}
         changes["inputs"] = tuple(name for name in scene.inputs if name not in inputs)
     return scene.model_copy(update=changes)
+
+
+def given_names(model: SystemFunctions) -> list[str]:
+    """Names of a model's inputs that are given: all but the forces of contacts, which follow."""
+    names = {load.name for load in contact_loads(model.scene)}
+    return [entry.name for entry, _ in model.inputs if entry.owner not in names]
+
+
+def given_entries(model: SystemFunctions) -> npt.NDArray[np.int64]:
+    """Their indices in the stacked inputs."""
+    entries = np.arange(model.inputs.size)
+    return np.concatenate([entries[:0], *(entries[model.inputs.slices[name]] for name in given_names(model))])
+
+
+def given_inputs(model: SystemFunctions, inputs: FloatArray) -> FloatArray:
+    """Stacked inputs of a scene, from those of a model of it that may have the forces of contacts too."""
+    return inputs[given_entries(model)]
 
 
 def load_sections(scene: scenes.Scene) -> dict[str, tuple[float, ...]]:

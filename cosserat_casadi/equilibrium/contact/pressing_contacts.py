@@ -1,7 +1,8 @@
-"""Small motions about an equilibrium in exact contact: contacts that press hold, and points of contact slide.
+"""What an equilibrium in exact contact does under small changes, as long as every contact presses.
 
 A gap stays zero at the section that touches, along a line at all of it. What a moving place of contact does to the
-stiffness is N (∂d′/∂x)² / d″, as in stability (equilibrium/contact/contact_judgement.py).
+stiffness is N (∂d′/∂x)² / d″, as in stability (contact_judgement.py). So small changes ask for no elements that move:
+they are those of the rods to the error of the modes.
 """
 
 from __future__ import annotations
@@ -11,17 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR
 from cosserat_casadi.equilibrium.contact.contact_judgement import pressing
-from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium, equilibrium_in
+from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
-from cosserat_casadi.equilibrium.contact.contact_state import contact_loads
+from cosserat_casadi.equilibrium.contact.contact_state import contact_loads, given_entries
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.broyden import solved
 
 
 @dataclass(frozen=True)
 class PressingContacts:
-    """What contacts add to the equations of small motions of n unknowns under m inputs.
+    """What contacts add to the equations of small changes of n unknowns under m inputs.
 
     Attributes:
         held: gradients of the gaps that stay zero, shape (k, n).
@@ -39,26 +42,41 @@ class PressingContacts:
 
 
 def pressing_contacts(solution: Solution) -> PressingContacts:
-    """The contacts of an equilibrium in which all of them press; none where nothing touches exactly."""
+    """The contacts of an equilibrium that press; none where nothing touches exactly."""
     model = solution.model
-    size, inputs = model.in_motion.size, np.arange(model.inputs.size)
+    given = given_entries(model)
     if not contact_loads(model.scene):
-        rows = [np.zeros((0, columns)) for columns in (size, inputs.size)]
-        stiffness = [np.zeros((size, columns)) for columns in (size, inputs.size)]
-        return PressingContacts(*rows, *stiffness, inputs)
+        rows = [np.zeros((0, columns)) for columns in (model.size, model.inputs.size)]
+        stiffness = [np.zeros((model.size, columns)) for columns in (model.size, model.inputs.size)]
+        return PressingContacts(*rows, *stiffness, given)
     found = equilibrium_in(solution)
     by_x = found.placed.gaps(found.x, solution.inputs)[1].full()
     by_inputs = found.placed.gaps_by_inputs(found.x, solution.inputs).full()
     contacts = pressing(found)
-    # Flows, which relaxing stress has in motion, are behind the unknowns of the equilibrium.
-    flows = size - model.size
     return PressingContacts(
-        np.pad(by_x[contacts.held], ((0, 0), (0, flows))),
+        by_x[contacts.held],
         by_inputs[contacts.held],
-        np.pad(contacts.stiffness(by_x, by_x), (0, flows)),
-        np.pad(contacts.stiffness(by_x, by_inputs), ((0, flows), (0, 0))),
-        np.setdiff1d(inputs, found.placed.force_entries),
+        contacts.stiffness(by_x, by_x),
+        contacts.stiffness(by_x, by_inputs),
+        given,
     )
+
+
+def unknowns_by_inputs(solution: Solution) -> FloatArray:
+    """Derivatives of the unknowns with the m inputs of the scene while contacts press, (n, m); NaN where singular."""
+    model = solution.model
+    contacts = pressing_contacts(solution)
+    stiffness = model.jacobian(solution.x, solution.inputs)[0].full() + contacts.stiffness
+    by_inputs = model.input_jacobian(solution.x, solution.inputs).full() + contacts.stiffness_by_inputs
+    # Forces of contact in any unit: each row of the balance is in the energy of its own rod.
+    units = model.discrete.unknowns.units
+    pushed = (contacts.held / units * units.max()).T
+    corner = np.zeros((len(contacts.held), len(contacts.held)))
+    bordered = np.block([[stiffness, pushed], [contacts.held, corner]])
+    moved = solved(bordered, -np.vstack([by_inputs, contacts.held_by_inputs])[:, contacts.given])
+    if moved is None:
+        return np.full((model.size, contacts.given.size), np.nan)
+    return np.asarray(moved[: model.size])
 
 
 def marginal_contact(solution: Solution) -> str:
@@ -72,7 +90,7 @@ def marginal_contact(solution: Solution) -> str:
             force = push * found.largest_force * discrete.contact_unit(touch.owner, of_body=touch.of_body)
             return f"{touch.owner!r} is on {touch.obstacle!r} and presses with {force:.2g} N only."
     for near in found.penetrations(-LEAST_TOLERANCE):
-        clamped = not near.of_body and near.start == 0.0
+        clamped = not near.of_body and near.start == 0.0 and near.end <= NEAR
         if not clamped and not any(near.is_at(touch) for touch in found.state.touches):
             return f"{near.owner!r} is {-near.depth:.2g} of the length from {near.obstacle!r}, which it does not press."
     return ""

@@ -1,0 +1,126 @@
+"""The inverse problem of rods in exact contact: least squares over equilibria, each solved with its contacts.
+
+The errors of the targets are functions of the inputs that are smooth while the contacts stay, and have a kink where
+they change. Each turn takes the shortest change of the inputs that ends the linearised errors, no farther than was
+believed before, and keeps the equilibrium there if it is nearer to the targets. Where other contacts hold there and it
+is not, the next turn tries with the derivatives of that side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.control.decision_variables import decision_variables, scales
+from cosserat_casadi.control.inverse_result import Inverse, gap_left
+from cosserat_casadi.control.nearby_inputs import NO_ERROR, SETTLED, shortest
+from cosserat_casadi.control.sought_inputs import SoughtInputs
+from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
+from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import given_entries, given_inputs
+from cosserat_casadi.equilibrium.contact.pressing_contacts import unknowns_by_inputs
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
+from cosserat_casadi.equilibrium.solve import check_potential
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.system_functions import SystemFunctions
+
+MOST_TURNS = 20
+"""Equilibria that are tried from one start."""
+
+FIRST_DAMPING = 1e-1
+"""Weight of the square of the first change of the inputs, in their scales, beside that of the errors."""
+
+MOST_DAMPING = 1e8
+"""The same from which on a search ends that comes no nearer."""
+
+EASED = 10.0
+"""Factor by which it falls after a turn that has come nearer."""
+
+TIGHTENED = 5.0
+"""Factor by which it grows after one that has not."""
+
+NEARER = 0.1
+"""Share of the expected decrease of the error that a turn has to reach."""
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """Errors of targets, linear in changes of n inputs in their scales: shapes (m,) and (m, n)."""
+
+    errors: FloatArray
+    moved: FloatArray
+
+    def step(self, damping: float, lower: FloatArray, upper: FloatArray) -> FloatArray:
+        """The damped change within ranges after which least is left of the errors, shape (n,)."""
+        count = len(lower)
+        moved = np.vstack([self.moved, np.sqrt(damping) * np.eye(count)])
+        return shortest(moved, np.concatenate([self.errors, np.zeros(count)]), lower, upper)
+
+
+@dataclass(frozen=True)
+class ContactProblem(SoughtInputs):
+    """Decision variables alone: the unknowns follow by solves."""
+
+    def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
+        """Damped steps between equilibria, each with its own contacts."""
+        here = self._at(start, change)
+        if not here.solution.converged:
+            return here
+        lower, upper = self.ranges()
+        linear = self._linearised(here.solution)
+        damping = FIRST_DAMPING
+        turns = 0
+        while turns < MOST_TURNS and linear is not None and damping < MOST_DAMPING:
+            if np.abs(linear.errors).max(initial=0.0) <= NO_ERROR:
+                break
+            step = linear.step(damping, lower - change, upper - change)
+            if float(np.abs(step).max(initial=0.0)) <= SETTLED:
+                break
+            turns += 1
+            there = self._at(here.solution, change + step)
+            before, after = gap_left(here), gap_left(there)
+            expected = before - float(np.linalg.norm(linear.errors + linear.moved @ step))
+            # Off a stable branch steps would go far for little.
+            leaves = there.unstable and not here.unstable
+            if after < before and before - after >= NEARER * expected and not leaves:
+                damping /= EASED
+                here, change = there, change + step
+                linear = self._linearised(here.solution)
+                continue
+            damping *= TIGHTENED
+            if there.solution.converged and not same_contacts(here.solution, there.solution):
+                other = self._linearised(there.solution)
+                linear = linear if other is None else _Linear(linear.errors, other.moved)
+        return replace(here, rounds=turns)
+
+    def _at(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
+        return self.judged(start if start.converged else None, change, rounds=0)
+
+    def _linearised(self, solution: Equilibrium[Any]) -> _Linear | None:
+        """Errors of an equilibrium; None where its contacts leave it no derivatives."""
+        assert isinstance(solution, Solution), "rods alone touch obstacles"
+        model = solution.model
+        x = ca.MX.sym("x", model.size)
+        inputs = ca.MX.sym("inputs", model.inputs.size)
+        errors = weighted_errors(model, self.targets, ca.MX(wanted_poses(self.targets)), x, inputs)
+        derivatives = [ca.jacobian(errors, x), ca.jacobian(errors, inputs)]
+        function = ca.Function("errors", [x, inputs], [errors, *derivatives])
+        values, by_x, by_inputs = (part.full() for part in function(solution.x, solution.inputs))
+        given = given_entries(model)
+        moved = (by_x @ unknowns_by_inputs(solution) + by_inputs[:, given])[:, self.variables.indices] * self.scale
+        return _Linear(values[:, 0], moved) if np.all(np.isfinite(moved)) else None
+
+
+def contact_problem(
+    model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Solution, stable: bool
+) -> ContactProblem:
+    """The problem of a model of rods in exact contact, with arguments as those of :func:`lifted_problem`."""
+    variables = decision_variables(model)
+    given = given_inputs(start.model, start.inputs)
+    if stable:
+        check_potential(start.model, start.inputs)
+    return ContactProblem(model, targets, variables, scales(model, variables, start), variables.clipped(given))
