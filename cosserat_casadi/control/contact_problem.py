@@ -17,10 +17,9 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.decision_variables import decision_variables, scales
 from cosserat_casadi.control.inverse_result import Inverse, gap_left
-from cosserat_casadi.control.nearby_inputs import NO_ERROR, SETTLED, shortest
+from cosserat_casadi.control.nearby_inputs import SETTLED, shortest
 from cosserat_casadi.control.sought_inputs import SoughtInputs
 from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
-from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts
 from cosserat_casadi.equilibrium.contact.contact_state import given_entries, given_inputs
 from cosserat_casadi.equilibrium.contact.pressing_contacts import unknowns_by_inputs
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
@@ -75,8 +74,6 @@ class ContactProblem(SoughtInputs):
         damping = FIRST_DAMPING
         turns = 0
         while turns < MOST_TURNS and linear is not None and damping < MOST_DAMPING:
-            if np.abs(linear.errors).max(initial=0.0) <= NO_ERROR:
-                break
             step = linear.step(damping, lower - change, upper - change)
             if float(np.abs(step).max(initial=0.0)) <= SETTLED:
                 break
@@ -90,11 +87,8 @@ class ContactProblem(SoughtInputs):
                 damping /= EASED
                 here, change = there, change + step
                 linear = self._linearised(here.solution)
-                continue
-            damping *= TIGHTENED
-            if there.solution.converged and not same_contacts(here.solution, there.solution):
-                other = self._linearised(there.solution)
-                linear = linear if other is None else _Linear(linear.errors, other.moved)
+            else:
+                damping *= TIGHTENED
         return replace(here, rounds=turns)
 
     def _at(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
+from cosserat_casadi.equilibrium.contact.contact_state import given_entries, given_inputs
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.results.json_text import csv_text
 
@@ -41,7 +42,9 @@ def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> 
         found: the end of each row.
         unstable: as in :func:`row_outcome`.
     """
-    indices = column_indices(found[0].solution.model.inputs)
+    first = found[0].solution.model
+    given = set(given_entries(first).tolist())
+    inputs = [name for name, index in column_indices(first.inputs).items() if index in given]
     gaps = ("position_gap", "angle_gap", "position_error_estimate", "angle_error_estimate")
     errors = ("error_estimate", "within_tolerance")
     rows = []
@@ -52,8 +55,8 @@ def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> 
             (gap,) = inverse.gaps
             cells += [gap.position, gap.angle, gap.position_error, gap.angle_error]
             cells += [inverse.solution.error_estimate, inverse.solution.within_tolerance]
-            cells += [inverse.solution.inputs[index] for index in indices.values()]
+            cells += given_inputs(inverse.solution.model, inverse.solution.inputs).tolist()
         else:
-            cells += [None] * (len(gaps) + len(errors) + len(indices))
+            cells += [None] * (len(gaps) + len(errors) + len(inputs))
         rows.append(cells)
-    return csv_text([*table.columns, "outcome", *gaps, *errors, *indices], rows)
+    return csv_text([*table.columns, "outcome", *gaps, *errors, *inputs], rows)

@@ -18,7 +18,6 @@ from cosserat_casadi import (
     build,
     discretise,
     follow,
-    inverse,
     parse_scene,
     read_scene,
     solve,
@@ -244,7 +243,6 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution) -> None:
     """Beside the rows of the table in the documents, which `test_verbs_in_contact.py` reads."""
     scene = parse_scene(TABLE)
     uses: list[Callable[[], object]] = [
-        lambda: inverse(scene),
         lambda: stability_margin(table.model),
         lambda: estimate(scene),
         lambda: make_plan(scene, None, None, None, quick=True),
