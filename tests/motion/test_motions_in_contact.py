@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SolveError, build, linearise, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi import Scene, SolveError, build, linearise, modes_of, read_scene, scene_from_dict, simulate, solve
 from cosserat_casadi.equilibrium.contact.pressing_contacts import unknowns_by_inputs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.linear_model import DescriptorModel, LinearModel
 from cosserat_casadi.motion.linear_outputs import outputs_of
 from cosserat_casadi.motion.vibration_modes import WHILE_PRESSED, ModesOutcome
+from tests.conftest import ROOT
 
 STIFFNESS = 0.02
 DENSITY = 0.1
@@ -76,30 +77,11 @@ def gain(linear: LinearModel | DescriptorModel) -> FloatArray:
     return np.asarray(linear.D - linear.C @ states)
 
 
-def chain() -> Scene:
-    """A stiff rod on a peg that carries a soft one, and this a ball on a ramp: gaps count in units of both."""
-    rods = []
-    for name, stiffness, base in (
-        ("root", 4 * STIFFNESS, {"tangent": [1, 0, 0]}),
-        ("branch", STIFFNESS, {"rod": "root"}),
-    ):
-        own = {"length": 0.6, "strain": "planar", "stiffness": {"bending_y": stiffness}, "linear_density": DENSITY}
-        rods.append({"name": name, "base": base, **own})
-    push = {"name": "push", "kind": "point_wrench", "rod": "root", "at": 0.3, "force": [0, 0, -0.2]}
-    tables = {
-        "schema": 1,
-        "rods": rods,
-        "bodies": [{"name": "ball", "mass": 0.02, "radius": 0.02}],
-        "joints": [{"body": "ball", "rod": "branch", "kind": "fixed"}],
-        "loads": [{"name": "weight", "kind": "gravity", "acceleration": [0, 0, -2.0]}, push],
-        "obstacles": [
-            {"name": "ramp", "kind": "plane", "point": [1.2, 0, -0.3], "normal": [-0.2, 0, 1], "bodies": ["ball"]},
-            {"name": "peg", "kind": "sphere", "centre": [0.4, 0, -0.12], "radius": 0.1, "rods": ["root"]},
-        ],
-        "inputs": ["push.force"],
-        "accuracy": {"modes": 4, "nodes": 8},
-    }
-    return scene_from_dict(tables)
+def on_a_body() -> Scene:
+    """The gap is one of two rods, which count in units of their own."""
+    push = "loads=[{name='push', kind='point_wrench', rod='lower', at=0.3, force=[0, 0, 0]}]"
+    changes = [push, "inputs=['push.force']", "accuracy.modes=4", "accuracy.nodes=8"]
+    return read_scene(ROOT / "examples" / "finger_on_finger.toml", changes)
 
 
 def over_bar() -> Scene:
@@ -110,7 +92,7 @@ def on_table() -> Scene:
     return touching(floor(0.05), weight=2.0, inputs=["push.force", "rod.base.position"])
 
 
-@pytest.mark.parametrize(("scene", "kinds"), [(over_bar, ["point"]), (on_table, ["line"]), (chain, ["point", "point"])])
+@pytest.mark.parametrize(("scene", "kinds"), [(over_bar, ["point"]), (on_table, ["line"]), (on_a_body, ["point"])])
 def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(scene: Callable[[], Scene], kinds: list[str]) -> None:
     """Of a push and of a base that moves: the place of contact slides, a line becomes longer."""
     model = build(scene())
