@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +33,7 @@ def on_table() -> Scene:
     return scene(rods=[FLAT], loads=[WEIGHT], obstacles=[TABLE], accuracy={"tolerance": 1e-5})
 
 
-def pulled_over_bar() -> Scene:
+def pulled_over_bar(**more: Any) -> Scene:
     """The rod over a bar, with a tendon along it."""
     tendon = {
         "name": "tendon",
@@ -41,7 +42,7 @@ def pulled_over_bar() -> Scene:
         "offset": [-0.01, 0],
         "tension": 2,
     }
-    return scene(rods=[FLAT], loads=[PUSH], obstacles=[BAR], actuators=[tendon], accuracy={"tolerance": 1e-8})
+    return scene(rods=[FLAT], loads=[PUSH], obstacles=[BAR], actuators=[tendon], accuracy={"tolerance": 1e-8}, **more)
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import ExportError, build, discretise, export, load, read_scene, solve
+from cosserat_casadi import ExportError, Solution, build, discretise, export, load, read_scene, solve
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
+from cosserat_casadi.equilibrium.contact.contact_answer_error import richer
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
+from cosserat_casadi.equilibrium.metrics import SAFETY
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.contact_libraries import (
     BAR,
@@ -30,6 +34,12 @@ from tests.codegen.libraries import C99, QUICK, compile_quickly, gcc
 from tests.scenes import rod, scene
 
 LINT = (*C99, "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
+
+
+def pose_of(solution: Solution) -> np.ndarray:
+    """Position and quaternion of the body of a solution, shape (7,)."""
+    pose = solution.body("head")
+    return np.concatenate([np.ravel(pose.position), np.ravel(pose.quaternion)])
 
 
 def down(force: float) -> np.ndarray:
@@ -229,11 +239,11 @@ def test_an_error_is_of_a_solution(bar: ContactLibrary) -> None:
     assert bar.loaded.error_estimate(replace(found, state=bytes(moved))) is None
 
 
-def test_efforts_of_actuators_in_contact(tmp_path: Path) -> None:
-    """A tendon's tension, and its length on the rod that bends over the bar."""
-    library = exported_contact(
-        pulled_over_bar(), tmp_path / "pulled", np.zeros((0, 4)), modes=2, nodes=4, estimate_errors=False
-    )
+def test_efforts_and_bodies_in_contact(tmp_path: Path) -> None:
+    """A tendon's tension, and its length on the rod that bends over the bar; the pose of a body that it carries."""
+    head = {"body": "head", "rod": "rod", "kind": "fixed", "position": [5.0, 0, 0.02]}
+    carrying = pulled_over_bar(bodies=[{"name": "head", "mass": 0.1}], joints=[head])
+    library = exported_contact(carrying, tmp_path / "pulled", np.zeros((0, 4)), modes=2, nodes=4)
     inputs = {"push.force": [0, 0, -2.0], "tendon.tension": 3.0}
     found = library.loaded.solve(inputs)
     wanted = solve(library.model, inputs)
@@ -242,6 +252,18 @@ def test_efforts_of_actuators_in_contact(tmp_path: Path) -> None:
     efforts = wanted.actuator("tendon")
     assert found.actuators["tendon"].keys() == efforts.keys()
     assert_allclose(list(found.actuators["tendon"].values()), list(efforts.values()), rtol=1e-9, atol=0)
+    assert_allclose(found.bodies["head"], pose_of(wanted), rtol=0, atol=1e-9)
+    turned = library.loaded.track(inputs, found).body_derivatives
+    assert turned is not None
+    stacked, change = np.array([0.0, 0.0, -2.0, 3.0]), np.array([0.0, 0.0, 3e-3, 0.0])
+    ends = [library.loaded.solve(stacked + sign * change, found).bodies["head"] for sign in (1.0, -1.0)]
+    assert_allclose(turned["head"] @ change, (ends[0] - ends[1]) / 2, rtol=0, atol=2e-7)
+    # Far from the rod that carries it, it has the largest error.
+    grids = richer(Grids(library.model.discretisation), carrying)
+    finer = solve_contact(carrying, grids, inputs, start=wanted)
+    off = np.linalg.norm(finer.body("head").position - wanted.body("head").position)
+    assert found.error_estimate is not None
+    assert_allclose(found.error_estimate, SAFETY * off / carrying.rods[0].length, rtol=1e-3, atol=0)
 
 
 def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:

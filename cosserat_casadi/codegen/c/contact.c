@@ -150,8 +150,8 @@ static contact_status derivatives(const real *inputs, const contact_state *state
     back_substitute(work->jacobian, work->pivots, z_rate, n);
     call_rate(at->tip_rate, state->z, inputs, z_rate, inputs_rate, work->poses, work);
     inputs_rate[j] = 0;
-    if (!all_finite(work->poses, RODS * POSE_SIZE)) return CONTACT_SINGULAR;
-    for (int r = 0; r < RODS; r++) {
+    if (!all_finite(work->poses, POSES * POSE_SIZE)) return CONTACT_SINGULAR;
+    for (int r = 0; r < POSES; r++) {
       memcpy(d_poses_d_inputs + (r * INPUTS + j) * POSE_SIZE, work->poses + r * POSE_SIZE, POSE_SIZE * sizeof *z_rate);
     }
   }
@@ -223,7 +223,7 @@ int contact_contacts(const contact_state *state, contact_contact *contacts, work
 void contact_poses(const contact_state *state, contact_pose *poses, workspace *work) {
   const arrangement *at = ARRANGEMENT + state->arrangement;
   call(at->tips, state->z, state->inputs, work->poses, 0, work);
-  for (int r = 0; r < RODS; r++) {
+  for (int r = 0; r < POSES; r++) {
     memcpy(poses[r].position, work->poses + POSE_SIZE * r, sizeof poses[r].position);
     memcpy(poses[r].quaternion, work->poses + POSE_SIZE * r + 3, sizeof poses[r].quaternion);
   }

@@ -27,6 +27,7 @@ enum {
   ARRANGEMENTS = CONTACT_ARRANGEMENTS,
   INPUTS = CONTACT_INPUTS,
   RODS = CONTACT_RODS,
+  POSES = CONTACT_POSES, /* tips of rods, then bodies */
   PAIRS = CONTACT_PAIRS,
   MOST_TOUCHES = CONTACT_TOUCHES, /* contacts of any arrangement */
   TRIES = CONTACT_TRIES,          /* arrangements that are solved for one change of the inputs */
@@ -83,7 +84,7 @@ typedef struct {
   kernel jacobian;
   kernel rate;     /* of the residual, as z and the inputs change at some rates */
   kernel nodes;    /* positions of the nodes; whether they resolve the rods */
-  kernel tips;     /* position and quaternion of every tip */
+  kernel tips;     /* position and quaternion of every tip and body */
   kernel tip_rate; /* its rate, likewise */
   kernel contacts; /* forces of the contacts in world axes, and at their ends */
 #if CONTACT_ACTUATORS

@@ -22,19 +22,19 @@ static real turn_between(const real *a, const real *b) {
   return 4 * asin(smaller(sqrt(smaller(minus, plus)) / 2, 1));
 }
 
-/* The largest difference of the tips' poses: positions over the length, orientations in rad. */
+/* The largest difference of the poses of tips and bodies: positions over the length, orientations in rad. */
 static real tip_distance(const arrangement *at, const real *z, const arrangement *richer, const real *fine,
                          const real *inputs, workspace *work) {
-  real poses[POSE_SIZE * CONTACT_RODS];
+  real poses[POSE_SIZE * CONTACT_POSES];
   real largest = 0;
   call(at->tips, z, inputs, poses, 0, work);
   call(richer->tips, fine, inputs, work->poses, 0, work);
-  for (int r = 0; r < RODS; r++) {
+  for (int r = 0; r < POSES; r++) {
     const real *one = poses + POSE_SIZE * r;
     const real *other = work->poses + POSE_SIZE * r;
     real way[3];
     for (int i = 0; i < 3; i++) way[i] = one[i] - other[i];
-    largest = larger(largest, norm_of(way, 3) / ROD[r].length);
+    largest = larger(largest, norm_of(way, 3) / POSED_LENGTH[r]);
     largest = larger(largest, turn_between(one + 3, other + 3));
   }
   return largest;

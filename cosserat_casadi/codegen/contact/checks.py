@@ -41,9 +41,10 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     if scene.parameters:
         problem = "rods in exact contact have no parameters in C"
         problems.append(Problem("parameters", problem, "leave them out"))
-    if scene.bodies:
-        problem = "rods in exact contact are exported without rigid bodies"
-        problems.append(Problem("bodies", problem, "give each obstacle a width, m, or leave one of the two out"))
+    for obstacle in scene.obstacles:
+        if obstacle.bodies or obstacle.body is not None:
+            problem = "bodies in exact contact are not found in C, but for rods that carry them"
+            problems.append(Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m"))
     problems += held_by_contact(scene)
     if problems:
         raise ExportError(*problems)

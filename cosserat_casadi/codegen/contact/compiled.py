@@ -59,21 +59,25 @@ class CompiledContactSolution(JudgedAnswer):
     Attributes:
         arrangement: number of the arrangement of contacts, in the order of the manifest.
         tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
+        bodies: the same of each body.
         contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
         actuators: of each its effort and what that works on, by their names, such as tension (N) and length (m).
         tries: arrangements that were solved.
         parts: parts of the way of the inputs.
         derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
+        body_derivatives: the same of each body.
         state: what the next call begins with.
     """
 
     arrangement: int
     tips: Mapping[str, FloatArray]
+    bodies: Mapping[str, FloatArray]
     contacts: tuple[Contact, ...]
     actuators: Mapping[str, Mapping[str, float]]
     tries: int
     parts: int
     derivatives: Mapping[str, FloatArray] | None
+    body_derivatives: Mapping[str, FloatArray] | None
     state: bytes = field(repr=False)
 
 
@@ -102,6 +106,16 @@ class CompiledContact(LoadedLibrary):
     def rods(self) -> list[str]:
         """Names of the rods, in order."""
         return list(self.manifest["rods"])
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies, in order."""
+        return list(self.manifest.get("bodies", []))
+
+    @property
+    def _posed(self) -> int:
+        """Number of poses: tips of rods, then bodies."""
+        return len(self.rods) + len(self.bodies)
 
     @property
     def arrangements(self) -> list[list[dict[str, Any]]]:
@@ -155,7 +169,7 @@ class CompiledContact(LoadedLibrary):
         options = budget(ContactOptions, max_iterations, max_parts)
         state = self._state(start)
         info = ContactInfo()
-        columns = np.zeros((len(self.rods), self.inputs.size, POSE_SIZE))
+        columns = np.zeros((self._posed, self.inputs.size, POSE_SIZE))
         track = self._function("track")
         status = track(pointer(given), state, None, options, pointer(columns), self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
@@ -165,9 +179,9 @@ class CompiledContact(LoadedLibrary):
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
-        columns = np.zeros((len(self.rods), self.inputs.size, POSE_SIZE))
+        columns = np.zeros((self._posed, self.inputs.size, POSE_SIZE))
         status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
-        return None if status != 0 else by_tip(self.rods, columns)
+        return None if status != 0 else by_tip(self.rods, columns[: len(self.rods)])
 
     def error_estimate(self, solution: CompiledContactSolution) -> float | None:
         """Estimated error of a solution, such as one of a turn; None where it is none.
@@ -187,16 +201,19 @@ class CompiledContact(LoadedLibrary):
         *,
         solved: bool,
     ) -> CompiledContactSolution:
+        poses = self._poses(state) if solved else np.zeros((0, POSE_SIZE))
         return CompiledContactSolution(
             **judged_words(info, CONTACT_OUTCOMES),
             tolerance=self.tolerance,
             arrangement=self._arrangement_of(state),
-            tips=self._tips(state) if solved else {},
+            tips=dict(zip(self.rods, poses, strict=False)),
+            bodies=dict(zip(self.bodies, poses[len(self.rods) :], strict=False)),
             contacts=self._contacts(state) if solved else (),
             actuators=self._actuators(state) if solved else {},
             tries=info.tries,
             parts=info.parts,
-            derivatives=None if derivatives is None else by_tip(self.rods, derivatives),
+            derivatives=None if derivatives is None else by_tip(self.rods, derivatives[: len(self.rods)]),
+            body_derivatives=None if derivatives is None else by_tip(self.bodies, derivatives[len(self.rods) :]),
             state=bytes(state),
         )
 
@@ -204,10 +221,10 @@ class CompiledContact(LoadedLibrary):
         """Second member of the state."""
         return int(ctypes.cast(state, ctypes.POINTER(ctypes.c_int))[1])
 
-    def _tips(self, state: Any) -> dict[str, FloatArray]:
-        poses = np.zeros((len(self.rods), POSE_SIZE))
+    def _poses(self, state: Any) -> FloatArray:
+        poses = np.zeros((self._posed, POSE_SIZE))
         self._function("poses")(state, pointer(poses), self._workspace())
-        return dict(zip(self.rods, poses, strict=True))
+        return poses
 
     def _actuators(self, state: Any) -> dict[str, dict[str, float]]:
         entries = self.manifest.get("actuators", [])

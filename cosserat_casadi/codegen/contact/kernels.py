@@ -21,6 +21,7 @@ from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.model_functions import resolution_index
 from cosserat_casadi.model.strain_margins import strain_margins
@@ -139,12 +140,15 @@ class ArrangementKernels:
         return indices
 
     def _tips(self) -> Matrix:
-        """Position and quaternion of the tip of every rod, stacked."""
+        """Position and quaternion of the tip of every rod, then of every body, stacked."""
         poses = []
         for name, shape in self._written.system.shapes.items():
             base = self._written.system.base(name)
             poses.append(base.position + quaternion_to_matrix(base.quaternion) @ shape.position_at(-1))
             poses.append(quaternion_product(base.quaternion, ca.densify(shape.quaternion)[:, -1]))
+        for body in self._written.system.discrete.scene.bodies:
+            frame = self._written.system.frame(FrameName("body", body.name))
+            poses += [frame.position, frame.quaternion]
         return ca.vertcat(*poses)
 
     def _actuators(self) -> list[Matrix]:

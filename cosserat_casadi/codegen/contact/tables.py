@@ -99,6 +99,7 @@ class Tables:
             *(self._modes(level) for level in self._levels),
             self._rod_table(),
             self._pair_table(),
+            *([_reals("POSED_LENGTH", self._posed_lengths)] if self.chosen.richer else []),
             *(
                 self._arrangement(level, number, own)
                 for level in self._levels
@@ -174,6 +175,13 @@ class Tables:
             }
             entries.append(_initialiser(fields))
         return _table("rod_entry", "ROD", "RODS", entries)
+
+    @property
+    def _posed_lengths(self) -> FloatArray:
+        """Lengths that errors of the poses of tips, then of bodies, are relative to, m."""
+        discrete = self.chosen.equations[0].nominal.model.discrete
+        of_rods = [discrete.rods[name].properties.length for name in self.rods]
+        return np.array([*of_rods, *(discrete.body_frame(body).length for body in discrete.bodies)])
 
     def _pair_table(self) -> str:
         entries = []
