@@ -51,11 +51,11 @@ class SoughtInputs(ABC):
             change: these inputs as changes from the origin in their scales, shape (n,).
         """
 
-    def judged(self, start: Equilibrium[Any] | FloatArray, change: FloatArray, rounds: int) -> Inverse:
+    def judged(self, start: Equilibrium[Any] | FloatArray | None, change: FloatArray, rounds: int) -> Inverse:
         """The equilibrium at the inputs found, solved and judged like any other.
 
         Args:
-            start: a solution, or unknowns, to start the solve from.
+            start: a solution, or unknowns, to start the solve from; None for the unloaded scene.
             change: decision variables found, as changes from the origin in their scales, shape (n,).
             rounds: runs of the optimiser that it took.
         """

@@ -106,9 +106,9 @@ class ContactEquilibrium:
         At the tip and inside a line sections may carry nothing.
         """
         for touch, carried, line in self.parts():
-            opens = [force for force, moves in zip(carried, touch.carriers_move, strict=True) if moves]
-            if not touch.is_line:
-                opens = carried.tolist()
+            opens = carried.tolist()
+            if touch.is_line:
+                opens = [force for force, moves in zip(opens, touch.carriers_move, strict=True) if moves]
             yield touch, min([*opens, self._least_along(touch, line)]) / self.largest_force
 
     def _least_along(self, touch: Touch, line: FloatArray) -> float:
@@ -116,7 +116,8 @@ class ContactEquilibrium:
         if not touch.is_line:
             return inf
         _, pressure = self.pressure(touch, line)
-        return float(pressure.min()) * (touch.end - touch.start)
+        width = float(touch.end) - float(touch.start)
+        return float(pressure.min()) * width
 
     def pressure(self, touch: Touch, line: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Abscissae along a line of contact and the force per length there, without unit."""

@@ -46,9 +46,8 @@ def pressing_contacts(solution: Solution) -> PressingContacts:
     model = solution.model
     given = given_entries(model)
     if not contact_loads(model.scene):
-        rows = [np.zeros((0, columns)) for columns in (model.size, model.inputs.size)]
-        stiffness = [np.zeros((model.size, columns)) for columns in (model.size, model.inputs.size)]
-        return PressingContacts(*rows, *stiffness, given)
+        n, m = model.size, model.inputs.size
+        return PressingContacts(np.zeros((0, n)), np.zeros((0, m)), np.zeros((n, n)), np.zeros((n, m)), given)
     found = equilibrium_in(solution)
     by_x = found.placed.gaps(found.x, solution.inputs)[1].full()
     by_inputs = found.placed.gaps_by_inputs(found.x, solution.inputs).full()
