@@ -36,7 +36,7 @@ def over_ball(position: list[float], lower: float = -2.0, start: float = 0.0) ->
     return scene_from_dict(tables)
 
 
-@pytest.mark.parametrize("push", [-1.4, -0.1])
+@pytest.mark.parametrize("push", [-1.4, pytest.param(-0.1, marks=pytest.mark.slow)])
 def test_inputs_of_a_solve_are_found_over_a_change_of_contacts(push: float) -> None:
     """From a rod that is free to one that presses, and from one that presses to one that is free."""
     wanted = solve(build(over_ball([1.0, 0, 0])), {"push.force": [0, 0, push]}, estimate_error=False)
@@ -50,6 +50,7 @@ def test_inputs_of_a_solve_are_found_over_a_change_of_contacts(push: float) -> N
     assert found.solution.error_estimate is not None and found.solution.error_estimate < 1e-4
 
 
+@pytest.mark.slow
 def test_a_target_inside_the_ball_is_missed_by_a_rod_that_does_not_enter_it() -> None:
     found = inverse(build(over_ball([0.45, 0, -0.1])), starts=0, estimate_error=False)
     assert not found.met
@@ -58,6 +59,7 @@ def test_a_target_inside_the_ball_is_missed_by_a_rod_that_does_not_enter_it() ->
     assert gap_along(found.solution, rod, obstacle, np.linspace(0, 1, 101)).min() > -1e-6
 
 
+@pytest.mark.slow
 def test_a_search_that_comes_no_nearer_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """With derivatives of the wrong sign no step helps: what is told is the start."""
     own = contact_problem.unknowns_by_inputs

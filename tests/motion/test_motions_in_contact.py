@@ -92,7 +92,10 @@ def on_table() -> Scene:
     return touching(floor(0.05), weight=2.0, inputs=["push.force", "rod.base.position"])
 
 
-@pytest.mark.parametrize(("scene", "kinds"), [(over_bar, ["point"]), (on_table, ["line"]), (on_a_body, ["point"])])
+@pytest.mark.parametrize(
+    ("scene", "kinds"),
+    [(over_bar, ["point"]), (on_table, ["line"]), pytest.param(on_a_body, ["point"], marks=pytest.mark.slow)],
+)
 def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(scene: Callable[[], Scene], kinds: list[str]) -> None:
     """Of a push and of a base that moves: the place of contact slides, a line becomes longer."""
     model = build(scene())
@@ -118,6 +121,7 @@ def test_what_a_linear_model_does_at_rest_is_what_a_solve_does(scene: Callable[[
     assert_allclose(by_inputs @ change, wanted, rtol=0, atol=2e-7)
 
 
+@pytest.mark.slow
 def test_a_rod_on_its_tip_swings_in_motion_as_its_modes_do() -> None:
     """A push that comes and goes leaves a sum of the modes, over a swing and a half of the slowest."""
     simulation = {"duration": 0.9, "start": "equilibrium", "tolerance": 1e-4, "frames": 91}

@@ -125,7 +125,7 @@ def _resultant(
 
 @dataclass(frozen=True)
 class Pressing:
-    """What contacts that press do to small variations at fixed places.
+    """Constraints and stiffness of contacts that press, for small variations at fixed places.
 
     Attributes:
         held: rows of the gaps that stay zero, in their order.
@@ -136,7 +136,7 @@ class Pressing:
     sliding: Mapping[int, FloatArray]
 
     def stiffness(self, by_x: FloatArray, by_others: FloatArray) -> FloatArray:
-        """What sliding adds to the derivative of the balance with m arguments, shape (n, m).
+        """The part of the derivative of the balance with m arguments that sliding adds, shape (n, m).
 
         Args:
             by_x: derivative of all gap rows with the unknowns, shape (rows, n).

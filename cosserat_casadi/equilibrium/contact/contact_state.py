@@ -353,7 +353,7 @@ def without_contacts(scene: scenes.Scene) -> scenes.Scene:
 
 
 def given_names(model: SystemFunctions) -> list[str]:
-    """Names of a model's inputs that are given: all but the forces of contacts, which follow."""
+    """Names of a model's inputs, but for the forces of contacts, which follow from the others."""
     names = {load.name for load in contact_loads(model.scene)}
     return [entry.name for entry, _ in model.inputs if entry.owner not in names]
 

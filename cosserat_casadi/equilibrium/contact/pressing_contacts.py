@@ -1,4 +1,4 @@
-"""What an equilibrium in exact contact does under small changes, as long as every contact presses.
+"""Small changes of an equilibrium in exact contact, as long as every contact presses.
 
 A gap stays zero at the section that touches, along a line at all of it. What a moving place of contact does to the
 stiffness is N (∂d′/∂x)² / d″, as in stability (contact_judgement.py). So small changes ask for no elements that move:
@@ -24,7 +24,7 @@ from cosserat_casadi.numerics.broyden import solved
 
 @dataclass(frozen=True)
 class PressingContacts:
-    """What contacts add to the equations of small changes of n unknowns under m inputs.
+    """The part of contacts in the equations of small changes of n unknowns under m inputs.
 
     Attributes:
         held: gradients of the gaps that stay zero, shape (k, n).
