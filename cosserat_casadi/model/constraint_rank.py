@@ -37,7 +37,6 @@ RANK = 1e-8
 """Share of the largest singular value below which one counts as zero."""
 
 
-@lru_cache(maxsize=64)
 def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
     """Refuse a scene whose constraints hold too much, or, unless it moves, leave a body free to turn.
 
@@ -51,24 +50,33 @@ def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
     carries = any(rod.base.rod is not None for rod in scene.rods)
     if not scene.joints and not carries:
         return
+    spins, repeated = _problems(scene)
+    if spins and not moving:
+        raise SceneError(*spins)
+    if repeated is not None:
+        raise SceneError(repeated)
+
+
+@lru_cache(maxsize=64)
+def _problems(scene: scenes.Scene) -> tuple[tuple[Problem, ...], Problem | None]:
+    """Every body of a scene that turns freely, and the first constraint that repeats others."""
     layout = input_layout(scene)
     # Loads with a number for each node are made for the nodes of another discretisation, and hold no rod.
     loads = [load for load in scene.loads if layout.of_load(load.name or "", EFFECTS[load.kind].nodal) is None]
     without_nodal = scene.model_copy(update={"loads": tuple(loads)})
     probe = discrete_scene(without_nodal, layout, discretise(scene, MODES, NODES, "magnus4"))
     system = _at_a_random_shape(probe)
-    spins = list(free_spins(system))
-    if spins and not moving:
-        raise SceneError(*spins)
+    spins = tuple(free_spins(system))
     rows = _constraint_rows(system)
     if _rank(rows) == len(rows):
-        return
+        return spins, None
     remedy = "admit more strains of the rods, hold the tip by a spherical joint, or lay planar rods into one plane"
     for placed in probe.constraints:
         upper = rows[: probe.multipliers(placed).stop - probe.unknowns.count(BlockKind.STRAIN)]
         if _rank(upper) < len(upper):
             problem = f"over-constrains: {placed.what} is held already in a direction in which its rods cannot give"
-            raise SceneError(Problem(placed.where, problem, remedy))
+            return spins, Problem(placed.where, problem, remedy)
+    return spins, None
 
 
 def _at_a_random_shape(probe: DiscreteScene) -> System:

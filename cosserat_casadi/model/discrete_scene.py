@@ -171,6 +171,12 @@ class DiscreteScene:
         scaling = None if self.scaling is None else self.scaling.in_motion
         return replace(self, scaling=scaling, moving=True)
 
+    def told_as(self, scene: scenes.Scene) -> DiscreteScene:
+        """The same constants for a scene that differs in what no equation reads: title, motions, velocities, times."""
+        told = replace(self, scene=scene)
+        vars(told).update({name: value for name, value in vars(self).items() if name != "scene"})
+        return told
+
     @cached_property
     def unloaded(self) -> UnloadedScene:
         """Poses of rods and bodies where nothing acts and no parameter differs: deviations are counted from them."""

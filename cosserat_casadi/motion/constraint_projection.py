@@ -6,7 +6,7 @@ is far below the tolerance of the motion.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +17,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.numerics.consistent_start import regular_inverse
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
@@ -51,15 +52,22 @@ class Closing:
         numbers = [np.arange(span.start, span.stop) for span in entries]
         return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
 
-    def closed(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Unknowns moved by the smallest displacement that closes the constraints, shape (size,)."""
+    def closed(self, instant: Instant, equations: MotionEquations) -> FloatArray:
+        """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
+
+        Args:
+            instant: of the motion, in the unknowns of the model.
+            equations: of motion, of which some rows are the constraints.
+        """
+        x = instant.x
         if not len(self.rows):
             return x
         best = x
         before = np.inf
         answer: FloatArray | None = None
         for _ in range(MOST_CORRECTIONS):
-            gaps = self.model.residual(x, inputs).full()[self.rows, 0]
+            instant = replace(instant, x=x)
+            gaps = equations.residual_at(instant)[self.rows]
             largest = np.abs(gaps).max()
             if largest <= CLOSED:
                 break
@@ -68,16 +76,15 @@ class Closing:
                 return best
             best = x
             if answer is None or largest > CONTRACTED * before:
-                answer = self._answer(x, inputs)
+                answer = self._answer(equations.linearised(instant).stiffness)
             before = largest
             x = x - answer @ gaps
         return x
 
-    def _answer(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    def _answer(self, stiffness: FloatArray) -> FloatArray:
         """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
-        jacobian, _ = self.model.jacobian(x, inputs)
         moves = self.model.discrete.unknowns.differential
-        weighted = np.where(moves, jacobian.full()[self.rows] / self._sizes, 0.0)
+        weighted = np.where(moves, stiffness[self.rows] / self._sizes, 0.0)
         # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
         regular = regular_inverse(weighted @ weighted.T, INDEPENDENT)
         if regular is not None:

@@ -102,11 +102,13 @@ class Leg:
         piece: the inputs.
         integration: the steps; beside the unknowns of the model they have the forces of contacts.
         restart: the change at the beginning of the leg, and the phases in it.
+        equations: of motion of the model, without what makes cables slack or contacts push.
     """
 
     piece: Piece
     restart: Restart[object]
     integration: Integration
+    equations: MotionEquations
 
     @property
     def start(self) -> ConsistentStart:
@@ -202,7 +204,7 @@ class History:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
         leg, instant = self.locate(time)
         inputs = leg.piece.at(instant.time).value
-        return MotionState(self._closing.closed(instant.x, inputs), instant.v, instant.a, inputs)
+        return MotionState(self._closing.closed(instant, leg.equations), instant.v, instant.a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
@@ -449,7 +451,7 @@ def _switched(
             free = keeper is not None and equations.size == model.size
             settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
             if restart.stalled is not None:
-                legs.append(Leg(piece, restart, stalled_at(begin)))
+                legs.append(Leg(piece, restart, stalled_at(begin), plain))
                 return History(model, tuple(legs), method, asked, flight)
             begin_in_model = flight.to_model(begin)
             ends = None if stops is None else stops(piece, begin_in_model)
@@ -460,7 +462,7 @@ def _switched(
                 equations, begin, piece.end, method, own, after_step, guards, settled, memory, kernels.stepper
             )
             memory = None
-            legs.append(Leg(piece, restart, integration))
+            legs.append(Leg(piece, restart, integration, plain))
             if integration.guard is not None and integration.guard >= changes:
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=StepOutcome.COMPLETED))
                 return History(model, tuple(legs), method, asked, flight, integration.guard - changes)

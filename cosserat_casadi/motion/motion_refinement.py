@@ -419,7 +419,8 @@ def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistor
 
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
-    began = started(model, search.simulation, search.start)
+    near = search.last.simulator.start.equilibrium if search.levels else None
+    began = started(model, search.simulation, search.start, near)
     return Simulator(model, search.simulation, began, stage, search.tell, search.source, events=search.events)
 
 

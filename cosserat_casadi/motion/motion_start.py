@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
@@ -16,7 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Resume
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
-from cosserat_casadi.motion.moving_model import sharing
+from cosserat_casadi.motion.moving_model import model_at_rest
 from cosserat_casadi.motion.start_in_contact import resting
 
 UNLOADED = "At rest in the unloaded shape."
@@ -56,6 +55,7 @@ class Start:
         phases: what touches; None where that is looked for.
         asks_for_modes: whether none is found on these modes, and other modes may have one.
         resume: where a motion goes on; None for one that begins.
+        equilibrium: by which a start on other modes is near; None where it is looked for anew.
     """
 
     x: FloatArray
@@ -65,6 +65,7 @@ class Start:
     phases: ContactPhase | None = None
     asks_for_modes: bool = False
     resume: Resume | None = None
+    equilibrium: Solution | None = None
 
 
 def resumed_start(model: Model, resume: Resume) -> Start:
@@ -78,16 +79,19 @@ def unloaded_start(model: Model) -> Start:
     return Start(model.unloaded(), UNLOADED if asked else SWINGS)
 
 
-def equilibrium_start(model: Model, inputs: FloatArray) -> Start:
+def equilibrium_start(model: Model, inputs: FloatArray, near: Solution | None = None) -> Start:
     """At rest in the equilibrium of the inputs, free bases held where the scene puts them.
 
     Args:
         model: of the scene in motion.
         inputs: at the start, shape (model.inputs.size,).
+        near: the equilibrium on other modes; None where there is none.
     """
-    held = _held(model)
+    held = model_at_rest(model)
     sentence = HELD if _frees_bases(held, model) else EQUILIBRIUM
-    return _started(model, solve(held, held.pack(model.inputs.unpack(inputs)), estimate_error=False), sentence)
+    guess = None if near is None else prolong(near, held)
+    solution = solve(held, held.pack(model.inputs.unpack(inputs)), start=guess, estimate_error=False)
+    return _started(model, solution, sentence)
 
 
 def given_start(model: Model, solution: Solution) -> Start:
@@ -97,19 +101,13 @@ def given_start(model: Model, solution: Solution) -> Start:
         model: of the scene in motion.
         solution: on any discretisation with the same elements; free bases were held.
     """
-    held = _held(model)
+    held = model_at_rest(model)
     names = set(held.inputs.names)
     given = solution.model.inputs.unpack(solution.inputs)
     values = {name: value for name, value in given.items() if name in names}
     # Unknowns would name no contacts: a solution does, and they are tried first.
     guess = solution if model.scene.touches_exactly else prolong(solution, held)
     return _started(model, solve(held, values, start=guess, estimate_error=False), GIVEN)
-
-
-def _held(model: Model) -> Model:
-    """The model of statics on the same discretisation: free bases are clamped, and are not unknowns."""
-    held = model.changed(scenes.Scene.held)
-    return held if held.discrete.scaling is not None else sharing(held, moving=False)
 
 
 def _frees_bases(held: Model, model: Model) -> bool:
@@ -123,14 +121,15 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
     if not solution.converged:
         return Start(x, solution.message, found=False)
     if model.scene.touches_exactly and solution.contacts:
-        if _frees_bases(_held(model), model):
+        if _frees_bases(model_at_rest(model), model):
             return Start(x, FREE_TOUCHES, found=False)
         return _touching(model, solution, sentence)
     # Bases that are free begin where the scene puts them, where their unknowns are zero.
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():
         x[model.discrete.unknowns.slices[key]] = solution.x[entries]
-    return Start(np.asarray(x), sentence)
+    near = None if model.scene.touches_exactly else solution
+    return Start(np.asarray(x), sentence, equilibrium=near)
 
 
 def _touching(model: Model, solution: Solution, sentence: str) -> Start:
@@ -139,7 +138,7 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
     # The forces of contacts are inputs of the solution's model.
     given = solution.model.inputs.unpack(solution.inputs)
     inputs = model.pack({name: value for name, value in given.items() if name in names})
-    held = _held(model)
+    held = model_at_rest(model)
     guess = held.with_flows(projected(solution, model)[: held.size])
     found = resting(ExactContacts(model), guess, inputs, solution.contacts)
     if found is None:

@@ -25,18 +25,22 @@ def moving_model(scene: Scene, discretisation: Mapping[str, Discretisation]) -> 
         scene: with the inputs of its motions free.
         discretisation: of every rod.
     """
-    return sharing(build(scene, discretisation, moving=True), moving=True)
+    return _sharing(scene, discretisation, moving=True)
 
 
-def sharing(model: Model, *, moving: bool) -> Model:
-    """A model that shares its functions with models of the same rods.
+def model_at_rest(model: Model) -> Model:
+    """The model of statics on the discretisation of a model for a motion: free bases are clamped, and no unknowns."""
+    if model.discrete.scaling is not None:
+        return model.changed(Scene.held)
+    return _sharing(model.scene.held().baked(), model.discretisation, moving=False)
 
-    Args:
-        model: without parameters, of numbers that are those of its scene.
-        moving: whether it was built for a motion.
-    """
-    still = model.scene.model_copy(update={"title": "", "motions": (), "velocities": (), "simulation": None})
-    share_functions(model, _kept(still, tuple(model.discretisation.items()), moving))
+
+def _sharing(scene: Scene, discretisation: Mapping[str, Discretisation], *, moving: bool) -> Model:
+    """A model without parameters that shares constants and functions with models of the same rods."""
+    still = scene.model_copy(update={"title": "", "motions": (), "velocities": (), "simulation": None})
+    kept = _kept(still, tuple(discretisation.items()), moving)
+    model = Model(kept.discrete.told_as(scene))
+    share_functions(model, kept)
     return model
 
 

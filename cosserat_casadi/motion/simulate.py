@@ -392,15 +392,22 @@ def moving_inputs(model: Model) -> MovingInputs:
     return MovingInputs(model.inputs, model.scene.motions, model.pack())
 
 
-def started(model: Model, simulation: Simulation, solution: Solution | None) -> Start:
-    """How the motion of a model begins."""
+def started(model: Model, simulation: Simulation, solution: Solution | None, near: Solution | None = None) -> Start:
+    """How the motion of a model begins.
+
+    Args:
+        model: the model.
+        simulation: its settings.
+        solution: an equilibrium to start from; None for what the simulation says.
+        near: the equilibrium of the start on other modes; None where there is none.
+    """
     moving = moving_inputs(model)
     if solution is not None:
         start = given_start(model, solution)
     elif model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
         start = unloaded_start(model)
     else:
-        start = equilibrium_start(model, moving.at(0.0).value)
+        start = equilibrium_start(model, moving.at(0.0).value, near)
     return with_velocities(model, start, moving.pieces(simulation.duration)[0])
 
 
