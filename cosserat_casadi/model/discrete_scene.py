@@ -174,6 +174,8 @@ class DiscreteScene:
     def told_as(self, scene: scenes.Scene) -> DiscreteScene:
         """The same constants for a scene that differs in what no equation reads: title, motions, velocities, times."""
         told = replace(self, scene=scene)
+        # They follow from the places of frames, which take time to find.
+        assert self.unknowns, "a scene has unknowns"
         vars(told).update({name: value for name, value in vars(self).items() if name != "scene"})
         return told
 

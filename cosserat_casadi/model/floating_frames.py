@@ -28,6 +28,10 @@ from cosserat_casadi.rod.strain import DiscreteRod
 MOST_CORRECTIONS = 20
 """Corrections of a body's pose before its joints count as ones that no pose closes."""
 
+FIRST_CORRECTIONS = 4
+STALLED = 0.9
+"""Share of the largest gap that each correction after the first ones leaves where no pose closes the joints."""
+
 CLOSED = 1e-12
 """Gap of a joint, without unit, up to which it counts as closed."""
 
@@ -232,11 +236,16 @@ class UnloadedScene:
             mean: pose to begin with.
         """
         pose = mean
-        for _ in range(MOST_CORRECTIONS):
+        before = np.inf
+        for correction in range(MOST_CORRECTIONS):
             gaps = [self._gap(joint, pose, length) for joint in joints]
             rows = np.concatenate([rows for rows, _, _ in gaps])
-            if float(np.abs(rows).max(initial=0.0)) <= CLOSED:
+            largest = float(np.abs(rows).max(initial=0.0))
+            if largest <= CLOSED:
                 return pose if all(agrees for _, _, agrees in gaps) else mean
+            if correction >= FIRST_CORRECTIONS and largest > STALLED * before:
+                break
+            before = largest
             derivatives = np.vstack([derivatives for _, derivatives, _ in gaps])
             change, *_ = np.linalg.lstsq(derivatives, -rows, rcond=FLAT)
             position = pose.position + length * change[3:]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from importlib import import_module
@@ -76,17 +76,19 @@ class Expressions:
         discrete: the scene.
         owner: name of the rod, the actuator, the body or the joint; empty for a function of the scene.
         symbols: the arguments by name.
+        known: what has been written in these arguments, for this function or another one, of this owner or another.
     """
 
     discrete: DiscreteScene
     owner: str
     symbols: Mapping[str, ca.MX]
+    known: dict[Any, Any] = field(default_factory=dict)
 
     def __getitem__(self, argument: str) -> Matrix:
         """The symbol of an argument."""
         return self.symbols[argument]
 
-    @cached_property
+    @property
     def arguments(self) -> Arguments:
         """Unknowns, inputs and load factor, as far as they are arguments."""
         motion = None
@@ -114,10 +116,20 @@ class Expressions:
             inputs_acceleration=self.symbols.get("inputs_acceleration", inputs),
         )
 
-    @cached_property
+    @property
     def system(self) -> System:
         """The equations in these arguments."""
-        return System(self.discrete, self.arguments)
+        if System not in self.known:
+            self.known[System] = System(self.discrete, self.arguments)
+        known: System = self.known[System]
+        return known
+
+    def equations(self, kind: Callable[[System], Result]) -> Result:
+        """Equations or energies of the system: functions of the same arguments have them from one place."""
+        if kind not in self.known:
+            self.known[kind] = kind(self.system)
+        known: Result = self.known[kind]
+        return known
 
 
 Outputs = tuple[Output, ...] | Callable[[DiscreteScene, str], tuple[Output, ...]]
@@ -208,14 +220,26 @@ class FunctionSpec:
         """
         discrete: DiscreteScene = model.discrete
         arguments = self.arguments_of(discrete)
-        symbols = {name: _symbol(discrete, name, owner) for name in arguments}
-        results = self.write(model, Expressions(discrete, owner, symbols))
+        written = _expressions(model, tuple(arguments), owner)
+        symbols = written.symbols
+        results = self.write(model, written)
         if results is None:
             return None
         names = [output.name for output in self.outputs_of(discrete, owner)]
         # CasADi takes no two underscores in a row.
         name = re.sub("_+", "_", f"{self.name}_{owner}") if owner else self.name
         return ca.Function(name, list(symbols.values()), list(results), arguments, names)
+
+
+def _expressions(model: Any, arguments: tuple[str, ...], owner: str) -> Expressions:
+    """Expressions in arguments, which functions of a model share."""
+    discrete: DiscreteScene = model.discrete
+    kept: dict[Any, Expressions] = model.__dict__.setdefault("_expressions", {})
+    # Coordinates alone are those of a rod.
+    place = (arguments, owner if "q" in arguments else "")
+    if place not in kept:
+        kept[place] = Expressions(discrete, owner, {name: _symbol(discrete, name, owner) for name in arguments})
+    return replace(kept[place], owner=owner)
 
 
 def _entry_of(module: str, method: str) -> FunctionSpec:

@@ -95,18 +95,18 @@ class ModelFunctions:
     @scene_function(Output("residual"), differentiable=True)
     def residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
-        return [SceneEquations(written.system).residual]
+        return [written.equations(SceneEquations).residual]
 
     @scene_function(Output("jacobian"), Output("residual"))
     def jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
-        equations = SceneEquations(written.system)
+        equations = written.equations(SceneEquations)
         return [equations.jacobian, equations.residual]
 
     @scene_function(Output("input_jacobian"))
     def input_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
-        residual = SceneEquations(written.system).residual
+        residual = written.equations(SceneEquations).residual
         return [ca.jacobian(residual, written["inputs"])]
 
     @scene_function(Output("parameter_jacobian"))
@@ -114,18 +114,18 @@ class ModelFunctions:
         """(x, inputs, p) ↦ derivative of the residual with respect to the parameters; None without parameters."""
         if not written.discrete.parameters.size:
             return None
-        residual = SceneEquations(written.system).residual
+        residual = written.equations(SceneEquations).residual
         return [ca.jacobian(residual, written["p"])]
 
     @scene_function(Output("residual"), arguments=PATH, kernel="residual")
     def path_residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
-        return [SceneEquations(written.system).residual]
+        return [written.equations(SceneEquations).residual]
 
     @scene_function(Output("jacobian"), arguments=PATH, kernel="jacobian")
     def path_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
-        return [SceneEquations(written.system).jacobian]
+        return [written.equations(SceneEquations).jacobian]
 
     @scene_function(Output("residual_rate"), arguments=(*PATH, "inputs_rate", "load_factor_rate"), kernel="rate")
     def path_rate(self, written: Expressions) -> list[Matrix]:

@@ -40,7 +40,7 @@ class MotionFunctions:
 
         Zero along a motion. At rest it is the residual of statics to the last bit.
         """
-        return [ca.densify(SceneMotionEquations(written.system).residual)]
+        return [ca.densify(written.equations(SceneMotionEquations).residual)]
 
     @cached_property
     def inverse_dynamics_in_scalars(self) -> ca.Function:
@@ -66,7 +66,7 @@ class MotionFunctions:
     @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
     def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, v, a, inputs, …) ↦ derivatives of the residual with x, v and a, size×size each, and the residual."""
-        equations = SceneMotionEquations(written.system)
+        equations = written.equations(SceneMotionEquations)
         matrices = equations.matrices
         return [matrices.stiffness, matrices.damping, matrices.mass, equations.residual]
 
@@ -93,7 +93,7 @@ class MotionFunctions:
     )
     def energies(self, written: Expressions) -> list[Matrix]:
         """(x, v, inputs, inputs_rate) ↦ kinetic and elastic energy, energy of each load, and whether it has one."""
-        energy = MotionEnergy(written.system)
+        energy = written.equations(MotionEnergy)
         return [energy.kinetic, energy.elastic, energy.of_loads, ca.DM(energy.load_is_dead)]
 
     @scene_function(
@@ -105,7 +105,7 @@ class MotionFunctions:
     )
     def powers(self, written: Expressions) -> list[Matrix]:
         """(x, v, a, inputs, …) ↦ power that is dissipated, and powers of loads, actuators, moving bases and lengths."""
-        energy = MotionEnergy(written.system)
+        energy = written.equations(MotionEnergy)
         return [energy.dissipated_power, energy.load_powers, energy.actuator_powers, energy.base_power]
 
     @scene_function(
@@ -117,4 +117,4 @@ class MotionFunctions:
     )
     def momentum(self, written: Expressions) -> list[Matrix]:
         """(x, v, inputs, inputs_rate) ↦ momentum, and angular momentum about the origin of the world, 3×1 each."""
-        return list(MotionEnergy(written.system).momentum)
+        return list(written.equations(MotionEnergy).momentum)

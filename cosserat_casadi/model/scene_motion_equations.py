@@ -53,6 +53,11 @@ class SceneMotionEquations:
     system: System
 
     @cached_property
+    def _at_rest(self) -> SceneEquations:
+        """The equations that hold at rest, with the inertia forces of the motion."""
+        return SceneEquations(self.system)
+
+    @cached_property
     def residual(self) -> Matrix:
         """Residuals of rods, constraints, floating frames and cables in motion, without unit, size×1."""
         unknowns = self.system.discrete.unknowns
@@ -72,7 +77,7 @@ class SceneMotionEquations:
         for resisted in self._resisted_coordinates:
             number = list(unknowns.slices).index((BlockKind.COORDINATE, resisted.placed.where))
             added[number] = resisted.rows
-        return SceneEquations(self.system).residual + ca.vertcat(*added)
+        return self._at_rest.residual + ca.vertcat(*added)
 
     @cached_property
     def matrices(self) -> MotionMatrices:
@@ -114,7 +119,7 @@ class SceneMotionEquations:
             damping.add(resisted.entries, resisted.entries, resisted.damping)
         by_friction = self._by_friction
         return MotionMatrices(
-            stiffness=SceneEquations(self.system).jacobian + stiffness.matrix() + by_friction[0],
+            stiffness=self._at_rest.jacobian + stiffness.matrix() + by_friction[0],
             damping=damping.matrix() + by_friction[1],
             mass=mass.matrix(),
         )

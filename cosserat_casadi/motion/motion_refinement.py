@@ -24,21 +24,23 @@ from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
     COARSER,
-    LEFT_BY_FINER,
     MOST_TIGHTENINGS,
-    TIGHTER,
+    SLOPE,
     Companion,
     Simulator,
     Tell,
     TimedHistory,
     bound_of,
     ended_early,
+    factor_for,
     judged,
+    left_by,
     motion_of,
     not_started,
     started,
@@ -61,8 +63,29 @@ TIME_SHARE = 0.3
 SPACE_SHARE = 0.7
 """Share of the tolerance that the modes and nodes may use up."""
 
-UNKNOWN_RATIO = 0.6
-"""Share of the distance to the next set of modes that is left after it, before two distances tell."""
+TOLD_ERROR = 0.28
+"""Error of the paths by steps, as a coarser motion tells it, over the power SLOPE of their tolerance: a usual one."""
+
+TOLD_ERROR_OF_DAMPED = 0.12
+"""The same of rods that are all damped."""
+
+CLEAR = 0.3
+"""Share of the error allowed to steps that they may use where two sets of modes of a free rod are told apart.
+
+Its waves would blur their distance.
+"""
+
+FINE = 2e-4
+"""Tolerance below which the search begins on the second rung: the first one would not do."""
+
+TOLD_AFTER = 3
+"""Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
+
+UNKNOWN_RATIO = 0.5
+"""Share of the distance to the next set of modes that is left after it, before two distances tell.
+
+From 6 modes to 9 the waves of a sudden load, whose errors go with modes^−2.3, leave 0.4.
+"""
 
 FASTEST = 0.1
 """Smallest such share that is believed."""
@@ -228,11 +251,12 @@ def simulate(
     refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
-    coarsest = moving_model(moving_scene, discretise(moving_scene, 1, 2))
+    chosen = discretise(scene) if scene.accuracy.fixed else _uniform(scene, _ladder(scene)[0])
+    first = moving_model(moving_scene, chosen)
     simulation = scene.simulation
-    check_simulation(coarsest, simulation)
+    check_simulation(first, simulation)
     assert simulation is not None, "checked"
-    search = _Search(moving_scene, simulation, start, progress, source, events, tolerance_of(coarsest, simulation))
+    search = _Search(moving_scene, simulation, start, progress, source, events, tolerance_of(first, simulation))
     try:
         if scene.accuracy.fixed:
             return _with_fixed(search)
@@ -281,7 +305,7 @@ def _finer(discretisation: Discretisation) -> Discretisation:
 def _with_tolerance(search: _Search) -> Motion:
     """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
     ladder = _ladder(search.scene)
-    rung: int | None = 0
+    rung: int | None = 1 if search.tolerance < FINE else 0
     without_start = 0
     while rung is not None:
         modes = ladder[rung]
@@ -333,23 +357,30 @@ def _ladder(scene: Scene) -> tuple[int, ...]:
 
 
 def _on_level(search: _Search, simulator: Simulator) -> History:
-    """The motion on one level: the first one settles how exact the steps have to be, but for soft obstacles."""
-    if not search.levels and _meets_softly(search):
-        # Steps that happen to end where a rod meets an obstacle err less: their errors foretell none.
-        search.step_tolerance = search.tolerance / TIGHTER
-        return simulator.controlled(search.step_tolerance)
-    if not search.levels:
-        timed = simulator.foretold(TIME_SHARE * search.tolerance, first=search.tolerance)
-        search.step_tolerance = timed.sufficient
+    """The motion on one level: the first one settles the size of given steps, or how exact the steps are to be."""
+    given = search.simulation.step is not None or search.simulation.integrator == "gauss"
+    if not search.levels and given:
+        timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.time_error = timed.error
         return timed.history
-    return _like(simulator, search.last.history, search.step_tolerance)
+    if not search.levels:
+        damped = all(rod.damping is not None for rod in search.scene.rods)
+        foreseen = TOLD_ERROR_OF_DAMPED if damped else TOLD_ERROR
+        search.step_tolerance = (_of_steps(search, simulator.model) / foreseen) ** (1.0 / SLOPE)
+    elif len(search.levels) == TOLD_AFTER and not given:
+        told = told_by_coarser(search.last, search.step_tolerance)
+        wanted = _of_steps(search, simulator.model)
+        if told.error > wanted:
+            search.step_tolerance /= factor_for(told.error, wanted)
+    if np.isfinite(search.step_tolerance):
+        return simulator.controlled(search.step_tolerance)
+    # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
+    return simulator.stepped(search.last.history.statistics.largest_step)
 
 
-def _meets_softly(search: _Search) -> bool:
-    """Whether steps that are controlled meet obstacles that have a width."""
-    given = search.simulation.step is not None or search.simulation.integrator == "gauss"
-    return not given and any(obstacle.is_smooth for obstacle in search.scene.obstacles)
+def _of_steps(search: _Search, model: Model) -> float:
+    """Error of the paths that steps may leave while sets of modes are told apart."""
+    return TIME_SHARE * search.tolerance * (CLEAR if flies_free(model) else 1.0)
 
 
 def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
@@ -357,14 +388,6 @@ def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
     if np.isfinite(timed.tolerance):
         return timed.tolerance
     return TIME_SHARE * search.tolerance
-
-
-def _like(simulator: Simulator, history: History, step_tolerance: float) -> History:
-    """The motion with steps of a tolerance; where it is no number, with steps of the size of another motion."""
-    if np.isfinite(step_tolerance):
-        return simulator.controlled(step_tolerance)
-    # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
-    return simulator.stepped(history.statistics.largest_step)
 
 
 def _timed(search: _Search) -> TimedHistory:
@@ -389,16 +412,8 @@ def exact_in_time(level: ResolvedMotion, step_tolerance: float, allowed: float) 
     for _ in range(MOST_TIGHTENINGS):
         if not told.history.completed or told.error <= allowed:
             break
-        told = _tighter(level.simulator, told)
+        told = level.simulator.finer(told, factor_for(told.error, allowed))
     return told
-
-
-def _tighter(simulator: Simulator, told: TimedHistory) -> TimedHistory:
-    """The same motion with more exact steps, and their error by the distance from it."""
-    tolerance = told.tolerance / COARSER
-    history = simulator.controlled(tolerance)
-    error = LEFT_BY_FINER * path_distance(simulator.paths(told.history), simulator.paths(history))
-    return TimedHistory(history, error, tolerance, tolerance, Companion(told.history, LEFT_BY_FINER))
 
 
 def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistory:
@@ -414,8 +429,8 @@ def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistor
         return TimedHistory(coarse, float("nan"))
     error = float("inf")
     if coarse.completed:
-        error = LEFT_BY_FINER * path_distance(simulator.paths(coarse), level.paths)
-    return TimedHistory(level.history, error, step_tolerance, step_tolerance, Companion(coarse, LEFT_BY_FINER))
+        error = left_by(COARSER) * path_distance(simulator.paths(coarse), level.paths)
+    return TimedHistory(level.history, error, step_tolerance, Companion(coarse, left_by(COARSER)))
 
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
@@ -484,12 +499,10 @@ def _judged(search: _Search, level: ResolvedMotion, error: float, companions: Se
 def _interrupted(search: _Search) -> Motion:
     """The finest motion that was computed to its end when the search was stopped."""
     level = search.last
-    error = search.space_error + max(search.time_error, TIME_SHARE * search.tolerance)
-    message = (
-        f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked: its estimated error is "
-        f"{error:.2g} of the length."
-    )
+    error = search.space_error + search.time_error
+    told = f"its estimated error is {error:.2g} of the length."
     if not np.isfinite(error):
         error = float("nan")
-        message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
+        told = "and its error is not known."
+    message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked: {told}"
     return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)

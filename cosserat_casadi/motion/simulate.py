@@ -24,7 +24,6 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
-from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
@@ -55,30 +54,14 @@ Tell = Callable[[MotionProgress], None]
 TIGHTER = 10.0
 """Factor between the tolerances of a step of two motions that are compared."""
 
-LEFT_BY_TIGHTER = 0.5
-"""Error of the more exact of the two over their distance: a tenth of the tolerance leaves a third of the error."""
-
 COARSER = 3.0
 """Factor between the tolerances of a step of a motion and of the coarser one that tells its error."""
-
-LEFT_BY_FINER = 1.4
-"""Error of the finer of the two over their distance, where errors go with the square root of tolerances or faster."""
 
 SLOPE = 0.8
 """Power of a step's tolerance that the error of the paths is taken to go with."""
 
-CLEAR = 0.3
-"""Share of the error allowed to steps that they may use where two sets of modes of a free rod are told apart.
-
-Its waves would blur their distance.
-"""
-
-FORETOLD = 3.0
-"""Error of steps over the wanted one from which the tolerance that they need is foretold.
-
-It then lies between the last two that were tried: with the power SLOPE, an error is 6 times that of a tenth of the
-tolerance, and half the distance is counted.
-"""
+LEAST_SLOPE = 0.5
+"""Power that it is at least taken to go with, where two motions tell an error."""
 
 HALVED = 4.0 / 3.0
 """Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
@@ -128,14 +111,12 @@ class TimedHistory:
         history: the motion.
         error: estimated error of the paths that the steps leave, over the length; nan where none was made.
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
-        sufficient: tolerance of a step that would do for motions on other modes; nan for steps of given size.
         companion: the motion by which the error was told; None where none was made.
     """
 
     history: History
     error: float
     tolerance: float = float("nan")
-    sufficient: float = float("nan")
     companion: Companion | None = None
 
 
@@ -226,51 +207,31 @@ class Simulator:
             return self._with_halved_steps(tolerance)
         return self.tightened(self.controlled(first), first, tolerance)
 
-    def foretold(self, tolerance: float, first: float) -> TimedHistory:
-        """The motion on this model, and a tolerance of its steps that would do for a wanted error of them.
-
-        Its own steps may leave a larger error: they are as exact as it takes to foretell that tolerance.
-
-        Args:
-            tolerance: of the paths, over the length.
-            first: tolerance of a step to begin with, where steps are controlled.
-        """
-        if self.simulation.step is not None or self.simulation.integrator == "gauss":
-            return self.to_tolerance(tolerance, first)
-        return self.tightened(self.controlled(first), first, tolerance, FORETOLD)
-
-    def tightened(self, coarse: History, first: float, tolerance: float, enough: float = 1.0) -> TimedHistory:
+    def tightened(self, coarse: History, first: float, tolerance: float) -> TimedHistory:
         """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
 
         Args:
             coarse: the motion to begin with.
             first: tolerance of a step, over the length, that it was computed with.
             tolerance: of the paths, over the length.
-            enough: error over the wanted one at which no more exact steps are tried.
         """
-        wanted = CLEAR * tolerance if flies_free(self.model) else tolerance
-        coarse_paths = self.paths(coarse)
-        allowed = max(tolerance, enough * wanted)
-        timed = TimedHistory(coarse, float("nan"), first, first)
-        factor, left = TIGHTER, LEFT_BY_TIGHTER
+        timed = TimedHistory(coarse, float("nan"), first)
+        factor = TIGHTER
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
-            tighter = timed.tolerance / factor
-            fine = self.controlled(tighter)
-            fine_paths = self.paths(fine)
-            distance = path_distance(coarse_paths, fine_paths)
-            error = left * distance
-            # Not below the tenth of it that was tried: that one leaves what it leaves.
-            sufficient = max(_foretold(timed.tolerance, distance, wanted), timed.tolerance / TIGHTER)
-            asked = _foretold(timed.tolerance, distance, allowed)
-            timed = TimedHistory(fine, error, tighter, sufficient, Companion(timed.history, left))
-            coarse_paths = fine_paths
-            if error <= allowed:
+            timed = self.finer(timed, factor)
+            if timed.error <= tolerance:
                 break
-            if asked > tighter / COARSER:
-                factor, left = COARSER, LEFT_BY_FINER
+            factor = factor_for(timed.error, tolerance)
         return timed
+
+    def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
+        """The motion with a tolerance of a step that is smaller by a factor, and its error by the distance."""
+        fine = self.controlled(timed.tolerance / factor)
+        distance = path_distance(self.paths(timed.history), self.paths(fine))
+        left = left_by(factor)
+        return TimedHistory(fine, left * distance, timed.tolerance / factor, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:
         history = self.stepped(size)
@@ -330,11 +291,16 @@ class Simulator:
             self.tell(MotionProgress(self.stage, time, self.simulation.duration, size))
 
 
-def _foretold(coarse: float, distance: float, wanted: float) -> float:
-    """Tolerance of a step that leaves a wanted error by the power that errors go with, at most the coarse one."""
-    if distance <= wanted:
-        return coarse
-    return coarse * float((wanted / distance) ** (1.0 / SLOPE))
+def left_by(factor: float) -> float:
+    """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances."""
+    return 1.0 / float(factor**LEAST_SLOPE - 1.0)
+
+
+def factor_for(error: float, tolerance: float) -> float:
+    """Factor by which a smaller tolerance of a step has the error meet a tolerance."""
+    if not np.isfinite(error):
+        return COARSER
+    return float(np.clip((error / tolerance) ** (1.0 / SLOPE), COARSER, TIGHTER))
 
 
 def simulate(

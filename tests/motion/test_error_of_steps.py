@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.motion.motion_refinement import COARSER, ResolvedMotion, exact_in_time, told_by_coarser
-from cosserat_casadi.motion.simulate import FORETOLD, TIGHTER, Simulator, started
+from cosserat_casadi.motion.simulate import TIGHTER, Simulator, started
 from cosserat_casadi.motion.tip_paths import path_distance
 from tests.families import mostly_slow
 from tests.motion import transients
@@ -76,15 +75,9 @@ def test_steps_are_made_more_exact_until_their_error_is_allowed(level: ResolvedM
     assert true_error(level.simulator, found.history) <= found.error
 
 
-def test_tolerance_of_steps_is_foretold_from_two_motions() -> None:
+def test_steps_of_a_model_are_made_more_exact_until_they_agree() -> None:
     simulator = cantilever()
-    first = STEP_TOLERANCE
-    distance = path_distance(
-        simulator.paths(simulator.controlled(first)), simulator.paths(simulator.controlled(first / TIGHTER))
-    )
-    # Half the distance counts, and it lies below what is enough, but above the error that is wanted.
-    wanted = 0.5 * distance / (0.9 * FORETOLD)
-    foretold = simulator.foretold(wanted, first)
-    assert_allclose(foretold.tolerance, first / TIGHTER, rtol=1e-12, atol=0)
-    assert first / TIGHTER < foretold.sufficient < first
-    assert true_error(simulator, simulator.controlled(foretold.sufficient)) <= wanted
+    wanted = 0.5 * true_error(simulator, simulator.controlled(STEP_TOLERANCE))
+    timed = simulator.to_tolerance(wanted, first=STEP_TOLERANCE)
+    assert timed.tolerance <= STEP_TOLERANCE / TIGHTER * (1.0 + 1e-12)
+    assert true_error(simulator, timed.history) <= timed.error <= wanted
