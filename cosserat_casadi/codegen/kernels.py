@@ -31,6 +31,12 @@ RATE = "path_rate"
 SELDOM = ("igm", "energies", "momentum")
 """Functions that no iteration calls: where they are long, they are in loops, whose C is shorter."""
 
+MOST_BESIDE_STEPS = 20_000
+"""Statements up to which a Jacobian of statics is written by columns where a folder has steps of motions, too.
+
+Compilers would take most of their time for it, and steps do without it.
+"""
+
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
     """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
@@ -38,7 +44,8 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     of_motion = [] if motion is None else motion.kernels
     of_parameters = _parameter_kernels(model, names, parts)
     if parts is None:
-        of_solver = [_written(model, entry) for entry in wanted]
+        most = MOST_IN_COLUMNS if motion is None else MOST_BESIDE_STEPS
+        of_solver = [_written(model, entry, most) for entry in wanted]
         return [*of_solver, *of_parameters, *of_motion]
     every: list[Kernel] = [*parts.kernels, *of_parameters, *of_motion]
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
@@ -88,12 +95,12 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     return [in_one(parameter_rate(model.path_residual, name), parts.blocks.owners, name)]
 
 
-def _written(model: Model, entry: FunctionInC) -> Kernel:
-    """One function of a scene that has no parts; in fours where it can be."""
+def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
+    """One function of a scene that has no parts; in fours where it can be, a Jacobian of so many statements at most."""
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
-        columned = by_columns(on_path(model), entry.function, entry.kernel)
+        columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
         if columned is not None:
             return columned
     elif not _literal(model):
@@ -106,13 +113,16 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
     return kernel(model, entry.function, entry.kernel)
 
 
-def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> PrintedKernel | None:
+def by_columns(
+    written: WrittenJacobian, function: ca.Function, name: str, most: int | None = None
+) -> PrintedKernel | None:
     """A Jacobian of one rod by columns; None where it has no such form, or a long one.
 
     Args:
         written: the Jacobian.
         function: the same as it is called in C.
         name: its name in C.
+        most: statements up to which it is not a long one, MOST_IN_COLUMNS by default.
     """
     form = in_columns(written, name)
     if form is None:
@@ -121,7 +131,8 @@ def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> Pr
         columned = columns_in_fours(form, dense(function, name))
     except UnknownOperationError:
         return None
-    return columned if columned.n_instructions() <= MOST_IN_COLUMNS else None
+    within = MOST_IN_COLUMNS if most is None else most
+    return columned if columned.n_instructions() <= within else None
 
 
 def _literal(model: Model) -> bool:
