@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from cosserat_casadi import build, scene_from_dict
+from cosserat_casadi import build, scene_from_dict, simulate
 from cosserat_casadi.motion.motion_refinement import COARSER, ResolvedMotion, exact_in_time, told_by_coarser
 from cosserat_casadi.motion.simulate import TIGHTER, Simulator, started
 from cosserat_casadi.motion.tip_paths import path_distance
@@ -81,3 +81,18 @@ def test_steps_of_a_model_are_made_more_exact_until_they_agree() -> None:
     timed = simulator.to_tolerance(wanted, first=STEP_TOLERANCE)
     assert timed.tolerance <= STEP_TOLERANCE / TIGHTER * (1.0 + 1e-12)
     assert true_error(simulator, timed.history) <= timed.error <= wanted
+
+
+def test_a_search_takes_a_motion_on_each_set_of_modes_and_one_for_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = []
+    plain = Simulator.controlled
+
+    def counted(simulator: Simulator, tolerance: float) -> Any:
+        sizes.append(simulator.model.size)
+        return plain(simulator, tolerance)
+
+    monkeypatch.setattr(Simulator, "controlled", counted)
+    motion = simulate(scene_from_dict(transients.sudden_weight(tolerance=1e-2)))
+    assert motion.converged, motion.message
+    assert len(sizes) == len(set(sizes)) + 1
+    assert sizes[-1] == sizes[-2] == motion.model.size
