@@ -76,7 +76,7 @@ class Expressions:
         discrete: the scene.
         owner: name of the rod, the actuator, the body or the joint; empty for a function of the scene.
         symbols: the arguments by name.
-        known: what has been written in these arguments, for this function or another one, of this owner or another.
+        known: equations in these arguments, which functions of all owners share.
     """
 
     discrete: DiscreteScene

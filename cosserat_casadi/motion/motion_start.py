@@ -85,7 +85,7 @@ def equilibrium_start(model: Model, inputs: FloatArray, near: Solution | None = 
     Args:
         model: of the scene in motion.
         inputs: at the start, shape (model.inputs.size,).
-        near: the equilibrium on other modes; None where there is none.
+        near: the equilibrium on other modes; None where it is not known.
     """
     held = model_at_rest(model)
     sentence = HELD if _frees_bases(held, model) else EQUILIBRIUM

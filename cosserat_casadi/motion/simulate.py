@@ -365,7 +365,7 @@ def started(model: Model, simulation: Simulation, solution: Solution | None, nea
         model: the model.
         simulation: its settings.
         solution: an equilibrium to start from; None for what the simulation says.
-        near: the equilibrium of the start on other modes; None where there is none.
+        near: the equilibrium of the start on other modes; None where it is not known.
     """
     moving = moving_inputs(model)
     if solution is not None:
