@@ -64,7 +64,7 @@ def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
 
 def as_matrix(numbers: Numbers) -> Matrix:
     """Numbers as a CasADi matrix; a vector is a column."""
-    if isinstance(numbers, ca.MX | ca.DM):
+    if isinstance(numbers, ca.MX | ca.SX | ca.DM):
         return numbers
     return ca.DM(numbers)
 

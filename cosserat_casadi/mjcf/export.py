@@ -28,7 +28,7 @@ from cosserat_casadi.maths.rotation import matrix_to_quaternion, quaternion_from
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.links import Inertia, Link, links_of, nodes_along, poses_along
 from cosserat_casadi.model.element_ends import element_ends
-from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene
+from cosserat_casadi.model.floating_frames import UnloadedScene
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -232,7 +232,7 @@ class _Robot:
             if len(rods) + len(bodies) == before:
                 # Rods that start on a body which nothing else holds: it floats.
                 body = bodies.pop(0)
-                frame = self.unloaded.frames[FrameName("body", body.name)].start
+                frame = self.unloaded.body_frame(body.name).start
                 self._body(self.world, frame, body, (("freejoint", {}),))
 
     def _carried(self, rod: scenes.Rod) -> tuple[_Carrier | None, int | None]:
@@ -351,7 +351,7 @@ class _Robot:
         """Hang a body on the first of its joints whose rod is there; whether there is one."""
         for index, joint in enumerate(self.scene.joints):
             if joint.body == body.name and not joint.holds_base and (joint.rod, 0.0) in self.carriers:
-                frame = self.unloaded.frames[FrameName("body", body.name)].start
+                frame = self.unloaded.body_frame(body.name).start
                 carrier = self._link(joint.rod, joint.at)
                 joints = self._tree_joint(index, frame, frame.then(place_of(joint)).position, frame, -1.0)
                 # Several joints may pull it away from where this one alone would have it: this one is closed.

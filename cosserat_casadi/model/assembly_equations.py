@@ -367,7 +367,8 @@ class Assembly:
         for borne in self._borne_loads:
             wrenches[borne.body] = wrenches[borne.body] + borne.wrench
         for drag in self.system.drags:
-            wrenches[drag.body] = wrenches[drag.body] + drag.on_body
+            if drag.body in wrenches:
+                wrenches[drag.body] = wrenches[drag.body] + drag.on_body
         return wrenches
 
     def _rod_reaction(self, name: FrameName) -> Matrix:
@@ -512,7 +513,7 @@ class Assembly:
         loads = BodyLoads(self.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
         for load in loads.all():
             yield load.scaled(self.load_factor)
-        inertia = self.system.body_inertias.get(name)
+        inertia = self.system.body_inertias.get(body.name)
         if inertia is not None:
             yield BodyLoad(
                 position=body.centre_of_mass,

@@ -247,6 +247,11 @@ class DiscreteScene:
                 frames[name] = replace(frame, body=self.bodies[name.name])
         return frames
 
+    @property
+    def riding(self) -> dict[str, int]:
+        """Joints of the bodies that ride on sections, by body: their places in the scene's list."""
+        return self.unloaded.riding
+
     @cached_property
     def constraints(self) -> list[PlacedConstraint]:
         """Supports, bases of carried rods and joints, in the order of their multipliers."""
@@ -465,7 +470,7 @@ class DiscreteScene:
 
     def body_frame(self, body: str) -> FloatingFrame:
         """The frame of a body, in units of the stiffest and the longest rod that holds it."""
-        return self.frames[FrameName("body", body)]
+        return self.unloaded.body_frame(body)
 
     @cached_property
     def richer(self) -> Richer:

@@ -23,7 +23,7 @@ from cosserat_casadi.model.body_loads import BodyLoads
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.pose_load import LoadedSections
-from cosserat_casadi.rod.wrenches import PoseWrench, SeenMotion, Wrench
+from cosserat_casadi.rod.wrenches import PoseWrench, SeenMotion, Wrench, WrenchAt
 
 if TYPE_CHECKING:
     from cosserat_casadi.model.system import System
@@ -38,9 +38,9 @@ def drags_of(system: System) -> Iterator[RodDrag | BodyDrag]:
             wrench = system.rod_loads(rod).seen_in_motion(load, seen_motion(system, rod, body))
             if wrench is not None:
                 yield RodDrag(system, f"{load.name} on {rod}", rod, wrench)
-        for name, frame in system.discrete.frames.items():
-            if frame.body is not None and member.on_body(load, frame.body) is not None:
-                drag = BodyDrag(system, f"{load.name} on body {name.name}", name, load)
+        for name, record in system.discrete.bodies.items():
+            if member.on_body(load, record) is not None:
+                drag = BodyDrag(system, f"{load.name} on body {name}", FrameName("body", name), load)
                 if drag.own is not None:
                     yield drag
 
@@ -145,11 +145,10 @@ class BodyDrag:
     @cached_property
     def own(self) -> Matrix | None:
         """[Force; moment about the origin] on the body, 6×1, world axes; None of a load that does not feel motion."""
-        body = self.system.discrete.frames[self.body].body
-        assert body is not None, "a frame of a body"
+        body = self.system.discrete.bodies[self.body.name]
         pose = self.system.frame(self.body)
         loads = BodyLoads(self.system.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
-        return loads.drag(self.load, self.system.frame_motions[self.body].motion)
+        return loads.drag(self.load, self.system.body_motions[self.body.name])
 
     @cached_property
     def frictions(self) -> Sequence[Matrix]:
@@ -160,8 +159,15 @@ class BodyDrag:
         return [self.own]
 
     def wrenches(self, rod: str) -> list[Wrench]:
-        """It acts on no rod."""
-        return []
+        """The drag on a rod, base axes: on the section that the body rides on; none on another one."""
+        riding = self.system.riding.get(self.body.name)
+        if riding is None or riding.rod != rod:
+            return []
+        base_R_world = self.system.base(rod).rotation.T
+        force, moment = (base_R_world @ part for part in ca.vertsplit(self.frictions[0], 3))
+        arm = base_R_world @ (self.system.frame(self.body).position - self.system.base(rod).position)
+        arm = arm - self.system.shapes[rod].position_at(riding.node)
+        return [WrenchAt(riding.joint.at, force, moment + ca.cross(arm, force), follower=False)]
 
     @property
     def on_body(self) -> Matrix:
@@ -171,7 +177,7 @@ class BodyDrag:
     @property
     def dissipated_power(self) -> Matrix:
         """Power that the drag takes, 1×1, W."""
-        motion = self.system.frame_motions[self.body].motion
+        motion = self.system.body_motions[self.body.name]
         return -ca.dot(self.on_body, ca.vertcat(motion.angular_velocity, motion.velocity))
 
 

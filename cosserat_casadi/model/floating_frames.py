@@ -6,6 +6,7 @@ Docs/theory.md, section 8.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.held_directions import FLAT, confines_to_plane, stays_in_plane
+from cosserat_casadi.constraints.held_directions import CLAMPED, FLAT, confines_to_plane, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
@@ -108,8 +109,33 @@ class UnloadedScene:
             start = self.base(rod.name)
             frames[name] = FloatingFrame(None, unit, rod.length, start)
         for body in self.scene.bodies:
-            frames[FrameName("body", body.name)] = self._body_frame(body.name)
+            if body.name not in self.riding:
+                frames[FrameName("body", body.name)] = self.body_frame(body.name)
         return frames
+
+    @cached_property
+    def riding(self) -> dict[str, int]:
+        """Places in the scene's list of the joints of bodies that ride on a section of a rod, by body.
+
+        Such a body has one joint, which leaves nothing free: its pose follows from that of the section and is no
+        unknown, and what acts on it acts on the section. A body that bears obstacles is felt by all rods, and one whose
+        velocity is given is not asked where its section goes: these float.
+        """
+        borne = {obstacle.body for obstacle in self.scene.obstacles}
+        pushed = {velocity.owner for velocity in self.scene.velocities if velocity.rod is None}
+        joints: dict[str | None, list[int]] = defaultdict(list)
+        for index, joint in enumerate(self.scene.joints):
+            joints[joint.body].append(index)
+        return {
+            body: indices[0]
+            for body, indices in joints.items()
+            if body is not None and len(indices) == 1 and body not in borne | pushed and self._is_rigid(indices[0])
+        }
+
+    def _is_rigid(self, index: int) -> bool:
+        """Whether a joint fixes a body to a section that is no base."""
+        joint = self.scene.joints[index]
+        return not joint.holds_base and JOINT_KINDS[joint.kind].directions(joint) is CLAMPED
 
     def base(self, rod: str) -> NumericPose:
         """World pose of a rod's base."""
@@ -117,7 +143,7 @@ class UnloadedScene:
         for joint in self.scene.joints:
             # The base is where the body is, but where the body is said by such bases alone.
             if joint.rod == rod and joint.holds_base and joint.body is not None and self._placing_joints(joint.body):
-                return self._body_frame(joint.body).start.then(place_of(joint))
+                return self.body_frame(joint.body).start.then(place_of(joint))
         own = NumericPose(*base_pose(record))
         carrier = record.base.rod
         if carrier is None:
@@ -197,7 +223,7 @@ class UnloadedScene:
         sines = [np.linalg.norm(np.cross(normals[0], normal)) for normal in normals]
         return all(sine <= FLAT for sine in sines)
 
-    def _body_frame(self, name: str) -> FloatingFrame:
+    def body_frame(self, name: str) -> FloatingFrame:
         """A body's frame in its mean pose over the unloaded rods, in units of the stiffest and the longest of them."""
         if name not in self._bodies:
             (body,) = [body for body in self.scene.bodies if body.name == name]

@@ -145,7 +145,7 @@ class MotionEnergy:
             angular = angular + about_base + ca.cross(base.position, of_rod)
         for name, body in self.system.body_inertias.items():
             of_body = body.mass * body.velocity
-            centre = self.system.frame(name).position + body.arm
+            centre = self.system.body(name).position + body.arm
             spin = body.world_inertia @ body.motion.angular_velocity
             linear = linear + of_body
             angular = angular + spin + ca.cross(centre, of_body)
@@ -209,15 +209,12 @@ class MotionEnergy:
 
     def _on_bodies(self, load: scenes.LoadRecord) -> Iterator[tuple[Pose, FrameMotion, BodyLoad]]:
         """The bodies that a load acts on, where they are and how they move, world axes."""
-        for name, frame_motion in self.system.frame_motions.items():
-            body = frame_motion.frame.body
-            if body is None:
-                continue
-            pose = self.system.frame(name)
+        for name, body in self.system.discrete.bodies.items():
+            pose = self.system.body(name)
             loads = BodyLoads(self.system.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
             body_load = loads.of(load)
             if body_load is not None:
-                yield pose, frame_motion.motion, body_load
+                yield pose, self.system.body_motions[name], body_load
 
     def _power_of(self, load: scenes.LoadRecord, *, resting: bool = False) -> Matrix:
         powers = []
@@ -227,7 +224,7 @@ class MotionEnergy:
             twist = ca.vertcat(motion.angular_velocity, motion.velocity)
             powers.append(ca.dot(body_load.wrench, twist))
         for borne in self._borne(load):
-            body_motion = self.system.frame_motions[borne.body].motion
+            body_motion = self.system.body_motions[borne.body.name]
             powers.append(ca.dot(borne.wrench, ca.vertcat(body_motion.angular_velocity, body_motion.velocity)))
         return _sum(powers)
 

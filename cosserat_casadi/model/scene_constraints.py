@@ -222,7 +222,8 @@ def _base_path(scene: scenes.Scene, index: int) -> str:
 def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
     """The constraints of a scene in the order of their multipliers.
 
-    Supports of rods that start in the world, bases of carried rods, joints, then supports of carried rods.
+    Supports of rods that start in the world, bases of carried rods, joints, then supports of carried rods. Joints of
+    bodies that ride on sections are none: their poses follow.
     """
     scene = unloaded.scene
     supports = [_support(unloaded, i) for i in range(len(scene.supports))]
@@ -232,7 +233,8 @@ def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
     carried = [placed for placed in supports if placed.closes_assembly]
     bases = [_base(unloaded, rod) for rod in unloaded.carried]
     carried_by_rods = {scene.base_joints.get(rod.name) for rod in unloaded.carried}
-    between = [i for i, joint in enumerate(scene.joints) if not _is_in_world(joint) and i not in carried_by_rods]
+    elsewhere = {*carried_by_rods, *unloaded.riding.values()}
+    between = [i for i, joint in enumerate(scene.joints) if not _is_in_world(joint) and i not in elsewhere]
     joints = [_joint(unloaded, i) for i in between]
     return [*still, *bases, *joints, *carried]
 

@@ -90,16 +90,15 @@ class SceneMotionEquations:
                 stiffness.add(rows, columns, part.stiffness)
                 damping.add(rows, columns, part.damping)
                 mass.add(rows, columns, part.mass)
-        for name, inertia in self.system.body_inertias.items():
+        for name, frame_motion in self.system.frame_motions.items():
             frame = self.system.discrete.frames[name]
             entries = self.system.discrete.deviation(name)
-            jet = self.system.frame_motions[name].motion_jet()
-            part = inertia.matrices.along(jet)
-            stiffness.add(entries, entries, part.stiffness / frame.unit)
-            damping.add(entries, entries, part.damping / frame.unit)
-            mass.add(entries, entries, part.mass / frame.unit)
-        for name, frame_motion in self.system.frame_motions.items():
-            entries = self.system.discrete.deviation(name)
+            inertia = self.system.body_inertias.get(name.name)
+            if frame.body is not None and inertia is not None:
+                part = inertia.matrices.along(frame_motion.motion_jet())
+                stiffness.add(entries, entries, part.stiffness / frame.unit)
+                damping.add(entries, entries, part.damping / frame.unit)
+                mass.add(entries, entries, part.mass / frame.unit)
             stiffness.add(entries, entries, frame_motion.norm_matrices.stiffness)
             damping.add(entries, entries, frame_motion.norm_matrices.damping)
             mass.add(entries, entries, frame_motion.norm_matrices.mass)

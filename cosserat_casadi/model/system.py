@@ -32,6 +32,7 @@ from cosserat_casadi.model.homotopy import LoadFactor, scaled
 from cosserat_casadi.model.inputs import input_value
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.pair_terms import PairTerms
+from cosserat_casadi.model.riding_bodies import RidingBody
 from cosserat_casadi.model.scene_actuators import SceneActuators
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_rods import written_base_pose
@@ -111,7 +112,7 @@ class System:
         for name, shape_of_rod in self.shapes.items():
             wrenches = [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
             loads = [*self._loads(name), *wrenches, *self._pair_wrenches(name), *self._drag_wrenches(name)]
-            loads += self._inertia_wrenches(name)
+            loads += [*self._inertia_wrenches(name), *self._riding_inertias(name)]
             balances[name] = InverseGeometricModel(Statics(shape_of_rod, loads), self.actuators.on_rod(name))
         return balances
 
@@ -121,6 +122,11 @@ class System:
         # In motion there is so much more of it that it is loops.
         in_loops = self.arguments.motion is not None
         return {name: Tangent(igm, in_loops, given=self.columns.get(name)) for name, igm in self.rods.items()}
+
+    @cached_property
+    def riding(self) -> dict[str, RidingBody]:
+        """Bodies that ride on sections."""
+        return {name: RidingBody(self.discrete, self.discrete.bodies[name]) for name in self.discrete.riding}
 
     @cached_property
     def frame_poses(self) -> dict[FrameName, FramePose]:
@@ -248,13 +254,22 @@ class System:
         return float(known(rod.node_lengths) @ masses.mass) * frame.length**2
 
     @cached_property
-    def body_inertias(self) -> dict[FrameName, BodyInertia]:
+    def body_motions(self) -> dict[str, FrameMotion]:
+        """Motions of the bodies, world axes; none at rest."""
+        motions = {name.name: moved.motion for name, moved in self.frame_motions.items() if name.kind == "body"}
+        for name, riding in self.riding.items() if self.motions else ():
+            rod = self.motions[riding.rod]
+            world_R_base = self.base(riding.rod).rotation
+            arm = self.section(riding.rod, riding.node).rotation @ riding.in_section.position
+            motions[name] = rod.at(riding.node).at(arm).in_axes(world_R_base)
+        return motions
+
+    @cached_property
+    def body_inertias(self) -> dict[str, BodyInertia]:
         """Inertia of every body that moves and has any, world axes."""
         inertias = {}
-        for name, frame_motion in self.frame_motions.items():
-            body = frame_motion.frame.body
-            if body is None:
-                continue
+        for name, motion in self.body_motions.items():
+            body = self.discrete.bodies[name]
             inertia = body_inertia(body)
             if is_zero(body.mass) and is_zero(inertia):
                 continue
@@ -262,8 +277,8 @@ class System:
                 mass=body.mass,
                 centre_of_mass=as_vector(body.centre_of_mass),
                 inertia=inertia,
-                rotation=self.frame(name).rotation,
-                motion=frame_motion.motion,
+                rotation=self.body(name).rotation,
+                motion=motion,
             )
         return inertias
 
@@ -275,7 +290,7 @@ class System:
 
     def section(self, rod: str, node: int) -> Pose:
         """Pose of a node's section in the base of its rod."""
-        rod_shape = self.rods[rod].shape
+        rod_shape = self.shapes[rod]
         return Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node])
 
     def tip(self, rod: str) -> Pose:
@@ -290,8 +305,11 @@ class System:
         return self.frame(frame)
 
     def frame(self, name: FrameName) -> Pose:
-        """World pose of a floating frame."""
-        return self.frame_poses[name].pose
+        """World pose of a floating frame, or of a body that rides on a section."""
+        if name in self.frame_poses:
+            return self.frame_poses[name].pose
+        riding = self.riding[name.name]
+        return self.base(riding.rod).then(self.section(riding.rod, riding.node)).then(riding.in_section)
 
     def body(self, name: str) -> Pose:
         """World pose of a body."""
@@ -487,9 +505,24 @@ class System:
             return []
         return [self.inertias[rod].wrench]
 
+    def _riding_on(self, rod: str) -> list[RidingBody]:
+        """Bodies that ride on a rod."""
+        return [riding for riding in self.riding.values() if riding.rod == rod]
+
+    def _riding_inertias(self, rod: str) -> list[PoseWrench]:
+        """Inertia of the bodies that ride on a rod in motion; none at rest."""
+        if rod not in self.motions:
+            return []
+        base = self.rod_loads(rod).base
+        inertias = [riding.inertia(base, self.motions[rod]) for riding in self._riding_on(rod)]
+        return [inertia for inertia in inertias if inertia is not None]
+
     def _loads(self, rod: str) -> list[RodLoad]:
-        """The scene's loads on a rod at the load factor, base frame."""
-        loads = self.rod_loads(rod).all()
+        """The scene's loads on a rod, and on bodies that ride on it, at the load factor, base frame."""
+        rod_loads = self.rod_loads(rod)
+        loads = rod_loads.all()
+        for riding in self._riding_on(rod):
+            loads += riding.loads(rod_loads.base, self.arguments.inputs)
         return [scaled(load, self.arguments.load_factor) for load in loads]
 
     def loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:

@@ -48,7 +48,7 @@ def flies_free(model: Model) -> bool:
 
 def flies_alone(model: Model) -> bool:
     """Whether a scene is one rod that nothing holds, without bodies."""
-    return flies_free(model) and len(model.discrete.frames) == 1
+    return flies_free(model) and len(model.discrete.frames) == 1 and not model.scene.bodies
 
 
 def _pieces(scene: Scene) -> int:

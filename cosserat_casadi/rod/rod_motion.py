@@ -51,6 +51,12 @@ class FrameMotion:
             angular_acceleration=axes_R_world @ self.angular_acceleration,
         )
 
+    def at(self, arm: Matrix) -> FrameMotion:
+        """Motion of a point that is fixed to the frame, 3×1 from its origin, in the same axes."""
+        added = cross(self.angular_velocity, arm)
+        turned = cross(self.angular_acceleration, arm) + cross(self.angular_velocity, added)
+        return replace(self, velocity=self.velocity + added, acceleration=self.acceleration + turned)
+
     def damped(self, rate: Scalar) -> FrameMotion:
         """The motion with accelerations of which a share of the velocities is part: r̈ + α ṙ with α in 1/s."""
         return replace(
@@ -274,6 +280,13 @@ class RodMotion:
     def acceleration(self) -> Matrix:
         """Accelerations of the nodes in the world, 3×M, m/s²."""
         return self._integrated(self.base.acceleration, self.tangent_acceleration)
+
+    def at(self, node: int) -> FrameMotion:
+        """Motion of the section of a node, as inertia does not see it: without damping in proportion to mass."""
+        rate = self.rod.properties.mass_damping
+        fields = (self.velocity, self.angular_velocity, self.acceleration, self.angular_acceleration)
+        moved = FrameMotion(*(field[:, node] for field in fields))
+        return moved if rate is None else moved.damped(-rate)
 
     def director_rate(self, axis: int) -> Matrix:
         """ḋ = ω × d of one director at the nodes, 3×M, 1/s."""
