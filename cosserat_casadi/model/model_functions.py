@@ -258,7 +258,7 @@ class ModelFunctions:
 
         Columns: position 3×1, quaternion w, x, y, z 4×1; rotation world_R_tip 3×3. All are CasADi matrices.
         """
-        tip = _tip_in_world(written)
+        tip = _section_in_world(written, written.owner, -1)
         return [tip.position, tip.quaternion, tip.rotation]
 
     @owned_functions(
@@ -272,7 +272,7 @@ class ModelFunctions:
 
         In a scene with parameters (x, inputs, p), and with p too.
         """
-        return _tip_derivatives(written)
+        return _section_derivatives(written, written.owner, -1)
 
     @owned_functions(
         Owner.ROD,
@@ -391,6 +391,9 @@ class ModelFunctions:
 
         In a scene with parameters (x, inputs, p), and with p too.
         """
+        riding = written.system.riding.get(written.owner)
+        if riding is not None:
+            return _section_derivatives(written, riding.rod, riding.node, riding.in_section)
         frame = written.system.frame(FrameName("body", written.owner))
         pose = ca.vertcat(frame.position, frame.quaternion)
         return [ca.densify(ca.jacobian(pose, symbol)) for symbol in written.symbols.values()]
@@ -470,22 +473,29 @@ def _in_world(base: Pose, section: Pose) -> Pose:
     return symbolic_base.then(section)
 
 
-def _tip_in_world(written: Expressions) -> Pose:
-    return _in_world(written.system.base(written.owner), written.system.tip(written.owner))
+def _section_in_world(written: Expressions, rod: str, node: int) -> Pose:
+    return _in_world(written.system.base(rod), written.system.section(rod, node))
 
 
-def _tip_derivatives(written: Expressions) -> list[Matrix]:
-    """From the variations of the rod's fields where its base rests: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q."""
+def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pose | None = None) -> list[Matrix]:
+    """Derivatives of the pose of a section, or of what it carries at this pose in its axes, with all symbols.
+
+    From the variations of the rod's fields where its base rests: δr of the section, and δQ = ½ (0, δθ) ⊗ Q.
+    """
     discrete = written.discrete
-    tip = _tip_in_world(written)
-    pose = ca.vertcat(tip.position, tip.quaternion)
-    floats = discrete.unloaded.floating_base(written.owner) is not None
-    literal = discrete.rods[written.owner].discretisation.transport == "permuted"
+    section = _section_in_world(written, rod, node)
+    pose = _stacked(section if carried is None else section.then(carried))
+    floats = discrete.unloaded.floating_base(rod) is not None
+    literal = discrete.rods[rod].discretisation.transport == "permuted"
     # A floating base moves with unknowns of its own, and the literal system has no variations.
     if floats or literal:
         by_unknowns = ca.jacobian(pose, written["x"])
     else:
-        by_unknowns = _by_strains(written)
+        by_unknowns = _by_strains(written, rod, node)
+        if carried is not None:
+            own = ca.MX.sym("section", 7)
+            by_section = ca.jacobian(_stacked(Pose(own[:3], own[3:]).then(carried)), own)
+            by_unknowns = ca.substitute(by_section, own, _stacked(section)) @ by_unknowns
     by_inputs = ca.DM.zeros(7, discrete.layout.size)
     if discrete.layout.geometry:
         by_inputs = ca.densify(ca.jacobian(pose, written["inputs"]))
@@ -495,22 +505,25 @@ def _tip_derivatives(written: Expressions) -> list[Matrix]:
     return derivatives
 
 
-def _by_strains(written: Expressions) -> Matrix:
-    """Derivative of a tip's position and quaternion with x, 7×size: zero but for the strains of its rod."""
+def _stacked(pose: Pose) -> Matrix:
+    return ca.vertcat(pose.position, pose.quaternion)
+
+
+def _by_strains(written: Expressions, rod: str, node: int) -> Matrix:
+    """Derivative of a section's position and quaternion with x, 7×size: zero but for the strains of its rod."""
     system = written.system
-    tangent = system.tangents[written.owner]
-    tip = system.tip(written.owner)
-    base = system.base(written.owner)
-    count = written.discrete.rods[written.owner].size
-    quaternions = ca.repmat(ca.densify(tip.quaternion), 1, count)
+    tangent = system.tangents[rod]
+    base = system.base(rod)
+    count = written.discrete.rods[rod].size
+    quaternions = ca.repmat(ca.densify(system.section(rod, node).quaternion), 1, count)
     # One column a strain coordinate: δQ = ½ (0, δθ) ⊗ Q in the base, then turned into the world.
-    spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
+    spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(node)))
     turned = quaternion_product(spin, quaternions) / 2
     base_quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
     turned_in_world = quaternion_product(base_quaternions, turned)
-    moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
+    moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(node)
     by_own_strains = ca.vertcat(moved_in_world, turned_in_world)
-    strains = written.discrete.unknowns.strain(written.owner)
+    strains = written.discrete.unknowns.strain(rod)
     before = ca.DM(7, strains.start)
     after = ca.DM(7, written.discrete.size - strains.stop)
     return ca.horzcat(before, by_own_strains, after)

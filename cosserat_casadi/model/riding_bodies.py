@@ -141,8 +141,11 @@ class RidingBody:
         def energy(section: _Section) -> Matrix:
             pose = at_point(section)
             if of_point.world_energy is not None:
-                return of_point.world_energy.call(pose)[0]
-            return -ca.dot(of_point.world_wrench.call(pose)[0], pose[0])
+                (value,) = of_point.world_energy.call(pose)
+            else:
+                force, _ = of_point.world_wrench.call(pose)
+                value = -ca.dot(force, pose[0])
+            return ca.SX(value)
 
         # A dead force has an energy, whatever moment its arm makes.
         is_dead_force = kernel.pose_free and not kernel.follower and not of_point.world_wrench.nnz_out(1)
@@ -163,7 +166,8 @@ class RidingBody:
         origin, rotation = given(_sparse(self.in_section.position)), given(self._rotation)
         mass, centre, moments = (given(part) for part in (self.body.mass, as_vector(self.body.centre_of_mass), inertia))
         # With damping in proportion to mass a rod accelerates by more than it does: a body does not.
-        damping = given(motion.rod.properties.mass_damping or 0.0)
+        mass_damping = motion.rod.properties.mass_damping
+        damping = given(0.0 if mass_damping is None else mass_damping)
 
         def wrench(section: _Section) -> Sequence[Matrix]:
             arm = section.rotation @ origin

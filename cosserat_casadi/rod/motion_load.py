@@ -63,13 +63,12 @@ class MotionLoad:
         """−Σ [Y; Θ]ᵀ (∂[f; c]/∂rates) (variations of the rates), in J."""
         pulled = -ca.vertcat(self.position.value, self.rotation.value).T
         columns = self.position.value.shape[1]
-        totals: list[Matrix] = [ca.DM(columns, columns)] * 3
+        changed: list[Matrix] = [ca.DM(pulled.shape[1], columns)] * 3
         for rate, operator in self.load.with_rates.items():
             for order, variation in enumerate(self._variation_of(rate)):
                 if variation is not None:
-                    changed = self.load.weighted(operator @ variation)
-                    totals[order] = totals[order] + pulled @ changed
-        stiffness, damping, mass = totals
+                    changed[order] = changed[order] + self.load.weighted(operator @ variation)
+        stiffness, damping, mass = (pulled @ total for total in changed)
         return MotionMatrices(stiffness, damping, mass)
 
     @cached_property

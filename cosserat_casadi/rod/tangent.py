@@ -26,6 +26,7 @@ quantity that they work on. Only what a scene's loads need is formed.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -443,9 +444,17 @@ class Tangent:
     def _pose_stiffness(self) -> Matrix | None:
         """Stiffness of loads that depend on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
         parts = []
+        at_sections: dict[int, list[LoadedSections]] = defaultdict(list)
         for load in self.igm.pulled.pose_loads:
-            motion = self.motion(load)
-            parts.append(motion.T @ self.wrench_variation(load))
+            if load.load.at is None:
+                parts.append(self.motion(load).T @ self.wrench_variation(load))
+            else:
+                at_sections[load.nodes[0]].append(load)
+        for node, loads in at_sections.items():
+            # Loads on one section share its motion.
+            motion = ca.vertcat(self.position(node), self.rotation_of(node))
+            stiffness = sum((load.stiffness for load in loads[1:]), loads[0].stiffness)
+            parts.append(motion.T @ (stiffness @ motion))
         if not parts:
             return None
         return sum(parts[1:], parts[0]) / -self.rod.energy_unit

@@ -349,6 +349,34 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
             "left.material.youngs_modulus": 1.5e9,
         },
     ),
+    "a body that rides": (
+        {
+            "schema": 1,
+            "rods": [{**WIRE, "damping": {"mass_proportional": 0.5}}],
+            "bodies": [{"name": "plate", "mass": 0.2, "inertia": [1e-3, 2e-3, 2.5e-3]}],
+            "joints": [
+                {
+                    "name": "mount",
+                    "body": "plate",
+                    "rod": "wire",
+                    "at": 0.7,
+                    "kind": "fixed",
+                    "position": [0.0, 0.01, 0],
+                }
+            ],
+            "loads": PLATFORM["loads"],
+            "inputs": ["pull.force"],
+        },
+        {
+            "plate.mass": 0.3,
+            "plate.centre_of_mass": [0.0, 0.02, 0.01],
+            "plate.inertia": [2e-3, 1.5e-3, 3e-3],
+            "mount.position": [0.02, 0.0, 0.01],
+            "mount.at": 0.6,
+            "pull.position": [0.0, 0.05, 0.01],
+            "wire.damping.mass_proportional": 0.8,
+        },
+    ),
 }
 
 
@@ -382,6 +410,7 @@ MORE = (
     "a magnetised rod",
     "a foundation along a curve",
     "elastic cables",
+    "a body that rides",
 )
 """Cases that are told apart only where values are not the defaults."""
 
