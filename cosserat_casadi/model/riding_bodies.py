@@ -205,7 +205,7 @@ class _Section:
 
 
 class _Given:
-    """Numbers as a kernel has them: its constants, or symbols that stand for expressions, whose values it is given."""
+    """Numbers of a kernel: its constants, or symbols that stand for expressions, whose values are its parameters."""
 
     def __init__(self) -> None:
         self.symbols: list[ca.SX] = []
@@ -231,7 +231,7 @@ def _kernel(
 
     Args:
         given: numbers in it, which stand behind its parameters.
-        sizes: number of its own parameters, and of its data.
+        sizes: number of the other parameters, and of the data.
         wrench: force and moment, world axes, 3×1 each.
         energy: of the wrench; None where it has none.
         rates: of the section, that the wrench depends on.

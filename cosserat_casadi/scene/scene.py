@@ -195,9 +195,11 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def rods_held_at_tips(self) -> set[str]:
-        """Names of the rods whose tips a support or a joint holds."""
-        joints = [joint for joint in self.joints if joint.at == 1.0]
-        return {holder.rod for holder in (*self.supports, *joints)}
+        """Names of the rods whose tips a support or a joint holds; a body that no other joint holds goes along."""
+        bodies = [joint.body for joint in self.joints if joint.body is not None]
+        holding = [joint for joint in self.joints if joint.body is None or bodies.count(joint.body) > 1]
+        tips = [joint for joint in holding if joint.at == 1.0]
+        return {holder.rod for holder in (*self.supports, *tips)}
 
     @property
     def joints_with_coordinate(self) -> tuple[Joint, ...]:

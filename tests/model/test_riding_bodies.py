@@ -242,3 +242,33 @@ def equilibrium_of(model: Model) -> list[np.ndarray]:
     if not model.scene.obstacles:
         facts.append(np.array([mode.eigenvalue for mode in modes_of(solution, count=3).modes]))
     return facts
+
+
+@pytest.mark.parametrize("strain", mostly_slow(["kirchhoff", "planar", "reissner"], quick=["planar"]))
+def test_a_body_costs_no_step_more_than_its_weight(strain: str) -> None:
+    """At a tendon that is pulled until the tip has turned more than three times."""
+    rod = {
+        "name": "rod",
+        "length": 0.2,
+        "strain": strain,
+        "material": {"youngs_modulus": 2e9, "poisson_ratio": 0.4, "density": 1100.0},
+        "section": {"shape": "circle", "radius": 1e-3},
+    }
+    scene = {
+        "schema": 1,
+        "accuracy": {"modes": 8, "nodes": 30},
+        "rods": [rod],
+        "loads": [LOADS[0], {"name": "load", "kind": "tip_wrench", "rod": "rod", "force": [0.0, 0.0, -0.02 * 9.81]}],
+        "actuators": [{"name": "cable", "kind": "tendon", "rod": "rod", "tension": 2.0, "offset": [4e-3, 0.0]}],
+        "inputs": ["cable.tension"],
+    }
+    weighed = build(scene_from_dict(scene))
+    body = {"name": "tool", "mass": 0.02}
+    joint = {"rod": "rod", "body": "tool", "kind": "fixed"}
+    ridden = build(scene_from_dict({**scene, "loads": LOADS[:1], "bodies": [body], "joints": [joint]}))
+    for tension in (2.0, 10.0, 20.0, 40.0):
+        wanted, solution = (solve(model, {"cable.tension": tension}) for model in (weighed, ridden))
+        assert solution.converged, solution.message
+        assert solution.iterations == wanted.iterations
+        assert_allclose(solution.x, wanted.x, rtol=0, atol=1e-10)
+        assert_allclose(solution.error_estimate, wanted.error_estimate, rtol=1e-3, atol=0)
