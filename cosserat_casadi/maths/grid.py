@@ -143,6 +143,39 @@ class Grid:
             matrix[rows, before] = self.weights[before]
         return matrix
 
+    def integrated(self, fields: Matrix) -> Matrix:
+        """Integrals from the base of fields at the nodes, f Sᵀ, k×M.
+
+        Within an element, with what the elements before it add: S itself is half full.
+        """
+        integrals: list[Matrix] = []
+        for start, own in zip(self._starts, ca.horzsplit(fields, self._nodes_per_element), strict=True):
+            within = own @ start.T
+            if integrals:
+                within = within + ca.repmat(integrals[-1][:, -1], 1, self._nodes_per_element)
+            integrals.append(within)
+        return ca.horzcat(*integrals)
+
+    def summed_by_integrals(self, fields: Matrix) -> Matrix:
+        """What fields at the nodes do along integrals from the base, f S, k×M: the transpose of :meth:`integrated`."""
+        sums: list[Matrix] = []
+        beyond: Matrix | None = None
+        parts = zip(self._starts, ca.horzsplit(fields, self._nodes_per_element), strict=True)
+        for start, own in reversed(list(parts)):
+            within = own @ start
+            if beyond is not None:
+                within = within + beyond @ start[-1, :]
+            total = ca.sum2(own)
+            beyond = total if beyond is None else beyond + total
+            sums.insert(0, within)
+        return ca.horzcat(*sums)
+
+    @cached_property
+    def _starts(self) -> list[ca.DM]:
+        """Matrix of the integral from the beginning of each element to its nodes."""
+        rows = [self._nodes_of(element) for element in range(self.elements)]
+        return [ca.DM(self.integration_matrix[own, own]) for own in rows]
+
     @cached_property
     def left_ends(self) -> FloatArray:
         """Base-side ends of the E·N intervals between neighbouring nodes, in the coordinate."""

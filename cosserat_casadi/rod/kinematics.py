@@ -82,8 +82,7 @@ class Shape:
     @cached_property
     def position(self) -> Matrix:
         """Positions at the nodes, 3×M, by integration of the tangent, in metres."""
-        integrate = ca.DM(self.rod.grid.integration_matrix)
-        return self.tangent @ integrate.T
+        return self.rod.grid.integrated(self.tangent)
 
     def position_at(self, node: int) -> Matrix:
         """Position of one node, 3×1."""

@@ -333,8 +333,7 @@ class RodMotion:
     def _integrated(self, base: Matrix, rate: Matrix) -> Matrix:
         """Field of the positions from that of the base, 3×1, and that of the tangents, 3×M."""
         grid = self.rod.grid
-        integrate = ca.DM(grid.integration_matrix)
-        return ca.repmat(base, 1, grid.size) + rate @ integrate.T
+        return ca.repmat(base, 1, grid.size) + grid.integrated(rate)
 
 
 def _swept(base: Matrix, added: Matrix) -> Matrix:

@@ -208,8 +208,8 @@ class Statics:
         if wrench.follower or wrench.profiles is None:
             per_length = self.line(wrench, force)
             if is_symbolic(rod.node_lengths):
-                return per_length @ ca.diag(rod.node_lengths) @ ca.DM(grid.integration_matrix)
-            return per_length @ ca.DM(known(rod.node_lengths)[:, None] * grid.integration_matrix)
+                return grid.summed_by_integrals(per_length @ ca.diag(rod.node_lengths))
+            return grid.summed_by_integrals(per_length @ ca.diag(ca.DM(known(rod.node_lengths))))
         # Profiles are numbers: a dead force per length needs no product with S at run time.
         profiles = wrench.profiles
         if not any_symbolic([profiles, rod.node_lengths]):

@@ -71,7 +71,7 @@ int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int*
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2
 #define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 198
+#define tendon_robot_k_shape_SZ_W 196
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3

@@ -72,6 +72,15 @@ def test_integration_matrix_vs_closed_form_on_piecewise_polynomials(grid):
 
 
 @ALL_GRIDS
+def test_integrals_element_by_element_vs_the_matrix(grid):
+    fields = np.random.default_rng(3).normal(size=(3, grid.size))
+    assert_allclose(grid.integrated(ca.DM(fields)).full(), fields @ grid.integration_matrix.T, rtol=0, atol=1e-14)
+    assert_allclose(
+        grid.summed_by_integrals(ca.DM(fields)).full(), fields @ grid.integration_matrix, rtol=0, atol=1e-13
+    )
+
+
+@ALL_GRIDS
 def test_last_row_of_integration_matrix_vs_weights(grid):
     assert_allclose(grid.integration_matrix[-1], grid.weights, rtol=1e-13, atol=1e-16)
 
