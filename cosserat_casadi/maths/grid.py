@@ -157,7 +157,7 @@ class Grid:
         return ca.horzcat(*integrals)
 
     def summed_by_integrals(self, fields: Matrix) -> Matrix:
-        """What fields at the nodes do along integrals from the base, f S, k×M: the transpose of :meth:`integrated`."""
+        """Sums over the nodes of fields times the rows of S, f S, k×M: the transpose of :meth:`integrated`."""
         sums: list[Matrix] = []
         beyond: Matrix | None = None
         parts = zip(self._starts, ca.horzsplit(fields, self._nodes_per_element), strict=True)
