@@ -152,11 +152,18 @@ class BodyDrag:
 
     @cached_property
     def frictions(self) -> Sequence[Matrix]:
-        """The drag on the body, 6×1."""
+        """The drag on the body, 6×1; of one that rides also that on its section, about the centre of that."""
         if self.name in self.system.friction:
             return self.system.friction[self.name]
         assert self.own is not None, "a drag is there"
-        return [self.own]
+        riding = self.system.riding.get(self.body.name)
+        if riding is None:
+            return [self.own]
+        force, moment = ca.vertsplit(self.own, 3)
+        base = self.system.base(riding.rod)
+        centre = base.position + base.rotation @ self.system.shapes[riding.rod].position_at(riding.node)
+        arm = self.system.frame(self.body).position - centre
+        return [self.own, ca.vertcat(force, moment + ca.cross(arm, force))]
 
     def wrenches(self, rod: str) -> list[Wrench]:
         """The drag on a rod, base axes: on the section that the body rides on; none on another one."""
@@ -164,10 +171,8 @@ class BodyDrag:
         if riding is None or riding.rod != rod:
             return []
         base_R_world = self.system.base(rod).rotation.T
-        force, moment = (base_R_world @ part for part in ca.vertsplit(self.frictions[0], 3))
-        arm = base_R_world @ (self.system.frame(self.body).position - self.system.base(rod).position)
-        arm = arm - self.system.shapes[rod].position_at(riding.node)
-        return [WrenchAt(riding.joint.at, force, moment + ca.cross(arm, force), follower=False)]
+        force, moment = (base_R_world @ part for part in ca.vertsplit(self.frictions[1], 3))
+        return [WrenchAt(riding.joint.at, force, moment, follower=False)]
 
     @property
     def on_body(self) -> Matrix:

@@ -95,10 +95,10 @@ SCENES: dict[str, dict[str, Any]] = {
             {
                 "name": "floor",
                 "kind": "plane",
-                "point": [0.0, 0.0, 0.14],
+                "point": [0.0, 0.0, 0.2],
                 "normal": [0.0, 0.0, 1.0],
                 "bodies": ["tool"],
-                "width": 2e-3,
+                "width": 0.1,
                 "stiffness": 50.0,
                 "friction": 0.3,
                 "damping": 2.0,
