@@ -239,19 +239,21 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
             start = columns.start if isinstance(columns, slice) else columns[0]
             entries.append({"rod": rod, "strain": STRAINS[component], "first": int(first + start), "count": int(count)})
     supports = {support.rod: support.kind for support in model.scene.supports}
+    # Every entry is one of a rod: that of bodies without rods is the first.
+    first_rod = next(iter(model.discrete.rods))
     for placed in model.discrete.constraints:
         is_tie = placed.closes_assembly or placed.joint is not None
         what = {"tie": placed.where} if is_tie else {"support": supports[placed.rod]}
         first = model.discrete.multipliers(placed).start
-        entries.append({"rod": placed.rod, **what, "first": first, "count": placed.size})
+        entries.append({"rod": placed.rod or first_rod, **what, "first": first, "count": placed.size})
     for name in model.discrete.frames:
-        holders = [joint.rod for joint in model.scene.joints if name == ("body", joint.body)]
+        holders = [joint.rod for joint in model.scene.joints if joint.rod and name == ("body", joint.body)]
         place = model.discrete.deviation(name)
-        rod = (holders or [name.name])[0]
+        rod = name.name if name.kind == "rod" else (holders or [first_rod])[0]
         entries.append({"rod": rod, "frame": str(name), "first": place.start, "count": place.stop - place.start})
     for placed in model.discrete.free_coordinates:
         first = model.discrete.coordinate(placed).start
-        entries.append({"rod": placed.rod, "joint": placed.where, "first": first, "count": 1})
+        entries.append({"rod": placed.rod or first_rod, "joint": placed.where, "first": first, "count": 1})
     for cable in model.discrete.cables:
         tendon = cable.tendon
         unit = model.discrete.tension_unit(tendon.rod)
@@ -259,7 +261,7 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
     for stop in model.discrete.stops:
         first = model.discrete.stop(stop).start
-        entries.append({"rod": stop.placed.rod, "stop": stop.owner, "first": first, "count": 1})
+        entries.append({"rod": stop.placed.rod or first_rod, "stop": stop.owner, "first": first, "count": 1})
     for block, place in model.discrete.unknowns.of_kind(BlockKind.FLOW):
         branches = len(model.discrete.rods[block.owner].properties.branches)
         entries.append({"rod": block.owner, "branches": branches, "first": place.start, "count": block.size})

@@ -1,5 +1,7 @@
 """Constraints that hold a section of a rod at a pose in another frame: the world, a body, the base of a carried rod.
 
+A place of a body may stand for the section: the body is what the base of the rod is otherwise.
+
 The kinds of support and joint differ in the directions that they hold, and in nothing else. The residual and the
 wrench are written once, as small expressions of poses and multipliers; CasADi differentiates them.
 Docs/theory.md, section 8.
@@ -11,7 +13,7 @@ Variations of poses are [δθ; δr] and wrenches [moment; force], the angular pa
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -23,7 +25,6 @@ from cosserat_casadi.maths.numbers import Scalar, is_symbolic
 from cosserat_casadi.maths.pose import NumericPose, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.rod.properties import RodProperties
 
 KEPT_KERNELS = 128
 """Constraints whose kernels are kept for further models."""
@@ -150,9 +151,9 @@ class SectionConstraint:
     """A section of a rod held at a pose in another frame.
 
     Attributes:
-        rod: the rod.
+        length: ℓ of the rod, m.
         unit: EI/ℓ of the rod, J.
-        at: abscissa of the section, a break of the rod's grid.
+        at: abscissa of the section, a break of the rod's grid; not read of a place of a body.
         held: the directions that are held.
         pose: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
         turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of ``pose``, to the held directions;
@@ -160,7 +161,7 @@ class SectionConstraint:
         coordinate: along which the pose moves; None where it does not.
     """
 
-    rod: RodProperties
+    length: float
     unit: float
     at: Scalar
     held: HeldDirections
@@ -188,7 +189,7 @@ class SectionConstraint:
         return self._wrench_basis(poses, self._given_target)
 
     def _wrench_basis(self, poses: ConstraintPoses, target: HeldPose) -> Matrix:
-        force = self.unit / self.rod.length * self.held.positions
+        force = self.unit / self.length * self.held.positions
         moment = self.unit * self.held.rotations
         displacements = force.shape[1]
         basis = np.zeros((6, self.size))
@@ -221,6 +222,16 @@ class SectionConstraint:
         _, by_multipliers, *by_poses = self._kernels.reaction(*poses.stacked, *self._free_target, multipliers)
         return by_multipliers, PoseVariations(*by_poses)
 
+    def on_body(self, poses: ConstraintPoses, multipliers: Matrix) -> Matrix:
+        """Wrench on the body whose place it holds, about the origin of the body, world axes, 6×1."""
+        wrench: Matrix = self._kernels.on_body(*poses.stacked, *self._free_target, multipliers)[0]
+        return wrench
+
+    def on_body_variation(self, poses: ConstraintPoses, multipliers: Matrix) -> tuple[Matrix, PoseVariations]:
+        """Derivative of that wrench with the multipliers, 6×size, and with the poses, 6×6 each."""
+        _, by_multipliers, *by_poses = self._kernels.on_body(*poses.stacked, *self._free_target, multipliers)
+        return by_multipliers, PoseVariations(*by_poses)
+
     @cached_property
     def _kernels(self) -> _Kernels:
         pose = None
@@ -234,7 +245,7 @@ class SectionConstraint:
         coordinate = None
         if self.coordinate is not None:
             coordinate = (_exact(self.coordinate.axis), self.coordinate.turns)
-        return _shared(_Kernels((self.rod.length, self.unit, held, pose, turn, coordinate), self))
+        return _shared(_Kernels((self.length, self.unit, held, pose, turn, coordinate), self))
 
     @property
     def _given_target(self) -> HeldPose:
@@ -276,7 +287,7 @@ class SectionConstraint:
         if target.axes is not None:
             displacement = target.axes.T @ displacement
             turn = target.axes.T @ turn
-        along = ca.DM(self.held.positions).T @ displacement / self.rod.length
+        along = ca.DM(self.held.positions).T @ displacement / self.length
         # The vector part of a quaternion is half the rotation that is left, to first order.
         about = 2 * ca.DM(self.held.rotations).T @ turn
         return ca.vertcat(along, about)
@@ -297,6 +308,13 @@ class SectionConstraint:
             arm = poses.frame.rotation @ target.in_frame(poses).position
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
+
+    def on_body_of(self, poses: ConstraintPoses, target: HeldPose, multipliers: Matrix) -> Matrix:
+        """The wrench on the place of a body, about the origin of the body, world axes, 6×1."""
+        wrench = self.wrench_of(poses, target, multipliers)
+        moment = wrench[:3] + ca.cross(poses.section.position, wrench[3:])
+        rotation = poses.base.rotation
+        return ca.vertcat(rotation @ moment, rotation @ wrench[3:])
 
 
 @dataclass(frozen=True)
@@ -327,23 +345,33 @@ class _Kernels:
     @cached_property
     def wrench(self) -> ca.Function:
         """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
-        poses, motions = self._symbols
-        target, target_symbols = self.constraint.target_symbols()
-        multipliers = ca.SX.sym("multipliers", self.constraint.size)
-        moved = self.constraint.wrench_of(_moved(poses, motions), target, multipliers)
-        results = [self.constraint.wrench_of(poses, target, multipliers), *_at_rest(moved, motions, motions)]
-        return ca.Function("constraint_wrench", [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
+        return self._of_multipliers("constraint_wrench", SectionConstraint.wrench_of, with_multipliers=False)
 
     @cached_property
     def reaction(self) -> ca.Function:
         """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
+        return self._of_multipliers("constraint_reaction", SectionConstraint.reaction_of, with_multipliers=True)
+
+    @cached_property
+    def on_body(self) -> ca.Function:
+        """Poses and multipliers ↦ wrench on a body and its derivatives with the multipliers and the poses."""
+        return self._of_multipliers("constraint_on_body", SectionConstraint.on_body_of, with_multipliers=True)
+
+    def _of_multipliers(
+        self,
+        name: str,
+        written: Callable[[SectionConstraint, ConstraintPoses, HeldPose, Matrix], Matrix],
+        *,
+        with_multipliers: bool,
+    ) -> ca.Function:
+        """Poses and multipliers ↦ what is written in them and its derivatives, those with multipliers first."""
         poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         multipliers = ca.SX.sym("multipliers", self.constraint.size)
-        moved = self.constraint.reaction_of(_moved(poses, motions), target, multipliers)
-        derivatives = _at_rest(moved, [multipliers, *motions], motions)
-        results = [self.constraint.reaction_of(poses, target, multipliers), *derivatives]
-        return ca.Function("constraint_reaction", [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
+        moved = written(self.constraint, _moved(poses, motions), target, multipliers)
+        variables = [multipliers, *motions] if with_multipliers else motions
+        results = [written(self.constraint, poses, target, multipliers), *_at_rest(moved, variables, motions)]
+        return ca.Function(name, [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
 
 
 @lru_cache(maxsize=KEPT_KERNELS)

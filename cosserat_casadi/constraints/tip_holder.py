@@ -16,7 +16,7 @@ from cosserat_casadi.constraints.section_constraint import Coordinate, HeldDirec
 from cosserat_casadi.maths.numbers import Scalar, as_vector, known
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, JointRecord, SupportRecord
+from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, CarriedBody, JointRecord, SupportRecord
 from cosserat_casadi.scene.families import Kind, Kinds
 
 RecordType = TypeVar("RecordType", bound=JointRecord | SupportRecord)
@@ -74,7 +74,7 @@ class Joint(TipHolder[RecordType]):
         raise NotImplementedError(f"{type(self).__name__} has no coordinate")
 
 
-def place_of(record: JointRecord | SupportRecord) -> NumericPose:
+def place_of(record: JointRecord | SupportRecord | CarriedBody) -> NumericPose:
     """Pose of the tip in the world or in the body; without rotation where its record leaves that free."""
     orientation: Any = record.orientation
     if orientation is None:

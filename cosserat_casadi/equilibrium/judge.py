@@ -98,7 +98,7 @@ def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
     worst = int(np.argmax(gaps))
     share = gaps[worst]
     placed = closing[worst]
-    metres = share * placed.constraint.rod.length
+    metres = share * placed.constraint.length
     return f" The assembly is not closed: {placed.what} is {share:.2g} of its length, {metres:.3g} m, from its place."
 
 

@@ -28,7 +28,7 @@ d. Docs/theory.md, section 8.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -36,7 +36,7 @@ import casadi as ca
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import SMOOTHING, pair_kernel
-from cosserat_casadi.constraints.section_constraint import PoseVariations
+from cosserat_casadi.constraints.section_constraint import ConstraintPoses, PoseVariations
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -198,7 +198,8 @@ class Assembly:
             blocks.add(strains, strains, tangent.jacobian)
         for placed in self.constraints:
             self._add_constraint(blocks, placed)
-            self._add_constraint_wrench(blocks, placed)
+            if placed.carried is None:
+                self._add_constraint_wrench(blocks, placed)
         for floating in self.discrete.unloaded.floating_rods:
             self._add_turned_loads(blocks, floating.name)
         for borne in self._borne_loads:
@@ -242,7 +243,10 @@ class Assembly:
 
     def _of_floating(self, placed: PlacedConstraint, variations: PoseVariations) -> list[tuple[FrameName, Matrix]]:
         """Derivatives with the motions of those frames of a constraint that float: its rod's base, its other side."""
-        base = self.discrete.unloaded.floating_base(placed.rod)
+        if placed.carried is None:
+            base = self.discrete.unloaded.floating_base(placed.rod)
+        else:
+            base = placed.carried.frame
         derivatives = []
         if base is not None:
             derivatives.append((base, variations.base))
@@ -271,11 +275,11 @@ class Assembly:
     def _add_constraint(self, blocks: BlockMatrix, placed: PlacedConstraint) -> None:
         """Rows of a constraint: c_section δ, c_base B, c_frame B."""
         rows = self.discrete.multipliers(placed)
-        strains = self.unknowns.strain(placed.rod)
         variations = placed.constraint.residual_variation(self.system.poses(placed))
-        by_strain = variations.section @ self._section_motion(placed)
         closing = self._closing(placed.compliance)
-        blocks.add(rows, strains, column_at(by_strain, closing))
+        if placed.carried is None:
+            by_strain = variations.section @ self._section_motion(placed)
+            blocks.add(rows, self.unknowns.strain(placed.rod), column_at(by_strain, closing))
         for name, derivative in self._of_floating(placed, variations):
             deviation = self.discrete.deviation(name)
             by_deviation = derivative @ self.frame_poses[name].motion
@@ -354,11 +358,12 @@ class Assembly:
         """Wrench [moment about the origin; force] on every floating frame, 6×1, world axes, N m and N."""
         wrenches: dict[FrameName, Matrix] = {name: ca.DM.zeros(6, 1) for name in self.frames}
         for placed in self.constraints:
-            if placed.frame is None:
-                continue
-            poses = self.system.poses(placed)
-            reaction = placed.constraint.reaction(poses, self.system.multipliers(placed))
-            wrenches[placed.frame] = wrenches[placed.frame] + reaction
+            if placed.frame is not None:
+                reaction = placed.constraint.reaction(self.system.poses(placed), self.system.multipliers(placed))
+                wrenches[placed.frame] = wrenches[placed.frame] + reaction
+            if placed.carried is not None:
+                wrench = placed.constraint.on_body(self.system.poses(placed), self.system.multipliers(placed))
+                wrenches[placed.carried.frame] = wrenches[placed.carried.frame] + wrench
         for name in self.frames:
             if name.kind == "rod":
                 wrenches[name] = wrenches[name] + self._rod_reaction(name)
@@ -415,6 +420,9 @@ class Assembly:
         for placed in self.constraints:
             if placed.frame == name:
                 variations += self._reaction_variations(placed, by_motion)
+            if placed.carried is not None and placed.carried.frame == name:
+                of_wrench = placed.constraint.on_body_variation
+                variations += self._wrench_on_frame(placed, of_wrench, by_motion)[0]
         if name.kind == "rod":
             variations += self._rod_reaction_variations(name, by_motion)
         for load in self._body_loads[name]:
@@ -438,17 +446,26 @@ class Assembly:
     ) -> list[tuple[slice, Matrix]]:
         """Variation of a constraint's reaction with multipliers and strains; that with frames goes into by_motion."""
         constraint = placed.constraint
-        poses = self.system.poses(placed)
-        by_multipliers, by_poses = constraint.reaction_variation(poses, self.system.multipliers(placed))
-        variations = [(self.discrete.multipliers(placed), by_multipliers), *self._of_coordinate(placed, by_poses)]
-        for moved, derivative in self._of_floating(placed, by_poses):
-            by_motion[moved] = by_motion[moved] + derivative
+        variations, by_poses = self._wrench_on_frame(placed, constraint.reaction_variation, by_motion)
         # The wrench acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
-        if constraint.held.slides:
+        if constraint.held.slides and placed.carried is None:
             strains = self.unknowns.strain(placed.rod)
             by_strain = by_poses.section @ self._section_motion(placed)
             variations.append((strains, by_strain))
         return variations
+
+    def _wrench_on_frame(
+        self,
+        placed: PlacedConstraint,
+        varied: Callable[[ConstraintPoses, Matrix], tuple[Matrix, PoseVariations]],
+        by_motion: dict[FrameName, Matrix],
+    ) -> tuple[list[tuple[slice, Matrix]], PoseVariations]:
+        """Variation of a wrench of a constraint with its multipliers and coordinate, and with poses."""
+        by_multipliers, by_poses = varied(self.system.poses(placed), self.system.multipliers(placed))
+        for moved, derivative in self._of_floating(placed, by_poses):
+            by_motion[moved] = by_motion[moved] + derivative
+        variations = [(self.discrete.multipliers(placed), by_multipliers), *self._of_coordinate(placed, by_poses)]
+        return variations, by_poses
 
     def _rod_reaction_variations(
         self, name: FrameName, by_motion: dict[FrameName, Matrix]

@@ -99,7 +99,9 @@ class ContactPair:
 def named_pairs(scene: scenes.Scene) -> Iterator[tuple[RodContact, tuple[str, str]]]:
     """The contacts of a scene with the rods of each pair; a pair that several name belongs to the first of these."""
     ties: list[tuple[Any, Any]] = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
-    ties += [(joint.rod, ("body", joint.body)) for joint in scene.joints if joint.body is not None]
+    for joint in scene.joints:
+        ends = [("body", place.body) for place in joint.places] + ([joint.rod] if joint.rod else [])
+        ties += [(ends[0], end) for end in ends[1:]]
     taken = set()
     # A table that names its rods goes before one that stands for all.
     for contact in sorted(scene.rod_contacts, key=lambda record: record.rods is None):

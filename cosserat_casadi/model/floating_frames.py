@@ -7,7 +7,7 @@ Docs/theory.md, section 8.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -18,8 +18,9 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import CLAMPED, FLAT, confines_to_plane, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
+from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import place_of
-from cosserat_casadi.maths.pose import POSE_SIZE, NumericPose, Pose, numeric
+from cosserat_casadi.maths.pose import IDENTITY, POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import cross_matrix, matrix_to_quaternion, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.scene_rods import base_pose
@@ -65,6 +66,20 @@ class FloatingFrame:
 
     SIZE = POSE_SIZE
     """Number of unknowns."""
+
+
+class _Seat(NamedTuple):
+    """A joint of a body whose pose is looked for.
+
+    Attributes:
+        section: what the joint holds the body to, a section or a place of another body or the world, world pose.
+        place: of the joint in the body.
+        held: directions that it holds, in the axes of both where it is closed.
+    """
+
+    section: NumericPose
+    place: NumericPose
+    held: HeldDirections
 
 
 @dataclass(frozen=True)
@@ -125,7 +140,8 @@ class UnloadedScene:
         pushed = {velocity.owner for velocity in self.scene.velocities if velocity.rod is None}
         joints: dict[str | None, list[int]] = defaultdict(list)
         for index, joint in enumerate(self.scene.joints):
-            joints[joint.body].append(index)
+            for place in joint.places:
+                joints[place.body].append(index)
         return {
             body: indices[0]
             for body, indices in joints.items()
@@ -135,7 +151,9 @@ class UnloadedScene:
     def _is_rigid(self, index: int) -> bool:
         """Whether a joint fixes a body to a section that is no base."""
         joint = self.scene.joints[index]
-        return not joint.holds_base and JOINT_KINDS[joint.kind].directions(joint) is CLAMPED
+        if joint.carries is not None or joint.holds_base:
+            return False
+        return JOINT_KINDS[joint.kind].directions(joint) is CLAMPED
 
     def base(self, rod: str) -> NumericPose:
         """World pose of a rod's base."""
@@ -231,17 +249,71 @@ class UnloadedScene:
         return self._bodies[name]
 
     def _new_body_frame(self, body: scenes.Body) -> FloatingFrame:
-        all_joints = [joint for joint in self.scene.joints if joint.body == body.name]
-        rods = [self.rods[joint.rod] for joint in all_joints]
-        unit = max(rod.energy_unit for rod in rods)
-        length = max(rod.properties.length for rod in rods)
-        joints = self._placing_joints(body.name) or all_joints
-        start = self._closed(joints, length, self._mean_pose(joints, length))
+        joints = [joint for joint in self.scene.joints if body.name in [place.body for place in joint.places]]
+        unit, length = self.units([joint.rod for joint in joints if joint.rod])
+        placing = self._placing_joints(body.name) or [joint for joint in joints if joint.carries is None]
+        seats = [self._seat(joint, body.name) for joint in placing]
+        start = self._closed(seats, length)
+        if start is None:
+            # What joins it to other bodies and the world does not give way, as rods do.
+            rigid = [seat for joint, seat in zip(placing, seats, strict=True) if joint.carries is not None] or seats
+            start = self._closed(rigid, length) or self._mean_pose(rigid, length)
         return FloatingFrame(body, unit, length, start)
 
+    def units(self, rods: Sequence[str]) -> tuple[float, float]:
+        """The largest EI/ℓ, J, and length, m, of the rods of a body; of all rods where it has none."""
+        discrete = [self.rods[name] for name in rods or self.rods]
+        unit = max(rod.energy_unit for rod in discrete)
+        return unit, max(rod.properties.length for rod in discrete)
+
     def _placing_joints(self, body: str) -> list[scenes.Joint]:
-        """Joints of a body at sections of rods that do not start on bodies: their poses say where it is."""
-        return [joint for joint in self.scene.joints if joint.body == body and not self._starts_on_body(joint.rod)]
+        """Joints of a body that say where it is.
+
+        Those at sections of rods that do not start on bodies, in the world, and at bodies that are placed before it.
+        """
+        rank = self._ranks.get(body, len(self._ranks))
+        placing = []
+        for joint in self.scene.joints:
+            names = [place.body for place in joint.places]
+            if body not in names:
+                continue
+            others = [self._ranks.get(name, len(self._ranks)) for name in names if name != body]
+            if joint.rod:
+                says_where = not self._starts_on_body(joint.rod)
+            else:
+                says_where = all(other < rank for other in others)
+            if says_where:
+                placing.append(joint)
+        return placing
+
+    @cached_property
+    def _ranks(self) -> dict[str, int]:
+        """How many joints of bodies lie between each body and the world or a rod that does not start on a body."""
+        ranks: dict[str, int] = {}
+        at_rods = [joint for joint in self.scene.joints if joint.carries is None and joint.body is not None]
+        grounded = [joint.body for joint in at_rods if not self._starts_on_body(joint.rod)]
+        grounded += [joint.carries.body for joint in self.scene.joints if joint.carries and joint.body is None]
+        # Where no body is placed by others, rods that start on it are.
+        for placed_first in (grounded, [joint.body for joint in at_rods]):
+            ranks = {name: 0 for name in placed_first if name is not None} | ranks
+            for rank in range(1, len(self.scene.bodies)):
+                for joint in self.scene.joints:
+                    names = [place.body for place in joint.places]
+                    if any(ranks.get(name) == rank - 1 for name in names):
+                        ranks |= {name: rank for name in names if name not in ranks}
+        return ranks
+
+    def _seat(self, joint: scenes.Joint, body: str) -> _Seat:
+        """A joint as the body sees it whose pose is looked for."""
+        held = JOINT_KINDS[joint.kind].directions(joint)
+        place = place_of(joint)
+        if joint.carries is None:
+            return _Seat(self.section(joint.rod, joint.at), place, held)
+        carried = place_of(joint.carries)
+        if joint.carries.body == body:
+            carrier = IDENTITY if joint.body is None else self._body_frame(joint.body).start
+            return _Seat(carrier.then(place), carried, held)
+        return _Seat(self._body_frame(joint.carries.body).start.then(carried), place, held)
 
     def _starts_on_body(self, rod: str) -> bool:
         """Whether the base of a rod, or of one that carries it, is held to a body."""
@@ -250,25 +322,24 @@ class UnloadedScene:
             return self._starts_on_body(carrier)
         return any(joint.rod == rod and joint.holds_base and joint.body is not None for joint in self.scene.joints)
 
-    def _closed(self, joints: list[scenes.Joint], length: float, mean: NumericPose) -> NumericPose:
-        """Pose of a body next to a mean one in which all its joints are closed; the mean where there is none.
+    def _closed(self, seats: list[_Seat], length: float) -> NumericPose | None:
+        """Pose of a body next to a mean one in which all its joints are closed; None where there is none.
 
         What a joint leaves free, as the turn about its axis, is not asked to agree with the section. Newton's method
         with the smallest change of the pose that closes the linearised joints.
 
         Args:
-            joints: those of the body.
+            seats: the joints of the body.
             length: of the longest of their rods, m.
-            mean: pose to begin with.
         """
-        pose = mean
+        pose = self._mean_pose(seats, length)
         before = np.inf
         for correction in range(MOST_CORRECTIONS):
-            gaps = [self._gap(joint, pose, length) for joint in joints]
+            gaps = [self._gap(seat, pose, length) for seat in seats]
             rows = np.concatenate([rows for rows, _, _ in gaps])
             largest = float(np.abs(rows).max(initial=0.0))
             if largest <= CLOSED:
-                return pose if all(agrees for _, _, agrees in gaps) else mean
+                return pose if all(agrees for _, _, agrees in gaps) else None
             if correction >= FIRST_CORRECTIONS and largest > STALLED * before:
                 break
             before = largest
@@ -276,13 +347,13 @@ class UnloadedScene:
             change, *_ = np.linalg.lstsq(derivatives, -rows, rcond=FLAT)
             position = pose.position + length * change[3:]
             pose = NumericPose(position, quaternion_product(_quaternion(change[:3]), pose.quaternion))
-        return mean
+        return None
 
-    def _gap(self, joint: scenes.Joint, pose: NumericPose, length: float) -> tuple[FloatArray, FloatArray, bool]:
+    def _gap(self, seat: _Seat, pose: NumericPose, length: float) -> tuple[FloatArray, FloatArray, bool]:
         """Gap of a joint where its body has a pose, without unit.
 
         Args:
-            joint: the joint.
+            seat: the joint.
             pose: of the body.
             length: that displacements are divided by, m.
 
@@ -291,9 +362,7 @@ class UnloadedScene:
             of the body about its origin and its displacement over the length, world axes, (k, 6); and whether the
             axes that the joint holds point the same way.
         """
-        held = JOINT_KINDS[joint.kind].directions(joint)
-        place = place_of(joint)
-        section = self.section(joint.rod, joint.at)
+        section, place, held = seat
         arm = pose.rotation @ place.position
         to_section = section.rotation.T
         shift = to_section @ (pose.position + arm - section.position) / length
@@ -310,7 +379,7 @@ class UnloadedScene:
         agrees = bool(abs(np.trace(weights @ turned) - np.trace(weights)) <= FLAT)
         return rows, derivatives, agrees
 
-    def _mean_pose(self, joints: list[scenes.Joint], length: float) -> NumericPose:
+    def _mean_pose(self, seats: list[_Seat], length: float) -> NumericPose:
         """Pose of a body between those in which each section alone would close its joint.
 
         The rotation is the one that turns the arms of all joints, and the orientations of joints that hold one,
@@ -318,19 +387,18 @@ class UnloadedScene:
         singular value decomposition.
 
         Args:
-            joints: those of the body.
+            seats: the joints of the body.
             length: weight of an orientation against an arm, m.
         """
-        sections = [self.section(joint.rod, joint.at) for joint in joints]
-        arms = np.array([joint.position for joint in joints])
-        points = np.array([section.position for section in sections])
+        arms = np.array([seat.place.position for seat in seats])
+        points = np.array([seat.section.position for seat in seats])
         mean_arm = arms.mean(axis=0)
         mean_point = points.mean(axis=0)
         correlation = (points - mean_point).T @ (arms - mean_arm)
-        for joint, section in zip(joints, sections, strict=True):
+        for section, place, held in seats:
             # A joint that leaves the orientation free counts by its arm alone.
-            if JOINT_KINDS[joint.kind].directions(joint).rotations.size:
-                in_body = NumericPose(np.zeros(3), place_of(joint).quaternion)
+            if held.rotations.size:
+                in_body = NumericPose(np.zeros(3), place.quaternion)
                 wanted = section.then(in_body.inverse)
                 correlation = correlation + length**2 * wanted.rotation
         rotation = _nearest_rotation(correlation)

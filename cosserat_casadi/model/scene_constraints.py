@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -54,14 +54,27 @@ SAME_AXIS = 1e-14
 """Distance of two unit vectors that are one but for rounding."""
 
 
-@dataclass(frozen=True)
+class CarriedPlace(NamedTuple):
+    """A place of a body that a joint holds.
+
+    Attributes:
+        frame: of the body.
+        pose: of the place in the body; expressions where parameters set it.
+    """
+
+    frame: FrameName
+    pose: NumericPose | Pose
+
+
+@dataclass(frozen=True, eq=False)
 class PlacedConstraint:
     """A constraint of a scene.
 
     Attributes:
         constraint: its mechanics.
-        rod: name of the rod whose section it holds.
+        rod: name of the rod whose section it holds; empty where it holds a body.
         node: node of that section.
+        carried: the body that it holds instead of a section, with the place in it.
         frame: the floating frame on the other side; None for the world.
         joint: place of the joint in the scene's list; None of supports and clamped bases.
         at_base: whether it holds a base to the pose that the scene, or an input, gives it in the world.
@@ -77,6 +90,7 @@ class PlacedConstraint:
     frame: FrameName | None
     where: str
     what: str
+    carried: CarriedPlace | None = None
     compliance: Compliance = ASSEMBLED
     step_weight: float = FORCE_WEIGHT
     joint: int | None = None
@@ -92,7 +106,7 @@ class PlacedConstraint:
         """Unit of the coordinate as an unknown: a radian, or the length of the rod, m."""
         coordinate = self.constraint.coordinate
         assert coordinate is not None, "asked for of a joint with a coordinate"
-        return 1.0 if coordinate.turns else self.constraint.rod.length
+        return 1.0 if coordinate.turns else self.constraint.length
 
     @property
     def along_coordinate(self) -> int:
@@ -144,7 +158,11 @@ def written_constraints(
         turn = None
         if entry.where in axes_before:
             turn = _turn_of_axis(axes_before[entry.where], axes[entry.where])
-        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, pose=pose, turn=turn)))
+        carried = entry.carried
+        if carried is not None:
+            carried = carried._replace(pose=after[_carried_path(entry.where)])
+        constraint = replace(entry.constraint, at=at, pose=pose, turn=turn)
+        constraints.append(replace(entry, constraint=constraint, carried=carried))
     return constraints
 
 
@@ -206,6 +224,11 @@ def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
     for where, _, record in _holders(scene):
         quaternion = record.orientation or (1.0, 0.0, 0.0, 0.0)
         places[where] = written_pose(as_vector(record.position), unit_quaternion(quaternion))
+        carried = getattr(record, "carries", None)
+        if carried is not None:
+            places[_carried_path(where)] = written_pose(
+                as_vector(carried.position), unit_quaternion(carried.quaternion)
+            )
     for i, rod in enumerate(scene.rods):
         if rod.base.rod is not None:
             # The scene gives the base in the section; the constraint wants the section in the frame of the base.
@@ -217,6 +240,11 @@ def _base_path(scene: scenes.Scene, index: int) -> str:
     """Path of the table that says how the base of a rod is held: that of a joint, or that of the rod."""
     joint = scene.base_joints.get(scene.rods[index].name)
     return f"rods[{index}].base" if joint is None else f"joints[{joint}]"
+
+
+def _carried_path(where: str) -> str:
+    """Path of the place of a joint in the body that it carries."""
+    return f"{where}.carries"
 
 
 def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
@@ -255,7 +283,7 @@ class _Section:
         where, what = words
         return PlacedConstraint(
             constraint=SectionConstraint(
-                discrete_rod.properties, discrete_rod.energy_unit, self.at, directions, target
+                discrete_rod.properties.length, discrete_rod.energy_unit, self.at, directions, target
             ),
             rod=self.rod,
             node=discrete_rod.grid.node_at(self.at),
@@ -289,7 +317,7 @@ def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
 
 def _is_in_world(joint: scenes.Joint) -> bool:
     """Whether a joint holds a section in the world that is no base."""
-    return joint.body is None and not joint.holds_base
+    return joint.carries is None and joint.body is None and not joint.holds_base
 
 
 def _joint_in_world(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
@@ -394,8 +422,10 @@ def _with_coordinate(
 
 
 def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    """A section of a rod at a body, or a base in the world."""
+    """A section of a rod at a body, a base in the world, or a body at another one or in the world."""
     joint = unloaded.scene.joints[index]
+    if joint.carries is not None:
+        return _joint_of_bodies(unloaded, index)
     words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at {joint.body or 'its place'!r}")
     section = _Section(unloaded, joint.rod, joint.at)
     if joint.at_base:
@@ -411,6 +441,33 @@ def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     placed = section.held_to(target, _joint_directions(joint, coplanar), frame, words)
     in_a_plane = len(coplanar) > 1 and coplanar[0] != joint
     return _with_coordinate(placed, unloaded, index, target.rotation, NORMAL if in_a_plane else None)
+
+
+def _joint_of_bodies(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+    """A body at another body, or in the world."""
+    joint = unloaded.scene.joints[index]
+    assert joint.carries is not None, "asked for of a joint that carries a body"
+    carried = FrameName("body", joint.carries.body)
+    frame = None if joint.body is None else FrameName("body", joint.body)
+    target = place_of(joint)
+    place = place_of(joint.carries)
+    carrier = IDENTITY if frame is None else unloaded.frames[frame].start
+    # Q and −Q are one rotation: the sign of the place that is nearer to where the joint wants it.
+    wanted = carrier.then(target)
+    if unloaded.frames[carried].start.then(place).quaternion @ wanted.quaternion < 0:
+        target = NumericPose(target.position, -target.quaternion)
+    unit, length = unloaded.units([])
+    directions = JOINT_KINDS[joint.kind].directions(joint)
+    placed = PlacedConstraint(
+        constraint=SectionConstraint(length, unit, 0.0, directions, target),
+        rod="",
+        node=0,
+        frame=frame,
+        where=f"joints[{index}]",
+        what=f"{joint.carries.body!r} at {joint.body or 'its place in the world'!r}",
+        carried=CarriedPlace(carried, place),
+    )
+    return _with_coordinate(placed, unloaded, index, target.rotation)
 
 
 def _joint_directions(joint: scenes.Joint, coplanar: list[scenes.Joint]) -> HeldDirections:

@@ -45,17 +45,25 @@ def _joints(system: System, body: scenes.Body) -> FloatArray | None:
     """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
     points = []
     for i, joint in enumerate(system.discrete.scene.joints):
-        if joint.body != body.name:
-            continue
-        points.append(np.asarray(joint.position))
-        about = system.discrete.constraint(f"joints[{i}]").held.rotations
-        if about.shape[1] == 2:
-            # All but the turn about one axis is held: the body may turn about that line alone.
-            axis = place_of(joint).rotation @ np.cross(about[:, 0], about[:, 1])
-            points.append(np.add(joint.position, axis))
-        elif about.size:
-            return None
+        # Its end in the body, be it the one that carries or the one that is carried.
+        ends = [end for end, name in _ends(joint) if name == body.name]
+        for place in map(place_of, ends):
+            points.append(place.position)
+            about = system.discrete.constraint(f"joints[{i}]").held.rotations
+            if about.shape[1] == 2:
+                # All but the turn about one axis is held: the body may turn about that line alone.
+                axis = place.rotation @ np.cross(about[:, 0], about[:, 1])
+                points.append(place.position + axis)
+            elif about.size:
+                return None
     return np.array(points)
+
+
+def _ends(joint: scenes.Joint) -> Iterator[tuple[scenes.Joint | scenes.CarriedBody, str | None]]:
+    """The records that place a joint, with the bodies that they place it in."""
+    yield joint, joint.body
+    if joint.carries is not None:
+        yield joint.carries, joint.carries.body
 
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:

@@ -330,9 +330,19 @@ class System:
 
     def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that a constraint reads."""
-        section = self.section(placed.rod, placed.node)
-        base = self.base(placed.rod)
-        return ConstraintPoses(section, base, self._frame_of(placed), self.coordinate(placed))
+        base = self._held_base(placed)
+        return ConstraintPoses(self._held_section(placed), base, self._frame_of(placed), self.coordinate(placed))
+
+    def _held_section(self, placed: PlacedConstraint) -> Pose:
+        """Pose of what a constraint holds, in the base of its rod or in its body."""
+        if placed.carried is None:
+            return self.section(placed.rod, placed.node)
+        place = placed.carried.pose
+        return place if isinstance(place, Pose) else place.pose
+
+    def _held_base(self, placed: PlacedConstraint) -> Pose:
+        """World pose of the base of its rod, or of its body."""
+        return self.base(placed.rod) if placed.carried is None else self.frame(placed.carried.frame)
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
@@ -551,7 +561,7 @@ class System:
             return WrenchAt(constraint.at, wrench[3:], wrench[:3], follower=False)
         # Constant directions: the constraint costs its rod no more than a load of fixed direction.
         displacements = held.positions.shape[1]
-        force_unit = constraint.unit / constraint.rod.length
+        force_unit = constraint.unit / constraint.length
         force = force_unit * (_sparse(held.positions) @ multipliers[:displacements])
         if not held.rotations.size:
             return WrenchAt(constraint.at, force, None, follower=False)
@@ -563,7 +573,7 @@ class System:
 
         The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
         """
-        return ConstraintPoses(IDENTITY.pose, self.base(placed.rod), self._frame_of(placed), self.coordinate(placed))
+        return ConstraintPoses(IDENTITY.pose, self._held_base(placed), self._frame_of(placed), self.coordinate(placed))
 
     @cached_property
     def _base_R_world(self) -> dict[str, Matrix]:

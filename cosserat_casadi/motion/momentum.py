@@ -55,7 +55,9 @@ def _pieces(scene: Scene) -> int:
     """Number of parts of a scene that neither joints nor bases on other rods connect."""
     links = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
     # A body is no rod, even where it bears the name of one.
-    links += [(joint.rod, f"body {joint.body}") for joint in scene.joints if joint.body is not None]
+    for joint in scene.joints:
+        ends = [f"body {place.body}" for place in joint.places] + ([joint.rod] if joint.rod else [])
+        links += [(ends[0], end) for end in ends[1:]]
     names = [rod.name for rod in scene.rods] + [f"body {body.name}" for body in scene.bodies]
     piece_of = {name: number for number, name in enumerate(names)}
     for one, other in links:

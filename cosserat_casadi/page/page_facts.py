@@ -27,7 +27,7 @@ from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
 from cosserat_casadi.page.slider_ranges import Slider, movable, sliders
 from cosserat_casadi.plots.arrows import STYLES
 from cosserat_casadi.plots.colours import BODIES, OBSTACLES, TARGETS, actuator_colour, rod_colour
-from cosserat_casadi.plots.scenery import body_corners
+from cosserat_casadi.plots.scenery import body_corners, places_in
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
 
 DIGITS = 6
@@ -140,8 +140,7 @@ def _actuator(actuator: Any, index: int) -> dict[str, Any]:
 
 def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
     """Corners of the polygon that stands for a body, and its joints, in its own axes, m."""
-    joints = [joint.position for joint in scene.joints if joint.body == body.name]
-    return {"corners": rounded(body_corners(scene, body)), "joints": rounded(np.array(joints))}
+    return {"corners": rounded(body_corners(scene, body)), "joints": rounded(places_in(scene, body.name))}
 
 
 def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodShapes) -> dict[str, Any]:

@@ -159,13 +159,13 @@ def draw_bodies(canvas: Canvas, solution: Solution) -> None:
 def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     pose = solution.body(body.name)
     scene = solution.model.scene
-    joints = [joint for joint in scene.joints if joint.body == body.name]
-    points = in_world(pose, np.array([joint.position for joint in joints]))
+    joints = [(joint, place.position) for joint in scene.joints for place in joint.places if place.body == body.name]
+    points = in_world(pose, np.array([position for _, position in joints]))
     corners = in_world(pose, body_corners(scene, body))
     canvas.polygon(corners, BODIES)
     outline = np.concatenate([corners, corners[:1]])
     canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
-    for joint, point in zip(joints, points, strict=True):
+    for (joint, _), point in zip(joints, points, strict=True):
         canvas.markers(point[None], **_joint_style(JOINT_KINDS[joint.kind].directions(joint)))
 
 
@@ -177,9 +177,14 @@ def _joint_style(held: HeldDirections) -> dict[str, Any]:
     return FIXED if held.rotations.shape[1] == 3 else HINGE
 
 
+def places_in(scene: Scene, body: str) -> FloatArray:
+    """Places of the joints of a body in its axes, shape (k, 3), m."""
+    return np.array([place.position for joint in scene.joints for place in joint.places if place.body == body])
+
+
 def body_corners(scene: Scene, body: Any) -> FloatArray:
     """Corners of the polygon that stands for a body, in its own axes, shape (k, 3), m."""
-    points = np.array([joint.position for joint in scene.joints if joint.body == body.name])
+    points = places_in(scene, body.name)
     corners = points[_order_around_mean(points)]
     # A body on one joint has no extent but that between the joint and its centre of mass.
     if len(corners) < 2:

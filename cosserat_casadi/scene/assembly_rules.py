@@ -86,16 +86,31 @@ def _turns_about_its_axis(scene: SceneTables, name: str, rod: Table) -> bool:
 
 
 def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:
-    """A body has no joint: nothing would keep it where it is."""
-    # A list, as a faulty name may be what no set can hold.
-    bodies = [joint.get("body") for _, joint in scene.tables("joints")]
-    held = {body for body in bodies if isinstance(body, str)}
+    """A body has no joint, or bodies are joined to each other alone: nothing would keep them where they are."""
+    held: set[str] = set()
+    links = [links_of(joint) for _, joint in scene.tables("joints")]
+    more = True
+    while more:
+        before = len(held)
+        # What is no body, a rod or the world, holds.
+        held |= {name for link in links if any(end is None or end in held for end in link) for name in link if name}
+        more = len(held) > before
     for name, (i, _) in scene.named("bodies").items():
         if name not in held:
-            problem = f"nobody holds the body {shown(name)}: no joint names it"
+            named = any(name in link for link in links)
+            reason = "its joints lead to no rod and not to the world" if named else "no joint names it"
             # As JSON writes it, which TOML reads alike: a faulty name may hold anything.
             remedy = f"give it to a rod: [[joints]] with body = {json.dumps(name)} and a rod"
-            yield Fault(("bodies", i), problem, remedy)
+            yield Fault(("bodies", i), f"nobody holds the body {shown(name)}: {reason}", remedy)
+
+
+def links_of(joint: Table) -> tuple[str | None, str | None]:
+    """The bodies at the two ends of a joint; None for a rod or the world."""
+    carried = joint.get("carries")
+    bodies = (joint.get("body"), carried.get("body") if isinstance(carried, Mapping) else None)
+    # A faulty name may be what no set can hold.
+    first, second = (body if isinstance(body, str) else None for body in bodies)
+    return first, second
 
 
 def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:

@@ -6,14 +6,14 @@ A kind of support or joint is a record here and a class in `constraints/` that s
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.joint_ends import end_faults
 from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented, orientation_faults
@@ -225,8 +225,46 @@ between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 
         yield from orientation_faults(given)
 
 
+class CarriedBody(Oriented):
+    """The body that another body, or the world, carries by a joint, with its place in that body."""
+
+    example: ClassVar[str] = """\
+carries = { body = "platform", position = [0, 0, 0.1] }     # in a joint, instead of rod
+"""
+
+    body: str = Field(description="name of the body that is carried")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in that body, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the joint in that body, of norm 1, without unit"
+    )
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The orientation is given once."""
+        yield from orientation_faults(given)
+
+    @property
+    def orientation(self) -> Quadruple:
+        """Orientation of the joint in the body, w, x, y, z."""
+        return self.quaternion
+
+
+class JointPlace(NamedTuple):
+    """Where a joint is in a body.
+
+    Attributes:
+        body: name of the body.
+        position: of the joint in the body, m.
+    """
+
+    body: str
+    position: Triple
+
+
 class JointRecord(Oriented, Entry):
     """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names.
+
+    Instead of a section it may hold a body: in another body, or in the world.
 
     Attributes:
         turns_freely: whether the section may turn about every axis through it.
@@ -234,7 +272,6 @@ class JointRecord(Oriented, Entry):
 
     turns_freely: ClassVar[bool] = False
     references: ClassVar[Mapping[str, str]] = {"body": "bodies", "rod": "rods"}
-    instead: ClassVar[Mapping[str, str]] = {"rod": "between"}
 
     name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
     between: tuple[JointEnd, JointEnd] | None = Field(
@@ -247,7 +284,10 @@ class JointRecord(Oriented, Entry):
         description="name of the body; left out, the joint is in the world, or at X = 0 where the base of the rod is, "
         "in the world or on another rod",
     )
-    rod: str = Field(description="name of the jointed rod")
+    rod: str = Field("", description="name of the jointed rod; none where the joint carries a body")
+    carries: CarriedBody | None = Field(
+        None, description="body that is jointed instead of a rod: another body, or the world, carries it"
+    )
     at: Share = Field(1.0, description="abscissa X of the jointed section, without unit; 1 is the tip, 0 the base")
     position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the body or in the world, m")
     quaternion: Quaternion = Field(
@@ -264,6 +304,12 @@ class JointRecord(Oriented, Entry):
             for fault in end_faults(given["between"]):
                 yield fault.below(("between",))
             return
+        if "carries" in given:
+            for key in ("rod", "at"):
+                if key in given:
+                    yield Fault((key,), "stands beside carries", "a joint holds a section of a rod, or a body")
+        elif "rod" not in given:
+            yield Fault(("rod",), "missing", "name the rod, the two ends as between = …, or the body that it carries")
         if "body" in given:
             return
         if given.get("at") == 0:
@@ -276,7 +322,15 @@ class JointRecord(Oriented, Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """A base that a joint holds is not free, and starts at the section that carries it."""
+        """A base that a joint holds is not free, and starts at the section that carries it; bodies are there."""
+        carried = given.get("carries")
+        if isinstance(carried, Mapping) and isinstance(carried.get("body"), str):
+            bodies = scene.named("bodies")
+            if carried["body"] not in bodies:
+                problem = f"no body is named {shown(carried['body'])}"
+                yield Fault(("carries", "body"), problem, listing(bodies, "bodies"))
+            elif carried["body"] == given.get("body"):
+                yield Fault(("carries", "body"), "a body cannot carry itself", "name another body, or leave body out")
         name = given.get("rod")
         _, rod = scene.named("rods").get(name if isinstance(name, str) else "", (0, {}))
         base = rod.get("base")
@@ -306,6 +360,14 @@ class JointRecord(Oriented, Entry):
     def at_base(self) -> bool:
         """Whether it holds the base of its rod to what the base names, the world or another rod."""
         return self.body is None and self.holds_base
+
+    @property
+    def places(self) -> tuple[JointPlace, ...]:
+        """The bodies at its ends, with its places in them."""
+        places = () if self.body is None else (JointPlace(self.body, self.position),)
+        if self.carries is None:
+            return places
+        return (*places, JointPlace(self.carries.body, self.carries.position))
 
     @property
     def orientation(self) -> Quadruple:

@@ -18,7 +18,7 @@ Tables = dict[str, Any]
 
 
 def place_joints_by_their_ends(tables: Tables) -> None:
-    """Write joints that name two ends as joints of one section.
+    """Write joints that name two ends as joints of one section, or as joints that carry a body.
 
     The base of a rod at a section of another rod, or in the world, is placed there. Between two sections that are no
     bases stands a body without mass, fixed to the first. What cannot be read so is left for the records to refuse.
@@ -30,7 +30,9 @@ def place_joints_by_their_ends(tables: Tables) -> None:
         if not _are_two_tables(ends) or list(end_faults(ends)) or any(set(end) - KEYS for end in ends):
             continue
         rods = [end for end in ends if "rod" in end]
-        if len(rods) == 1:
+        if not rods:
+            written = _between_bodies(joint, ends)
+        elif len(rods) == 1:
             (other,) = [end for end in ends if "rod" not in end]
             written = _at_place(tables, joint, rods[0], other)
         else:
@@ -44,9 +46,10 @@ def end_faults(ends: Any) -> Iterator[Fault]:
     if not _are_two_tables(ends):
         return
     rods = [end for end in ends if "rod" in end]
-    if not rods:
-        remedy = 'one end at least is a section of a rod, between two bodies of a short one with strain = ["torsion"]'
-        yield Fault((), "joins no rod", remedy)
+    if all("world" in end for end in ends):
+        yield Fault((), "joins the world with itself", "name a rod or a body in one of the ends")
+    elif "body" in ends[0] and ends[0]["body"] == ends[1].get("body"):
+        yield Fault((), "joins a body with itself", "name another body, a rod or the world in one of the ends")
     elif len(rods) == 2 and all(_at(end) == 0 for end in rods):
         yield Fault((), "joins two bases", "start one of the rods from its other end")
     for number, end in enumerate(ends):
@@ -75,6 +78,16 @@ def _at_place(tables: Tables, joint: Tables, section: Table, other: Table) -> bo
     elif _at(section) == 0:
         return _put_base(tables, section["rod"], place)
     joint.update(place)
+    return True
+
+
+def _between_bodies(joint: Tables, ends: list[Table]) -> bool:
+    """A body at another body, or in the world, which carries it."""
+    first, second = ends if "world" not in ends[1] else ends[::-1]
+    if "body" in first:
+        joint["body"] = first["body"]
+    joint.update({key: first[key] for key in PLACE if key in first})
+    joint["carries"] = {key: value for key, value in second.items() if key in ("body", *PLACE)}
     return True
 
 

@@ -48,10 +48,7 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
         tables: the scene, whose order is that of the problems.
         applied: overrides, the last one first: a fault in a value that an override set is told of the override.
     """
-    errors = error.errors(include_url=False)
-    # What stands in place of a missing key has faults enough, or there would be the key.
-    told = [details for details in errors if not _has_another_key(details)]
-    faults = [_fault(details) for details in told or errors]
+    faults = [_fault(details) for details in error.errors(include_url=False)]
     order = _FileOrder(tables)
     faults.sort(key=order.position)
     return [problem_of(fault, applied) for fault in faults]
@@ -72,13 +69,6 @@ def _fault(details: ErrorDetails) -> Fault:
     if kind in ("extra_forbidden", "invalid_key"):
         return Fault(path, "unknown key", closest(str(location[-1]), keys_of(record)))
     return Fault(path, _problem_text(kind, details), _remedy(kind, path, record, details))
-
-
-def _has_another_key(details: ErrorDetails) -> bool:
-    """Whether a missing key has another one in its place."""
-    *table, key = details["loc"]
-    another = record_at(tuple(table)).instead.get(str(key))
-    return details["type"] == "missing" and another in details["input"]
 
 
 def _path_of(location: Path, kind: str) -> Path:

@@ -85,11 +85,9 @@ class Record(BaseModel):
     Attributes:
         example: the table as a scene has it, TOML, for the reference page. Names in it are those of the page: the rods
             "finger" and "arm", the body "platform", the load "push" and the actuator "cable".
-        instead: keys that may be missing, each with the key that stands in its place.
     """
 
     example: ClassVar[str] = ""
-    instead: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 

@@ -196,10 +196,10 @@ inputs = ["push.force", "cable.tension"]
     @property
     def rods_held_at_tips(self) -> set[str]:
         """Names of the rods whose tips a support or a joint holds; a body that no other joint holds goes along."""
-        bodies = [joint.body for joint in self.joints if joint.body is not None]
+        bodies = [place.body for joint in self.joints for place in joint.places if place.body is not None]
         holding = [joint for joint in self.joints if joint.body is None or bodies.count(joint.body) > 1]
         tips = [joint for joint in holding if joint.at == 1.0]
-        return {holder.rod for holder in (*self.supports, *tips)}
+        return {holder.rod for holder in (*self.supports, *tips) if holder.rod}
 
     @property
     def joints_with_coordinate(self) -> tuple[Joint, ...]:
@@ -209,12 +209,12 @@ inputs = ["push.force", "cable.tension"]
     @property
     def base_joints(self) -> dict[str, int]:
         """Place in the list of the joint that holds the base of a rod, for each rod with one without a body."""
-        return {joint.rod: index for index, joint in enumerate(self.joints) if joint.at_base}
+        return {joint.rod: index for index, joint in enumerate(self.joints) if joint.rod and joint.at_base}
 
     @property
     def jointed_bases(self) -> set[str]:
         """Names of the rods whose bases joints hold, be it to bodies: they float."""
-        return {joint.rod for joint in self.joints if joint.holds_base}
+        return {joint.rod for joint in self.joints if joint.rod and joint.holds_base}
 
     @property
     def has_contact(self) -> bool:
@@ -263,24 +263,33 @@ inputs = ["push.force", "cable.tension"]
         return self.simulation.start == "unloaded"
 
     def _swings(self, joint: Joint) -> bool:
-        """Whether a joint at a base lets its rod, and all rods and bodies on it, move without straining any."""
-        if not joint.holds_base or joint.keeps_place:
+        """Whether a joint lets a rod at its base, or a body, and all on it, move without straining any rod."""
+        if joint.keeps_place:
             return False
+        if joint.carries is None:
+            return joint.holds_base and self._dangles(joint, {joint.rod}, set())
+        return any(self._dangles(joint, set(), {place.body}) for place in joint.places)
+
+    def _dangles(self, joint: Joint, rods: set[str], bodies: set[str | None]) -> bool:
+        """Whether rods and bodies at one end of a joint, and all that they carry, are held by that joint alone."""
         others = [other for other in self.joints if other is not joint]
-        rods = {joint.rod}
-        bodies: set[str] = set()
+        among_bodies = [{other.body, other.carries.body} for other in others if other.carries is not None]
         more = True
         while more:
             before = len(rods) + len(bodies)
             rods |= {rod.name for rod in self.rods if rod.base.rod in rods}
             bodies |= {other.body for other in others if other.body is not None and other.rod in rods}
             rods |= {other.rod for other in others if other.holds_base and other.body in bodies}
+            bodies |= {body for link in among_bodies if link & bodies for body in link}
             more = len(rods) + len(bodies) > before
+        # None stands for the world, and what leads to the other end of the joint is held there.
+        ends = {joint.body, joint.carries.body} if joint.carries is not None else {None}
+        looped = None in bodies or ends <= bodies
         supported = any(support.rod in rods for support in self.supports)
-        tied = [other for other in others if not other.holds_base]
+        tied = [other for other in others if other.carries is None and not other.holds_base]
         in_world = any(other.rod in rods for other in tied if other.body is None)
         by_other_rods = any(other.rod not in rods for other in tied if other.body in bodies)
-        return not (supported or in_world or by_other_rods)
+        return not (looped or supported or in_world or by_other_rods)
 
     def with_motion_inputs(self) -> Scene:
         """The scene in which the inputs that its motions move are free as well, behind its free inputs."""

@@ -152,7 +152,7 @@ def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetrat
     """The cushion of every obstacle on every body that it concerns, in units of the rods that hold it."""
     records = {rod.name: rod for rod in scene.rods}
     for number, (body, obstacle) in enumerate(body_pairs(scene), start=1):
-        holding = [records[joint.rod] for joint in scene.joints if joint.body == body.name]
+        holding = [records[joint.rod] for joint in scene.joints if joint.rod and joint.body == body.name] or scene.rods
         unit = max(_unit(rod) * rod.length for rod in holding)
         length = max(rod.length for rod in holding)
         radius = ball_radius(body)
