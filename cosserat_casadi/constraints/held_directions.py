@@ -74,22 +74,34 @@ def upright(held: HeldDirections) -> HeldDirections:
     return replace(held, rotations=np.hstack([IN_PLANE, held.rotations]))
 
 
-def keeps_plane(held: HeldDirections) -> bool:
-    """Whether a body that is held to a section of a planar rod may be held in its plane by another such rod alone.
+def in_any_plane(held: HeldDirections, normal: FloatArray) -> HeldDirections:
+    """Held directions of what nothing takes out of a plane, of a body or a section, with its normal in their axes."""
+    along_normal = np.outer(normal, normal)
+    return HeldDirections(_basis((ALL - along_normal) @ held.positions), _basis(along_normal @ held.rotations), True)
 
-    Along the normal it does not move, and of its tilts out of the plane both are held or neither.
+
+def keeps_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
+    """Whether a body that is held so may be held in a plane by something else alone.
+
+    Along the normal, given in the axes of the directions, it does not move, and of its tilts out of the plane both are
+    held or neither.
     """
-    left = NORMAL - held.positions @ (held.positions.T @ NORMAL)
+    left = normal - held.positions @ (held.positions.T @ normal)
     if np.linalg.norm(left) > FLAT:
         return False
-    tilts = np.linalg.svd(IN_PLANE.T @ held.rotations, compute_uv=False)
+    tilts = _tilts(held, normal)
     return bool(np.all(tilts <= FLAT) or (len(tilts) == 2 and np.all(tilts >= 1 - FLAT)))
 
 
-def confines_to_plane(held: HeldDirections) -> bool:
-    """Whether what holds the base of a planar rod keeps it in its x–z plane, along the normal and against tilts."""
-    tilts = np.linalg.svd(IN_PLANE.T @ held.rotations, compute_uv=False)
-    return keeps_plane(held) and len(tilts) == 2 and bool(np.all(tilts >= 1 - FLAT))
+def confines(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
+    """Whether what is held so stays in a plane, along the normal and against tilts."""
+    tilts = _tilts(held, normal)
+    return keeps_plane(held, normal) and len(tilts) == 2 and bool(np.all(tilts >= 1 - FLAT))
+
+
+def _tilts(held: HeldDirections, normal: FloatArray) -> FloatArray:
+    """How much of two tilts out of a plane is held, shape (2,) or less."""
+    return np.asarray(np.linalg.svd(across(normal.tolist(), ALL).T @ held.rotations, compute_uv=False))
 
 
 def _basis(vectors: FloatArray) -> FloatArray:

@@ -348,20 +348,37 @@ class _Robot:
         return sum(link.inertia.mass for links in self.rods.values() for link in links)
 
     def _put_body(self, body: scenes.Body) -> bool:
-        """Hang a body on the first of its joints whose rod is there; whether there is one."""
+        """Hang a body on the first of its joints whose other end is there; whether there is one."""
+        frame = self.unloaded.body_frame(body.name).start
         for index, joint in enumerate(self.scene.joints):
-            if joint.body == body.name and not joint.holds_base and (joint.rod, 0.0) in self.carriers:
-                frame = self.unloaded.body_frame(body.name).start
-                carrier = self._link(joint.rod, joint.at)
-                joints = self._tree_joint(index, frame, frame.then(place_of(joint)).position, frame, -1.0)
-                # Several joints may pull it away from where this one alone would have it: this one is closed.
-                closed = carrier.frame.then(place_of(joint).inverse)
-                if joint.kind == "spherical":
-                    turned = frame.rotation @ np.array(joint.position, dtype=float)
-                    closed = NumericPose(carrier.frame.position - turned, frame.quaternion)
-                self._body(carrier, frame, body, joints, carrier.frame.inverse.then(closed))
-                return True
+            if body.name not in [place.body for place in joint.places] or joint.holds_base:
+                continue
+            is_carried = joint.carries is not None and joint.carries.body == body.name
+            place = place_of(joint.carries if joint.carries is not None and is_carried else joint)
+            end = self._other_end(joint, body.name)
+            if end is None:
+                continue
+            carrier, there = end
+            sense, axes = (1.0, carrier.frame) if is_carried else (-1.0, frame)
+            joints = self._tree_joint(index, frame, frame.then(place).position, axes, sense)
+            # Several joints may pull it away from where this one alone would have it: this one is closed.
+            closed = there.then(place.inverse)
+            if joint.kind == "spherical":
+                closed = NumericPose(there.position - frame.rotation @ place.position, frame.quaternion)
+            self._body(carrier, frame, body, joints, carrier.frame.inverse.then(closed))
+            return True
         return False
+
+    def _other_end(self, joint: Any, body: str) -> tuple[_Carrier, NumericPose] | None:
+        """What holds a body by a joint, and the place of the joint there, world axes; None where it is missing yet."""
+        if joint.carries is None:
+            if (joint.rod, 0.0) not in self.carriers:
+                return None
+            link = self._link(joint.rod, joint.at)
+            return link, link.frame
+        other, place = (joint.body, joint) if joint.carries.body == body else (joint.carries.body, joint.carries)
+        carrier = self.world if other is None else self.bodies.get(other)
+        return None if carrier is None else (carrier, carrier.frame.then(place_of(place)))
 
     def _body(
         self,
@@ -423,10 +440,11 @@ class _Robot:
         if effort is not None:
             self._control(f"{name}.{joint.effort_key}", effort, "motor", joint=name)
         if joint.prescribed:
-            stiffness = STIFF * self._bending(joint.rod) / self._length(joint.rod)
+            energy, length = self.unloaded.units([joint.rod] if joint.rod else [])
+            stiffness = STIFF * energy
             unit = "N m/rad"
             if joint.kind == "prismatic":
-                stiffness /= self._length(joint.rod) ** 2
+                stiffness /= length**2
                 unit = "N/m"
             gains = {"kp": _numbers(stiffness), "dampratio": "1"}
             self._control(
@@ -457,7 +475,12 @@ class _Robot:
     def _close(self, joint: Any, index: int) -> None:
         """A joint that the tree does not have, as constraints between sites."""
         name = joint.name or f"joint/{index}"
-        section = self._link(joint.rod, joint.at)
+        if joint.carries is None:
+            section = self._link(joint.rod, joint.at)
+            held = section.frame
+        else:
+            section = self.bodies[joint.carries.body]
+            held = section.frame.then(place_of(joint.carries))
         holder = self.bodies[joint.body] if joint.body else self.world
         place = holder.frame.then(place_of(joint))
         if joint.kind == "prismatic":
@@ -468,11 +491,11 @@ class _Robot:
         if joint.kind == "revolute":
             axis = np.array(joint.axis, dtype=float) / np.linalg.norm(joint.axis)
             in_place = place_of(joint).rotation.T @ axis
-            ends.append(_turned(0.1 * self._length(joint.rod) * in_place))
+            ends.append(_turned(0.1 * self.size * in_place))
             if joint.has_coordinate:
                 self._leave_out(name, "what acts along a hinge that closes a loop is missing")
         for number, end in enumerate(ends):
-            first = self._site(section, f"{name}/section/{number}", section.frame.then(end))
+            first = self._site(section, f"{name}/section/{number}", held.then(end))
             second = self._site(holder, f"{name}/holder/{number}", place.then(end))
             kind = "weld" if joint.kind == "fixed" else "connect"
             ET.SubElement(self.equalities, kind, site1=second, site2=first)

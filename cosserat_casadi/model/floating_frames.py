@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.held_directions import CLAMPED, FLAT, confines_to_plane, stays_in_plane
+from cosserat_casadi.constraints.held_directions import CLAMPED, FLAT, confines, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import place_of
@@ -226,7 +226,7 @@ class UnloadedScene:
         if found is None or self.records[rod].base.rod is not None:
             return False
         joint = self.scene.joints[found[0]]
-        return confines_to_plane(JOINT_KINDS[joint.kind].held(joint, found[1]))
+        return confines(JOINT_KINDS[joint.kind].held(joint, found[1]))
 
     @cached_property
     def all_in_parallel_planes(self) -> bool:

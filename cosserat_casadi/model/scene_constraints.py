@@ -17,6 +17,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import (
     CLAMPED,
     NORMAL,
+    in_any_plane,
     in_plane,
     keeps_plane,
     stays_in_plane,
@@ -33,6 +34,7 @@ from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
+from cosserat_casadi.model.loops_in_plane import closing_joints
 from cosserat_casadi.model.scene_rods import base_pose, unit_quaternion, written_base_pose
 from cosserat_casadi.scene.constraint_records import JointRecord
 
@@ -213,9 +215,14 @@ def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
 
 
 def decisive_axes(unloaded: UnloadedScene) -> set[int]:
-    """Joints whose axis or orientation decides which directions others hold: several on planar rods of one plane."""
+    """Joints whose axis or orientation decides which directions others hold: several of one plane."""
     joints = unloaded.scene.joints
-    return {i for i, joint in enumerate(joints) if len(list(_coplanar(unloaded, joint))) > 1}
+    closed = bool(closing_joints(unloaded))
+    return {
+        i
+        for i, joint in enumerate(joints)
+        if (closed and joint.carries is not None) or len(list(_coplanar(unloaded, joint))) > 1
+    }
 
 
 def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
@@ -263,7 +270,8 @@ def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
     carried_by_rods = {scene.base_joints.get(rod.name) for rod in unloaded.carried}
     elsewhere = {*carried_by_rods, *unloaded.riding.values()}
     between = [i for i, joint in enumerate(scene.joints) if not _is_in_world(joint) and i not in elsewhere]
-    joints = [_joint(unloaded, i) for i in between]
+    closing = closing_joints(unloaded)
+    joints = [_joint(unloaded, i, closing.get(i)) for i in between]
     return [*still, *bases, *joints, *carried]
 
 
@@ -421,11 +429,17 @@ def _with_coordinate(
     return replace(placed, joint=index, constraint=replace(placed.constraint, held=held, coordinate=coordinate))
 
 
-def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    """A section of a rod at a body, a base in the world, or a body at another one or in the world."""
+def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> PlacedConstraint:
+    """A section of a rod at a body, a base in the world, or a body at another one or in the world.
+
+    Args:
+        unloaded: the scene.
+        index: place of the joint in the scene's list.
+        normal: of the plane that others keep its body in, in the axes of what it holds, shape (3,); None in space.
+    """
     joint = unloaded.scene.joints[index]
     if joint.carries is not None:
-        return _joint_of_bodies(unloaded, index)
+        return _joint_of_bodies(unloaded, index, normal)
     words = (f"joints[{index}]", f"{_section_in_words(joint)} of {joint.rod!r} at {joint.body or 'its place'!r}")
     section = _Section(unloaded, joint.rod, joint.at)
     if joint.at_base:
@@ -438,12 +452,18 @@ def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
     frame = FrameName("body", joint.body)
     target = section.nearer_sign(place_of(joint), frame)
     coplanar = list(_coplanar(unloaded, joint))
-    placed = section.held_to(target, _joint_directions(joint, coplanar), frame, words)
-    in_a_plane = len(coplanar) > 1 and coplanar[0] != joint
+    in_a_plane = normal is not None or (len(coplanar) > 1 and coplanar[0] != joint)
+    directions = JOINT_KINDS[joint.kind].directions(joint)
+    if in_a_plane:
+        directions = in_plane(directions)
+    elif len(coplanar) > 1:
+        # Of planar rods that hold one body in their plane, only the first keeps it there.
+        directions = upright(directions)
+    placed = section.held_to(target, directions, frame, words)
     return _with_coordinate(placed, unloaded, index, target.rotation, NORMAL if in_a_plane else None)
 
 
-def _joint_of_bodies(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> PlacedConstraint:
     """A body at another body, or in the world."""
     joint = unloaded.scene.joints[index]
     assert joint.carries is not None, "asked for of a joint that carries a body"
@@ -458,6 +478,8 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
         target = NumericPose(target.position, -target.quaternion)
     unit, length = unloaded.units([])
     directions = JOINT_KINDS[joint.kind].directions(joint)
+    if normal is not None:
+        directions = in_any_plane(directions, normal)
     placed = PlacedConstraint(
         constraint=SectionConstraint(length, unit, 0.0, directions, target),
         rod="",
@@ -467,29 +489,16 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
         what=f"{joint.carries.body!r} at {joint.body or 'its place in the world'!r}",
         carried=CarriedPlace(carried, place),
     )
-    return _with_coordinate(placed, unloaded, index, target.rotation)
-
-
-def _joint_directions(joint: scenes.Joint, coplanar: list[scenes.Joint]) -> HeldDirections:
-    """Directions that a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
-
-    Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
-    """
-    directions: HeldDirections = JOINT_KINDS[joint.kind].directions(joint)
-    if len(coplanar) < 2:
-        return directions
-    if coplanar[0] != joint:
-        return in_plane(directions)
-    return upright(directions)
+    return _with_coordinate(placed, unloaded, index, target.rotation, normal)
 
 
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
     """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
-    plane = unloaded.plane(joint.rod)
+    plane = unloaded.plane(joint.rod) if joint.rod else None
     if joint.body is None or plane is None or not _moves_in_plane(joint):
         return
     for candidate in unloaded.scene.joints:
-        if candidate.body != joint.body or not _moves_in_plane(candidate):
+        if not candidate.rod or candidate.body != joint.body or not _moves_in_plane(candidate):
             continue
         if _shares_plane(unloaded, joint, plane, candidate):
             yield candidate

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import parse_scene
+from cosserat_casadi import parse_scene, scene_from_dict
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.mjcf.export import mjcf_of
 from tests.commands import cosserat_line
 from tests.mjcf.moved_chains import FINGER, SCENES, WEIGHT
+from tests.model.test_joints_of_bodies import pendulum
 
 
 def test_all_that_is_left_out_is_named() -> None:
@@ -93,6 +94,19 @@ def test_stops_are_ranges() -> None:
     (joint,) = [joint for joint in ET.fromstring(model.text).iter("joint") if joint.get("name") == "shoulder"]
     assert [float(end) for end in joint.get("range", "").split()] == [-1e6, 0.8]
     assert [sentence for sentence in model.left_out if sentence.startswith("shoulder: its stops")]
+
+
+def test_bodies_hang_on_bodies_and_on_the_world() -> None:
+    root = ET.fromstring(mjcf_of(scene_from_dict(pendulum()), 2).text)
+    upper = root.find("worldbody/body[@name='upper']")
+    assert upper is not None
+    lower = upper.find("body[@name='lower']")
+    assert lower is not None
+    assert upper.get("pos") == "0 0 1"
+    assert lower.get("pos") == "0 0 -0.5"
+    hinge = lower.find("joint")
+    assert hinge is not None
+    assert [hinge.get(key) for key in ("name", "type", "axis", "stiffness")] == ["elbow", "hinge", "0 1 0", "0.3"]
 
 
 def test_refusals() -> None:

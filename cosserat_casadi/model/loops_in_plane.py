@@ -1,0 +1,126 @@
+"""Loops of bodies in a plane: what their joints hold across it is held once.
+
+Hinges about one normal, slides across it and clamps keep bodies in a plane. Where such joints close a loop, with each
+other or with planar rods of the same plane, the last of them would hold across the plane what is held there already:
+it holds its body in the plane alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.held_directions import FLAT, confines, keeps_plane
+from cosserat_casadi.constraints.joints import JOINT_KINDS
+from cosserat_casadi.constraints.section_constraint import HeldDirections
+from cosserat_casadi.constraints.tip_holder import place_of
+from cosserat_casadi.maths.pose import IDENTITY, NumericPose
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene
+
+
+class _Link(NamedTuple):
+    """A joint between bodies, a rod in a plane, and the world.
+
+    Attributes:
+        number: place of the joint in the scene's list.
+        ends: names of the bodies; None for the world, in which a rod in a plane stands.
+        first: pose of the place at the first end, world axes.
+        second: that at the other end, which is the held one.
+        held: directions, in the axes of the held place.
+    """
+
+    number: int
+    ends: tuple[str | None, str | None]
+    first: NumericPose
+    second: NumericPose
+    held: HeldDirections
+
+    def fits(self, normal: FloatArray, length: float) -> bool:
+        """Whether its ends are in one plane, and it holds both of a tilt or neither."""
+        shift = abs(float(normal @ (self.second.position - self.first.position)))
+        tilt = np.abs(self.first.rotation.T @ normal - self.second.rotation.T @ normal).max()
+        return shift <= FLAT * length and tilt <= FLAT and keeps_plane(self.held, self.normal_in_place(normal))
+
+    def normal_in_place(self, normal: FloatArray) -> FloatArray:
+        """The normal in the axes of the held place, shape (3,)."""
+        return np.asarray(self.second.rotation.T @ normal)
+
+
+def closing_joints(unloaded: UnloadedScene) -> dict[int, FloatArray]:
+    """Joints that close a loop of bodies in a plane.
+
+    Returns:
+        the unit normal of the plane, in the axes of the held place, shape (3,), by the place of the joint in the
+        scene's list.
+    """
+    if all(joint.carries is None for joint in unloaded.scene.joints):
+        return {}
+    _, length = unloaded.units([])
+    # Rods come last: what holds a body in the plane without them leaves them free to bend.
+    links = [*_links_of_bodies(unloaded), *_links_of_rods(unloaded)]
+    closing: dict[int, FloatArray] = {}
+    for normal in _normals(links):
+        # Bodies that are kept in the plane together.
+        groups: list[set[str | None]] = []
+        for link in links:
+            if link.number in closing or not link.fits(normal, length):
+                continue
+            together = [group for group in groups if group & set(link.ends)]
+            if any(set(link.ends) <= group for group in together):
+                closing[link.number] = link.normal_in_place(normal)
+            elif confines(link.held, link.normal_in_place(normal)):
+                groups = [group for group in groups if group not in together]
+                groups.append(set(link.ends).union(*together))
+    return closing
+
+
+def _normals(links: list[_Link]) -> Iterator[FloatArray]:
+    """Unit vectors along the axes of hinges between bodies, world axes, those of one line once."""
+    found: list[FloatArray] = []
+    for link in links:
+        rotations = link.held.rotations
+        if rotations.shape[1] != 2:
+            continue
+        normal = link.second.rotation @ np.cross(rotations[:, 0], rotations[:, 1])
+        if all(np.linalg.norm(np.cross(normal, other)) > FLAT for other in found):
+            found.append(normal)
+            yield normal
+
+
+def _links_of_bodies(unloaded: UnloadedScene) -> Iterator[_Link]:
+    for number, joint in enumerate(unloaded.scene.joints):
+        if joint.carries is None:
+            continue
+        held = JOINT_KINDS[joint.kind].directions(joint)
+        carrier = IDENTITY if joint.body is None else _start(unloaded, joint.body)
+        first = carrier.then(place_of(joint))
+        second = _start(unloaded, joint.carries.body).then(place_of(joint.carries))
+        yield _Link(number, (joint.body, joint.carries.body), first, second, held)
+
+
+def _links_of_rods(unloaded: UnloadedScene) -> Iterator[_Link]:
+    for number, joint in enumerate(unloaded.scene.joints):
+        if joint.carries is not None or joint.body is None or joint.holds_base:
+            continue
+        plane = unloaded.plane(joint.rod)
+        if plane is None:
+            continue
+        held = JOINT_KINDS[joint.kind].directions(joint)
+        section = unloaded.section(joint.rod, joint.at)
+        # The section turns in its plane; what matters is its normal.
+        in_body = _start(unloaded, joint.body).then(place_of(joint))
+        yield _Link(number, (None, joint.body), _turned_free(in_body, section, joint), section, held)
+
+
+def _turned_free(in_body: NumericPose, section: NumericPose, joint: scenes.Joint) -> NumericPose:
+    """The place of a rod's joint in its body, with the axes of the section where the joint leaves these free."""
+    free = not JOINT_KINDS[joint.kind].directions(joint).rotations.size
+    return NumericPose(in_body.position, section.quaternion) if free else in_body
+
+
+def _start(unloaded: UnloadedScene, body: str) -> NumericPose:
+    return unloaded.frames[FrameName("body", body)].start

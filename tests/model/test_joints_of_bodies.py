@@ -1,0 +1,226 @@
+"""Joints without a rod at either end: pendulums and mechanisms of rigid bodies, against closed forms and SciPy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import SceneError, build, export, load, modes_of, scene_from_dict, simulate, solve
+from tests.model.test_base_joints import GRAVITY, link, scene
+
+MASSES, ARMS, INERTIAS = np.array([0.7, 0.4]), np.array([0.3, 0.2]), np.array([0.01, 0.004])
+"""Of two rigid links: kg, distance of the centre from the hinge above it, m, and moment of inertia about it, kg m²."""
+
+FIRST = 0.5
+"""Distance of the two hinges of the first link, m."""
+
+SPRING = 0.3
+"""Of the second hinge, N m/rad."""
+
+CRANK, COUPLER = 0.1, 0.3
+"""Lengths of a crank and of what couples it to a slider, m."""
+
+Y = [0, 1, 0]
+
+
+def hinge(carrier: dict[str, Any], carried: dict[str, Any], **changes: Any) -> dict[str, Any]:
+    return {"kind": "revolute", "axis": Y, "between": [carrier, carried], **changes}
+
+
+def body(number: int, **changes: Any) -> dict[str, Any]:
+    inertia = [INERTIAS[number], INERTIAS[number], 1e-3]
+    centre = {"mass": MASSES[number], "centre_of_mass": [0, 0, -ARMS[number]], "inertia": inertia}
+    return {"name": ("upper", "lower")[number], **centre, **changes}
+
+
+def pendulum(**changes: Any) -> dict[str, Any]:
+    """Two links that hang in the world, beside a rod."""
+    shoulder = hinge({"world": True, "position": [0, 0, 1]}, {"body": "upper"})
+    elbow = hinge({"body": "upper", "position": [0, 0, -FIRST]}, {"body": "lower"}, name="elbow", stiffness=SPRING)
+    beside = [link("a", base={"position": [1, 0, 0]})]
+    return scene(beside, [shoulder, elbow], **{"bodies": [body(0), body(1)], **changes})
+
+
+def slider_crank(angle: float = 0.3, **changes: Any) -> dict[str, Any]:
+    """A crank that is driven in the world, and pushes a slider, which a force holds against."""
+    joints = [
+        hinge({"world": True}, {"body": "arm"}, name="crank", angle=angle),
+        hinge({"body": "arm", "position": [CRANK, 0, 0]}, {"body": "coupler"}),
+        hinge({"body": "coupler", "position": [COUPLER, 0, 0]}, {"body": "slider"}),
+        {
+            "kind": "prismatic",
+            "axis": [1, 0, 0],
+            "between": [{"world": True, "position": [CRANK + COUPLER, 0, 0]}, {"body": "slider"}],
+        },
+    ]
+    joints[0]["between"][0]["position"] = [0, 0, 0]
+    solid = {"mass": 0.2, "inertia": [1e-3, 1e-3, 1e-3]}
+    bodies = [{"name": name, **solid} for name in ("arm", "coupler", "slider")]
+    push = {"name": "push", "kind": "body_wrench", "body": "slider", "force": [5.0, 0, 0]}
+    beside = [link("a", base={"position": [1, 0, 0]})]
+    return scene(beside, joints, **{"bodies": bodies, "loads": [push], "inputs": ["crank.angle"], **changes})
+
+
+def reach(angle: float) -> tuple[float, float]:
+    """Place of the slider, m, and its derivative with the angle of the crank."""
+    sine, cosine = CRANK * np.sin(angle), CRANK * np.cos(angle)
+    along = np.sqrt(COUPLER**2 - sine**2)
+    return cosine + along, -sine - sine * cosine / along
+
+
+@pytest.mark.parametrize(
+    "elbow",
+    [
+        {"kind": "spherical"},
+        {"kind": "prismatic", "axis": [0.3, 0.1, 1], "stiffness": 100.0},
+        {"kind": "prismatic", "axis": [0.3, 0.1, 1]},
+        {"kind": "revolute", "axis": [0.3, 1, 0], "angle": 0.2},
+        {"kind": "fixed"},
+    ],
+)
+def test_jacobian_vs_ad(elbow: dict[str, Any]) -> None:
+    tables = pendulum()
+    first = {"body": "upper", "position": [0, 0.1, -FIRST], "rotation_vector": [0.1, 0.2, 0.3]}
+    second = {"body": "lower", "position": [0, 0.02, 0.03], "rotation_vector": [0.3, 0, 0.1]}
+    tables["joints"][1] = {"name": "elbow", "between": [first, second], **elbow}
+    model = build(scene_from_dict(tables), moving=True)
+    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
+    symbol = ca.MX.sym("x", model.size)
+    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, model.pack(), 0.6), symbol)])(x).full()
+    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+
+
+def test_frequencies_of_a_double_pendulum() -> None:
+    """Those of M q̈ + K q = 0 in the angles of the links, which hang; those of the rod beside them come after."""
+    modes = modes_of(scene_from_dict(pendulum())).modes
+    (m1, m2), (l1, l2) = MASSES, ARMS
+    mass = np.diag(INERTIAS + MASSES * ARMS**2)
+    mass += m2 * np.array([[FIRST**2, FIRST * l2], [FIRST * l2, 0.0]])
+    stiffness = np.diag([(m1 * l1 + m2 * FIRST) * GRAVITY, m2 * l2 * GRAVITY]) + SPRING * np.array([[1, -1], [-1, 1]])
+    squared = np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)))
+    assert_allclose([2 * np.pi * mode.frequency for mode in modes[:2]], np.sqrt(squared), rtol=1e-9, atol=0)
+
+
+def test_double_pendulum_swings_as_scipy_says() -> None:
+    """Let go where it stands askew; the motion of a mechanism begins unloaded, as there is no other rest near."""
+    tables = pendulum(simulation={"duration": 0.5, "frames": 6, "tolerance": 1e-6})
+    tables["joints"][0]["between"][0]["rotation_vector"] = [0, -1.2, 0]
+    tables["joints"][1]["damping"] = 0.01
+    motion = simulate(scene_from_dict(tables))
+    assert motion.converged
+    (m1, m2), (l1, l2) = MASSES, ARMS
+    own = INERTIAS + MASSES * ARMS**2 + np.array([m2 * FIRST**2, 0.0])
+
+    def rates(_: float, y: Any) -> Any:
+        (a, b), (u, v) = y[:2], y[2:]
+        coupling = m2 * FIRST * l2
+        mass = np.array([[own[0], coupling * np.cos(a - b)], [coupling * np.cos(a - b), own[1]]])
+        swirl = coupling * np.sin(a - b) * np.array([-(v**2), u**2])
+        weight = -GRAVITY * np.array([(m1 * l1 + m2 * FIRST) * np.sin(a), m2 * l2 * np.sin(b)])
+        elbow = (SPRING * (a - b) + 0.01 * (u - v)) * np.array([-1, 1])
+        return [u, v, *np.linalg.solve(mass, swirl + weight + elbow)]
+
+    angle = solve_ivp(rates, [0, 0.5], [-1.2, -1.2, 0, 0], t_eval=motion.times, rtol=1e-10, atol=1e-12).y[0]
+    wanted = np.column_stack([-FIRST * np.sin(angle), 0 * angle, 1 - FIRST * np.cos(angle)])
+    assert_allclose(motion.body("lower").position, wanted, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("angle", [0.3, 2.5, -9.0])
+def test_slider_crank(angle: float) -> None:
+    """Its place in closed form; the moment of its drive by virtual work. The loop is closed in the plane alone."""
+    model = build(scene_from_dict(slider_crank()))
+    solution = solve(model, {"crank.angle": angle})
+    place, slope = reach(angle)
+    assert solution.converged
+    assert_allclose(solution.body("slider").position, [place, 0, 0], rtol=0, atol=1e-9)
+    assert_allclose(solution.joint("crank")["moment"], -5.0 * slope, rtol=1e-8, atol=0)
+    assert [placed.size for placed in model.discrete.constraints] == [6, 5, 5, 2]
+
+
+@pytest.mark.parametrize(
+    ("strain", "kind"), [("planar", "spherical"), ("planar", "revolute"), ("kirchhoff", "revolute")]
+)
+def test_crank_without_rods_bends_a_rod(strain: str, kind: str) -> None:
+    """It bends the rod as a slider at the pin of the crank would; a rod in the plane is held in it but once."""
+    rod = link("a", strain=strain, base={"position": [-0.1, 0, 0], "tangent": [1, 0, 0]})
+    pin = {"kind": kind, "between": [{"rod": "a"}, {"body": "arm", "position": [0.4, 0, 0]}]}
+    pin |= {"axis": Y} if kind == "revolute" else {}
+    crank = hinge({"world": True, "position": [0, 0, 0]}, {"body": "arm"}, name="crank", angle=0.3)
+    solution = solve(build(scene_from_dict(scene([rod], [crank, pin], bodies=[{"name": "arm"}], loads=[]))))
+    place = [0.4 * np.cos(0.3), 0, -0.4 * np.sin(0.3)]
+    held = {"rod": "a", "kind": "pinned", "position": place}
+    pinned = solve(build(scene_from_dict(scene([{**rod, "strain": "planar"}], [], loads=[], supports=[held]))))
+    assert solution.converged
+    assert_allclose(solution.tip().position, place, rtol=0, atol=1e-10)
+    assert_allclose(solution.pose([0.5]).position, pinned.pose([0.5]).position, rtol=0, atol=1e-9)
+
+
+def test_places_are_parameters() -> None:
+    """A link that is longer by a parameter is one that is longer in its table, in both of its places."""
+    tables = slider_crank(1.0, parameters=["pin.position", "pin.carries.position"])
+    tables["joints"][1]["name"] = "pin"
+    model = build(scene_from_dict(tables))
+    changed = {"pin.position": [0.12, 0, 0], "pin.carries.position": [-0.01, 0, 0]}
+    moved = solve(model, parameters=changed)
+    tables = slider_crank(1.0)
+    for end, place in zip(tables["joints"][1]["between"], changed.values(), strict=True):
+        end["position"] = place
+    assert_allclose(
+        moved.body("slider").position, solve(build(scene_from_dict(tables))).body("slider").position, rtol=0, atol=1e-9
+    )
+
+
+SMALL = {"modes": 1, "nodes": 4}
+
+
+def test_in_c(tmp_path: Path) -> None:
+    model = build(scene_from_dict(slider_crank(accuracy=SMALL)))
+    library = load(export(model, tmp_path / "crank"))
+    inputs = {"crank.angle": 2.0}
+    assert_allclose(library.solve(inputs).x, solve(model, inputs).x, rtol=0, atol=1e-10)
+
+
+@pytest.mark.slow
+def test_steps_in_c(tmp_path: Path) -> None:
+    tables = pendulum(simulation={"duration": 0.2, "frames": 2, "tolerance": 1e-5}, accuracy=SMALL)
+    tables["joints"][0]["between"][0]["rotation_vector"] = [0, -1.2, 0]
+    described = scene_from_dict(tables)
+    library = load(export(build(described, moving=True), tmp_path / "pendulum", dynamics=True))
+    state, memory = library.rest(), library.step_memory()
+    assert state is not None
+    for _ in range(100):
+        state = library.step(state, 2e-3, {}, memory=memory).state
+    there, _ = library.body["lower"](state.x, library.defaults)
+    assert_allclose(there.full().ravel(), simulate(described).body("lower").position[-1], rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("joint", "where", "problem"),
+    [
+        ({"between": [{"body": "upper"}, {"body": "upper"}]}, "joints[1].between", "joins a body with itself"),
+        ({"between": [{"world": True}, {"world": True}]}, "joints[1].between", "joins the world with itself"),
+        ({"carries": {"body": "nobody"}, "body": "upper"}, "joints[1].carries.body", "no body is named 'nobody'"),
+        ({"carries": {"body": "lower"}, "body": "upper", "rod": "a"}, "joints[1].rod", "stands beside carries"),
+    ],
+)
+def test_refusals(joint: dict[str, Any], where: str, problem: str) -> None:
+    tables = pendulum()
+    tables["joints"][1] = {"kind": "spherical", **joint}
+    with pytest.raises(SceneError) as refused:
+        scene_from_dict(tables)
+    assert (where, problem) in [(fault.where, fault.problem) for fault in refused.value.problems]
+
+
+def test_bodies_that_hold_each_other_alone_are_refused() -> None:
+    tables = pendulum()
+    tables["joints"] = tables["joints"][1:]
+    with pytest.raises(
+        SceneError, match="nobody holds the body 'upper': its joints lead to no rod and not to the world"
+    ):
+        scene_from_dict(tables)
