@@ -75,7 +75,7 @@ def upright(held: HeldDirections) -> HeldDirections:
 
 
 def in_any_plane(held: HeldDirections, normal: FloatArray) -> HeldDirections:
-    """Held directions of what nothing takes out of a plane, of a body or a section, with its normal in their axes."""
+    """Held directions of a body or section that nothing takes out of a plane, whose normal is in their axes."""
     along_normal = np.outer(normal, normal)
     return HeldDirections(_basis((ALL - along_normal) @ held.positions), _basis(along_normal @ held.rotations), True)
 
@@ -94,7 +94,7 @@ def keeps_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
 
 
 def confines(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
-    """Whether what is held so stays in a plane, along the normal and against tilts."""
+    """Whether a body or section that is held so stays in a plane, along the normal and against tilts."""
     tilts = _tilts(held, normal)
     return keeps_plane(held, normal) and len(tilts) == 2 and bool(np.all(tilts >= 1 - FLAT))
 

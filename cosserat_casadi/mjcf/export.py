@@ -370,7 +370,7 @@ class _Robot:
         return False
 
     def _other_end(self, joint: Any, body: str) -> tuple[_Carrier, NumericPose] | None:
-        """What holds a body by a joint, and the place of the joint there, world axes; None where it is missing yet."""
+        """The carrier that holds a body by a joint, if it is there, and the place of the joint on it, world axes."""
         if joint.carries is None:
             if (joint.rod, 0.0) not in self.carriers:
                 return None

@@ -323,7 +323,7 @@ class UnloadedScene:
         return any(joint.rod == rod and joint.holds_base and joint.body is not None for joint in self.scene.joints)
 
     def _closed(self, seats: list[_Seat], length: float) -> NumericPose | None:
-        """Pose of a body next to a mean one in which all its joints are closed; None where there is none.
+        """Pose of a body next to a mean one in which all its joints are closed, if there is one.
 
         What a joint leaves free, as the turn about its axis, is not asked to agree with the section. Newton's method
         with the smallest change of the pose that closes the linearised joints.
