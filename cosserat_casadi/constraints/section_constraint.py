@@ -364,7 +364,7 @@ class _Kernels:
         *,
         with_multipliers: bool,
     ) -> ca.Function:
-        """Poses and multipliers ↦ what is written in them and its derivatives, those with multipliers first."""
+        """Poses and multipliers ↦ a wrench and its derivatives, with the multipliers first where these are asked for."""
         poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         multipliers = ca.SX.sym("multipliers", self.constraint.size)
