@@ -435,7 +435,7 @@ def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> Pl
     Args:
         unloaded: the scene.
         index: place of the joint in the scene's list.
-        normal: of the plane that others keep its body in, in the axes of the section or place, shape (3,); None in space.
+        normal: of the plane that others keep its body in, in the axes of the section or place, shape (3,), or None.
     """
     joint = unloaded.scene.joints[index]
     if joint.carries is not None:

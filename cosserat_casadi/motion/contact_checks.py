@@ -13,7 +13,6 @@ from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.tip_paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -26,10 +25,6 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     if simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
-    sided = [pair.name for pair in OneSided(model).pairs]
-    if sided:
-        what = f"exact contact in motion does not go with slack cables or with stops of joints: {', '.join(sided)}"
-        yield Problem("obstacles", what, remedy)
     yield from _too_thin(model)
     moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
     if moving:

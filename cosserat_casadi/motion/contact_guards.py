@@ -61,6 +61,7 @@ class ContactPhase:
         forces_from: time before which forces may pull: after an impact stiff parts have to come to rest first, s.
         moment: beginning of the moment in which changes are counted, s.
         changes: changes in it.
+        closed: cables that are taut, and stops that hold their joints.
     """
 
     touches: Touches = ()
@@ -70,6 +71,7 @@ class ContactPhase:
     forces_from: float = -np.inf
     moment: float = -np.inf
     changes: int = 0
+    closed: tuple[bool, ...] = ()
 
 
 @dataclass(frozen=True)

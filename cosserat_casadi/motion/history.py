@@ -21,12 +21,12 @@ from cosserat_casadi.motion.contact_forces import Follower
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
-from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.sided_contacts import SidedContacts
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -288,7 +288,7 @@ class History:
         stretches = []
         for leg in self.legs:
             phases = leg.restart.phases
-            assert isinstance(phases, ContactPhase), "where rods touch exactly no cable goes slack"
+            assert isinstance(phases, ContactPhase), "where rods touch exactly phases are contacts"
             stretches.append(Stretch(leg.piece, phases.touches, leg.integration.steps, phases.laid))
         return ContactRecord(self.model, stretches, self.flight.to_model)
 
@@ -389,12 +389,14 @@ def integrated(
         if resume is not None and not isinstance(resume.phases, ContactPhase):
             first = resume.phases
         return switched(pairs, first)
-    contacts = ExactContacts(model)
+    switching = SidedContacts(model)
     if resume is not None and isinstance(resume.phases, ContactPhase):
-        follower = Follower(contacts.facings, resume.phases.touches)
+        follower = Follower(switching.contacts.facings, resume.phases.touches)
         follower.places = list(resume.places)
         phases = replace(resume.phases, follower=follower)
-    return switched(contacts, contacts.first_phases(x, inputs) if phases is None else phases)
+    elif phases is not None:
+        phases = switching.with_pairs(phases, x, inputs)
+    return switched(switching, switching.first_phases(x, inputs) if phases is None else phases)
 
 
 def _switched(

@@ -9,9 +9,10 @@ as low as those of exact contact that are not followed. An elastic pair takes no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Generic
 
 import casadi as ca
 import numpy as np
@@ -23,7 +24,7 @@ from cosserat_casadi.model.discrete_scene import CableOfLength, JointStop
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.contact_onset import LOW
-from cosserat_casadi.motion.event_restart import ContactEvent, Restart
+from cosserat_casadi.motion.event_restart import ContactEvent, HeldPhases, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.consistent_start import consistent_start, impact
@@ -62,6 +63,25 @@ class Pair:
     restitution: float = 0.0
     coordinate: int = -1
     sign: int = 0
+
+
+@dataclass(frozen=True)
+class Settled(Generic[HeldPhases]):
+    """How a motion goes on once it is decided which pairs are closed.
+
+    Attributes:
+        onward: the motion with these pairs.
+        closed: which are closed.
+        v: velocities after the pair that closes has taken its impact, shape (n,), 1/s.
+        lost: energy that it took, J.
+        events: changes of pairs.
+    """
+
+    onward: Restart[HeldPhases]
+    closed: Closed
+    v: FloatArray
+    lost: float
+    events: tuple[ContactEvent, ...]
 
 
 @dataclass(frozen=True)
@@ -152,7 +172,8 @@ class OneSided:
             return None
 
         def values(instant: Instant) -> FloatArray:
-            gaps = self.gaps(instant.x, piece.at(instant.time).value)
+            # Forces of contact come after the unknowns of the model.
+            gaps = self.gaps(instant.x[: self.model.size], piece.at(instant.time).value)
             return np.where(phases, self._softness * instant.x[self.rows], gaps)
 
         return values
@@ -182,6 +203,37 @@ class OneSided:
             guard: number of the pair whose guard came to zero; None for a start, or another piece of the inputs.
             interval: time after it in which the equations are smooth, s.
         """
+
+        def begin(closed: Closed, v: FloatArray) -> Restart[Closed]:
+            return Restart(consistent_start(self.equations(plain, piece, closed), at.time, at.x, v, interval), closed)
+
+        settled = self.settled(plain, piece, at, phases, guard, interval, begin, told=guard is not None)
+        return replace(settled.onward, lost=settled.lost, events=settled.events)
+
+    def settled(
+        self,
+        plain: MotionEquations,
+        piece: Piece,
+        at: Instant,
+        phases: Closed,
+        guard: int | None,
+        interval: float,
+        begin: Callable[[Closed, FloatArray], Restart[HeldPhases]],
+        *,
+        told: bool,
+    ) -> Settled[HeldPhases]:
+        """Which pairs are closed after an event, or at the begin of a motion, and how it goes on with them.
+
+        Args:
+            plain: equations of the model.
+            piece: of its inputs.
+            at: state before the event, in the unknowns of the model.
+            phases: which pairs are closed before it.
+            guard: number of the pair whose guard came to zero; None where it was none.
+            interval: time after it in which the equations are smooth, s.
+            begin: closed pairs and velocities ↦ how the motion goes on with them.
+            told: whether pairs that open are events.
+        """
         v = at.v
         impulse = 0.0
         before = phases
@@ -192,10 +244,10 @@ class OneSided:
             v, phases, impulse = self._after_impact(plain, piece, at, phases, guard, interval)
         tried = {phases}
         while True:
-            equations = self.equations(plain, piece, phases)
-            start = consistent_start(equations, at.time, at.x, v, interval)
-            opens = self._pulling(start.instant.x, phases)
-            back = [] if opens else self._soon_back(start.instant, phases, piece)
+            onward = begin(phases, v)
+            instant = onward.start.instant
+            opens = self._pulling(instant.x, phases)
+            back = [] if opens else self._soon_back(instant, phases, piece)
             others = _changed(phases, opens or back)
             # What rounding decides stays as it is.
             if others in tried:
@@ -204,21 +256,18 @@ class OneSided:
             phases = others
             if back:
                 v, _ = impact(self.equations(plain, piece, phases), at.time, at.x, v, interval)
-        if guard is None:
-            return Restart(start, phases)
         events: list[ContactEvent] = []
         lost = 0.0
-        if closes:
+        if guard is not None and closes:
             inputs = piece.at(at.time)
             lost = self._kinetic(at.x, at.v, inputs) - self._kinetic(at.x, v, inputs)
-            events.append(self._event(guard, at.time, closes=True, lost=lost, impulse=impulse))
+            events.append(self.event(guard, at.time, closes=True, lost=lost, impulse=impulse))
         left = [k for k, closed in enumerate(before) if closed and not phases[k]]
-        events += [self._event(k, at.time, closes=False) for k in left]
-        return Restart(start, phases, lost, events=tuple(events))
+        events += [self.event(k, at.time, closes=False) for k in left if told]
+        return Settled(onward, phases, v, lost, tuple(events))
 
-    def _event(
-        self, number: int, time: float, *, closes: bool, lost: float = 0.0, impulse: float = 0.0
-    ) -> ContactEvent:
+    def event(self, number: int, time: float, *, closes: bool, lost: float = 0.0, impulse: float = 0.0) -> ContactEvent:
+        """A pair that closes or opens, with the energy that its impact took, J, and its impulse without unit."""
         pair = self.pairs[number]
         words = ("stop_hit", "stop_left") if pair.side else ("taut", "slack")
         return ContactEvent(
@@ -253,7 +302,7 @@ class OneSided:
     def _soon_back(self, instant: Instant, phases: Closed, piece: Piece) -> list[int]:
         """Stops that joints leave and would be back at without having been off them by more than the least bounce."""
         back = []
-        gaps = self.gaps(instant.x, piece.at(instant.time).value) if self.pairs else ()
+        gaps = self.gaps(instant.x[: self.model.size], piece.at(instant.time).value) if self.pairs else ()
         for k, (pair, gap) in enumerate(zip(self.pairs, gaps, strict=True)):
             speed = pair.sign * instant.v[pair.coordinate]
             acceleration = pair.sign * instant.a[pair.coordinate]
@@ -272,6 +321,10 @@ class OneSided:
         value, rate, *_ = inputs
         kinetic, *_ = self.model.energies(x, v, value, rate)
         return float(kinetic)
+
+    def opening(self, x: FloatArray, v: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Rates of the gaps while inputs rest, shape (m,), 1/s."""
+        return np.asarray(self._gradients(x, inputs).reshape(len(self.pairs), -1, order="F") @ v)
 
     @cached_property
     def _softness(self) -> FloatArray:

@@ -1,0 +1,105 @@
+"""Exact contact beside cables that may go slack and stops of joints: one kind of event at a time, all of them kept.
+
+A cable that becomes taut, or a joint that meets its stop, takes its impact as if nothing touched; what touches then
+takes another one, in which taut cables and held joints stay so. Where both are plastic that is the impact of all at
+once, as a projection of velocities on a part of a plane follows one on the plane. A stop that a blow of an obstacle
+would make pull is left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_guards import ContactPhase
+from cosserat_casadi.motion.event_restart import Restart
+from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.one_sided import Closed, OneSided
+from cosserat_casadi.numerics.guards import THROUGH, Guards
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+
+@dataclass(frozen=True)
+class SidedContacts:
+    """Exact contacts of a model, with its cables that may go slack and the stops of its joints.
+
+    Attributes:
+        model: the model, built for a motion.
+    """
+
+    model: Model
+
+    @cached_property
+    def contacts(self) -> ExactContacts:
+        """Its contacts with obstacles."""
+        return ExactContacts(self.model)
+
+    @cached_property
+    def sided(self) -> OneSided:
+        """Its cables and stops."""
+        return OneSided(self.model)
+
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> ContactPhase:
+        """The contacts, and the closed pairs, at a state."""
+        return self.with_pairs(self.contacts.first_phases(x, inputs), x, inputs)
+
+    def with_pairs(self, phases: ContactPhase, x: FloatArray, inputs: FloatArray) -> ContactPhase:
+        """Contacts with the pairs that are closed at a state."""
+        return replace(phases, closed=self.sided.first_phases(x, inputs))
+
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> tuple[MotionEquations, Guards]:
+        """The equations of motion with these contacts and pairs, and the guards of the pairs, then of the contacts."""
+        equations, of_pairs = self.sided.arranged(plain, piece, phases.closed)
+        equations, of_contacts = self.contacts.arranged(equations, piece, phases)
+        if of_pairs is None:
+            return equations, of_contacts
+        pairs = of_pairs
+        return equations, lambda instant: np.concatenate([pairs(instant), of_contacts(instant)])
+
+    def restarted(
+        self,
+        plain: MotionEquations,
+        piece: Piece,
+        at: Instant,
+        phases: ContactPhase,
+        guard: int | None,
+        interval: float,
+    ) -> Restart[ContactPhase]:
+        """How a motion goes on, or begins; arguments are those of :meth:`ExactContacts.restarted`."""
+        size = self.model.size
+        before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
+        count = len(self.sided.pairs)
+        of_pair, of_contact = (guard, None) if guard is not None and guard < count else (None, guard)
+        if of_contact is not None:
+            of_contact -= count
+
+        def begin(closed: Closed, v: FloatArray) -> Restart[ContactPhase]:
+            equations = self.sided.equations(plain, piece, closed)
+            instant = Instant(before.time, before.x, v, before.a)
+            return self.contacts.restarted(equations, piece, instant, phases, of_contact, interval)
+
+        settled = self.sided.settled(
+            plain, piece, before, phases.closed, of_pair, interval, begin, told=guard is not None
+        )
+        onward, closed, events = settled.onward, settled.closed, settled.events
+        if any(event.kind == "impact" for event in onward.events):
+            for number, pair in enumerate(self.sided.pairs):
+                if not (closed[number] and pair.rigid):
+                    continue
+                without = (*closed[:number], False, *closed[number + 1 :])
+                free = begin(without, settled.v)
+                opening = self.sided.opening(before.x, free.start.instant.v[:size], piece.at(before.time).value)
+                if opening[number] * interval > THROUGH:
+                    onward, closed = free, without
+                    events = (*events, self.sided.event(number, before.time, closes=False))
+        return replace(
+            onward,
+            phases=replace(onward.phases, closed=closed),
+            lost=onward.lost + settled.lost,
+            events=(*events, *onward.events),
+        )

@@ -1,0 +1,114 @@
+"""Stops of joints beside obstacles without a width, in one motion: blows that meet, against SciPy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import scene_from_dict, simulate
+from cosserat_casadi.maths.typing import FloatArray
+from tests.model.test_base_joints import GRAVITY, link, scene
+from tests.model.test_joints_of_bodies import ARMS, FIRST, INERTIAS, MASSES, body, hinge
+
+WIDE = 1.2
+"""Angle of the upper link from the vertical at which it leans on its stop, rad."""
+
+RADIUS = 0.02
+"""Of the ball of the lower link, m."""
+
+FLOORS = {0.2: 0.66, 0.4: 0.54}
+"""Height of a floor, m, by the distance of the ball from its hinge, m: above the centre of percussion, and below it."""
+
+
+def leaning(reach: float) -> dict[str, Any]:
+    """Two links in the world: the upper one on its stop, the lower one let go, so that its ball strikes a floor."""
+    shoulder = hinge(
+        {"world": True, "position": [0, 0, 1], "rotation_vector": [0, -WIDE, 0]},
+        {"body": "upper"},
+        name="shoulder",
+        upper_stop=0.0,
+    )
+    elbow = hinge({"body": "upper", "position": [0, 0, -FIRST]}, {"body": "lower", "position": [0, 0, reach]})
+    lower = body(1, centre_of_mass=[0, 0, reach - ARMS[1]], radius=RADIUS)
+    plane = {
+        "name": "floor",
+        "kind": "plane",
+        "point": [0, 0, FLOORS[reach]],
+        "normal": [0, 0, 1],
+        "bodies": ["lower"],
+        "restitution": 1.0,
+    }
+    settings = {"duration": 0.2, "frames": 21, "start": "unloaded", "tolerance": 1e-6}
+    beside = [link("a", base={"position": [1, 0, 0]})]
+    return scene(
+        beside,
+        [shoulder, elbow],
+        accuracy={"modes": 1, "nodes": 4},
+        bodies=[body(0), lower],
+        obstacles=[plane],
+        simulation=settings,
+    )
+
+
+def mass(q: FloatArray) -> FloatArray:
+    coupling = MASSES[1] * FIRST * ARMS[1] * np.cos(q[0] - q[1])
+    first, second = INERTIAS + MASSES * ARMS**2
+    return np.array([[first + MASSES[1] * FIRST**2, coupling], [coupling, second]])
+
+
+def efforts(q: FloatArray, v: FloatArray) -> FloatArray:
+    swirl = MASSES[1] * FIRST * ARMS[1] * np.sin(q[0] - q[1]) * np.array([-(v[1] ** 2), v[0] ** 2])
+    arms = np.array([MASSES[0] * ARMS[0] + MASSES[1] * FIRST, MASSES[1] * ARMS[1]])
+    return np.asarray(swirl - GRAVITY * arms * np.sin(q))
+
+
+def gap(q: FloatArray, reach: float) -> float:
+    """Of the ball from the floor, m."""
+    return float(1 - FIRST * np.cos(q[0]) - reach * np.cos(q[1])) - FLOORS[reach] - RADIUS
+
+
+def rates(_: float, y: FloatArray, held: bool) -> FloatArray:
+    """Of angles and their rates; the upper link rests while it is held."""
+    q, v = y[:2], y[2:]
+    a = np.array([0.0, efforts(q, v)[1] / mass(q)[1, 1]]) if held else np.linalg.solve(mass(q), efforts(q, v))
+    return np.concatenate([v, a])
+
+
+def swung(reach: float, times: FloatArray) -> tuple[FloatArray, float, bool]:
+    """Angles of the links, time of the blow, and whether it takes the upper link off its stop."""
+
+    def strikes(_: float, y: FloatArray, held: bool) -> float:
+        return gap(y[:2], reach)
+
+    strikes.terminal = True  # type: ignore[attr-defined]
+    exact = {"rtol": 1e-11, "atol": 1e-12, "dense_output": True}
+    first = solve_ivp(rates, (0, times[-1]), [-WIDE, -WIDE, 0, 0], args=(True,), events=strikes, **exact)
+    q, v, blow = first.y[:2, -1], first.y[2:, -1], float(first.t[-1])
+    slope = np.array([FIRST, reach]) * np.sin(q)
+    answer = np.linalg.solve(mass(q), slope)
+    # The plane gives all of the speed back, the stop none.
+    freed = v - 2.0 * (slope @ v) / (slope @ answer) * answer
+    leaves = bool(freed[0] < 0.0)
+    onward = freed if leaves else np.array([0.0, -v[1]])
+    second = solve_ivp(rates, (blow, times[-1]), [*q, *onward], args=(not leaves,), **exact)
+    angles = [first.sol(time)[:2] if time < blow else second.sol(time)[:2] for time in times]
+    return np.array(angles), blow, leaves
+
+
+@pytest.mark.parametrize("reach", FLOORS)
+def test_a_blow_of_a_floor_takes_a_joint_off_its_stop_or_presses_it_on(reach: float) -> None:
+    motion = simulate(scene_from_dict(leaning(reach)))
+    assert motion.converged
+    angles, blow, leaves = swung(reach, motion.times)
+    assert leaves == (reach < 0.25)
+    kinds = [event.kind for event in motion.events]
+    assert kinds == (["stop_left", "impact"] if leaves else ["impact"])
+    assert_allclose([event.time for event in motion.events], blow, rtol=0, atol=1e-6)
+    elbow = np.column_stack([-FIRST * np.sin(angles[:, 0]), 0 * angles[:, 0], 1 - FIRST * np.cos(angles[:, 0])])
+    ball = elbow - reach * np.column_stack([np.sin(angles[:, 1]), 0 * angles[:, 1], np.cos(angles[:, 1])])
+    assert_allclose(motion.body("lower").position, ball, rtol=0, atol=2e-6)
+    assert np.abs(motion.energy.imbalance).max() < 1e-5
