@@ -364,7 +364,7 @@ class _Kernels:
         *,
         with_multipliers: bool,
     ) -> ca.Function:
-        """Poses and multipliers ↦ a wrench and its derivatives, those with the multipliers first if asked for."""
+        """Poses and multipliers ↦ a wrench and its derivatives, with the multipliers first if asked for."""
         poses, motions = self._symbols
         target, target_symbols = self.constraint.target_symbols()
         multipliers = ca.SX.sym("multipliers", self.constraint.size)

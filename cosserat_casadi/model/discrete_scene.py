@@ -48,6 +48,9 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
 from cosserat_casadi.scene.input_fields import InputField
 
+UNEVEN = 1e4
+"""Largest EI/ℓ, over the least of a scene, that scales equations: what soft rods bear is rounding in a stiffer unit."""
+
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
 
@@ -609,9 +612,13 @@ def discrete_scene(
 ) -> DiscreteScene:
     """Constant matrices of every rod of a scene, be it for a motion."""
     rods = {}
-    for rod in scene.rods:
-        properties = replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name))
-        rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
+    every = [replace(rod_properties(rod), fixed_masses=fixed_masses(scene, rod.name)) for rod in scene.rods]
+    softest = min(properties.bending_stiffness / properties.length for properties in every)
+    for properties in every:
+        largest = UNEVEN * softest * properties.length
+        if properties.bending_stiffness > largest:
+            properties = replace(properties, largest_unit=largest)
+        rods[properties.name] = DiscreteRod(properties, discretisation[properties.name])
     return DiscreteScene(scene, layout, rods, moving=moving)
 
 

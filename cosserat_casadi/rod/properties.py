@@ -111,6 +111,7 @@ class RodProperties:
         ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
         nominal: the rod with the numbers that scale the equations; None where this record holds them itself.
         fixed_masses: masses that are fixed to sections.
+        largest_unit: EI that scales the equations at most, N m²; infinite but for a rod far stiffer than others.
     """
 
     name: str
@@ -131,6 +132,7 @@ class RodProperties:
     ratio: Matrix | None = None
     nominal: RodProperties | None = None
     fixed_masses: tuple[FixedMass, ...] = ()
+    largest_unit: float = np.inf
 
     def intrinsic_strain(self, X: Numbers) -> Numbers:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""
@@ -168,14 +170,14 @@ class RodProperties:
     def bending_stiffness(self) -> float:
         """EI that makes the model dimensionless, N m²: mean of the smallest bending or torsion stiffness.
 
-        A rod that admits neither takes H ℓ² of its softest linear strain.
+        A rod that admits neither takes H ℓ² of its softest linear strain. One that is far stiffer than other rods of its
+        scene is scaled by these.
         """
         mean = self.mean_hooke
         angular = [mean[i] for i in self.admitted if i < 3]
-        if angular:
-            return float(min(angular))
         linear = [mean[i] * self.length**2 for i in self.admitted]
-        return float(min(linear))
+        scaling = self.nominal or self
+        return float(min(*(angular or linear), scaling.largest_unit))
 
     @cached_property
     def turning_axes(self) -> tuple[int, ...]:

@@ -131,6 +131,20 @@ def test_double_pendulum_swings_as_scipy_says() -> None:
     assert_allclose(motion.body("lower").position, wanted, rtol=0, atol=1e-6)
 
 
+@pytest.mark.parametrize("modulus", [2e10, 2e14])
+def test_how_stiff_a_link_is_does_not_matter(modulus: float) -> None:
+    """A rod that only twists, beside one of 2 MPa: its own stiffness would hide what the other bears."""
+    stiff = link("a", modulus, strain=["torsion"], base={"tangent": [1, 0, 0]})
+    soft = link("b", 2e6, strain="kirchhoff")
+    shoulder = {"rod": "a", "at": 0.0, "kind": "revolute", "axis": Y, "stiffness": 1.0}
+    elbow = hinge({"rod": "a"}, {"rod": "b", "at": 0.0}, stiffness=1.0)
+    solution = solve(build(scene_from_dict(scene([stiff, soft], [shoulder, elbow]))))
+    assert solution.converged
+    assert solution.iterations < 50
+    # The place of the same chain with a link of 200 MPa, which twists as little.
+    assert_allclose(solution.tip("b").position, [0.534588785, 0, -0.638986714], rtol=0, atol=1e-8)
+
+
 @pytest.mark.parametrize("angle", [0.3, 2.5, -9.0])
 def test_slider_crank(angle: float) -> None:
     """Its place in closed form; the moment of its drive by virtual work. The loop is closed in the plane alone."""
