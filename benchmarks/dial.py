@@ -24,7 +24,7 @@ from typing import Annotated
 import numpy as np
 import typer
 from dial_report import Results, write_results
-from random_rods import DRAWN, ROD, scene_at, tables
+from random_rods import ROD, scene_at, tables
 from rich.progress import Progress
 from rows import append, read
 
@@ -39,6 +39,7 @@ from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.rod.discretisation import Discretisation
 from tests.fuzz.verdict import evaluate
 from tests.pose_errors import pose_error
+from tests.reference.robot_scenes import robot_scene
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
 from tests.shooting_near import shoot
 
@@ -138,7 +139,7 @@ def run_scene(seed: int, cold: bool, what: str) -> list[Row]:
     if not found:
         return rows
     finer = found[-1] if what == "rods" else far_finer(found[-1])
-    if what == "robots" and (weak := evaluate(DRAWN[what](seed), finer).weak) > WEAK:
+    if what == "robots" and (weak := evaluate(robot_scene(seed), finer).weak) > WEAK:
         print(f"robot {seed} is left out: its far finer solution violates the weak form by {weak:.1e}")
         return []
     truth, reference = true_tip(finer) if what == "rods" else (tip(finer), "finer")

@@ -34,6 +34,7 @@ from cosserat_casadi.numerics.collocation import Collocation, gauss, radau  # no
 from tests.conftest import case_files  # noqa: E402
 from tests.model import test_joint_coordinates as joint_coordinates  # noqa: E402
 from tests.model import test_joint_stops as joint_stops  # noqa: E402
+from tests.model import test_joints_of_bodies as joints_of_bodies  # noqa: E402
 from tests.motion import transients  # noqa: E402
 from tests.motion.stepping import moving_model, orders, stepped  # noqa: E402
 from tests.motion.test_loops_in_motion import swayed  # noqa: E402
@@ -243,6 +244,10 @@ def literature() -> Iterator[Row]:
     first, _ = joint_coordinates.angles_of_two_links(timed.motion.times)
     distances = np.linalg.norm(timed.motion.tip("a").position - joint_coordinates.tip_of_first_link(first), axis=1)
     yield row_of(timed, "two stiff links, motor, spring and damper", "Lagrange's equations, RK45", distances, 1e-9)
+
+    timed = simulated(joints_of_bodies.let_go(1e-4))
+    distances = np.linalg.norm(timed.motion.body("lower").position - joints_of_bodies.elbow(timed.motion.times), axis=1)
+    yield row_of(timed, "two rigid links, spring and damper", "Lagrange's equations, RK45", distances, 1e-9)
 
     timed = simulated(joint_stops.lever(tolerance=1e-4, **joint_stops.ELASTIC))
     turned = joint_stops.angles(timed.motion) - joint_stops.elastic_reference(timed.motion.times)

@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi import Scene, scene_from_dict
 from tests.reference.material_scenes import make_of_matter
 from tests.reference.random_scenes import random_scene
-from tests.reference.robot_scenes import robot_scene
+from tests.reference.robot_scenes import on_a_hub, robot_scene
 from tests.reference.rods import rod_of
 
 ROD = "rod"
@@ -36,7 +36,13 @@ def tables_of_matter(seed: int) -> dict[str, Any]:
     return scene
 
 
-DRAWN = {"rods": tables, "matter": tables_of_matter, "robots": robot_scene}
+def robots(seed: int) -> dict[str, Any]:
+    """Robots, of which every third has its joint between the world and a body."""
+    scene = robot_scene(seed)
+    return on_a_hub(scene) if seed % 3 == 0 and "joints" in scene else scene
+
+
+DRAWN = {"rods": tables, "matter": tables_of_matter, "robots": robots}
 """What is drawn; robots have disks, straight tendons, joints, stops and drives."""
 
 

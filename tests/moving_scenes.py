@@ -100,6 +100,21 @@ def _free_with_body() -> Tables:
     return scene(rod(base=start), loads=[WEIGHT, PUSH], bodies=[PLATE], joints=[joint("a", "spherical")])
 
 
+def _body_on_a_body() -> Tables:
+    """A plate on a rod that carries another one by a hinge, which a spring and a ball hold in the world."""
+    arm = {"body": "plate", "position": [0.1, 0.02, 0.03], "rotation_vector": [0.1, 0.2, 0.3]}
+    hinge = {"kind": "revolute", "axis": [0.3, -0.5, 0.8]}
+    held = {"kind": "prismatic", "axis": [0.2, 0.9, 0.1], "stiffness": 30.0}
+    joints = [
+        joint("a"),
+        {**hinge, "between": [arm, {"body": "second", "position": [0, 0.04, 0.0]}]},
+        {**held, "between": [{"world": True, "position": [0.1, 0.0, 0.9]}, {"body": "third"}]},
+        {"kind": "spherical", "between": [{"body": "second", "position": [0.1, 0, 0]}, {"body": "third"}]},
+    ]
+    bodies = [PLATE, *({**PLATE, "name": name} for name in ("second", "third"))]
+    return scene(rod(strain="reissner"), loads=[WEIGHT, PULL], bodies=bodies, joints=joints)
+
+
 def _supported(kind: str) -> Tables:
     place = {"rod": "a", "kind": kind, "position": [0.2, 0.1, 0.7]}
     if kind == "clamped":
@@ -161,6 +176,7 @@ FAMILIES: dict[str, Callable[[], Tables]] = {
     "free": _free,
     "free with body": _free_with_body,
     "body inside": lambda: scene(rod(), loads=[WEIGHT, PULL], bodies=[PLATE], joints=[joint("a", at=0.4)]),
+    "body on a body": _body_on_a_body,
     "disks": _with_disks,
     "disks drawn out": lambda: _driven("length", disks=[dict(DISKS)]),
     "through holes": lambda: _driven("length", course={"holes": [0.4, 1.0], "friction": 0.2}),

@@ -170,8 +170,8 @@ class RodProperties:
     def bending_stiffness(self) -> float:
         """EI that makes the model dimensionless, N m²: mean of the smallest bending or torsion stiffness.
 
-        A rod that admits neither takes H ℓ² of its softest linear strain. One that is far stiffer than other rods of its
-        scene is scaled by these.
+        A rod that admits neither takes H ℓ² of its softest linear strain. One that is far stiffer than another of its
+        scene is scaled by that.
         """
         mean = self.mean_hooke
         angular = [mean[i] for i in self.admitted if i < 3]

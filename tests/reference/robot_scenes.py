@@ -78,6 +78,18 @@ def _driven(joint: Table) -> Table:
     return {**held, "angle" if joint["kind"] == "revolute" else "displacement": joint["rest"]}
 
 
+def on_a_hub(tables: Table) -> Table:
+    """The robot whose joint stands between the world and a body without mass, to which the base is fixed."""
+    (joint,) = tables["joints"]
+    (rod,) = tables["rods"]
+    base = {"position": [0.0, 0.0, 0.0], **rod.get("base", {})}
+    place = base.pop("position")
+    free = {key: entry for key, entry in joint.items() if key not in ("rod", "at")}
+    hinge = {**free, "between": [{"world": True, "position": place}, {"body": "hub"}]}
+    fixed = {"kind": "fixed", "rod": "rod", "at": 0.0, "body": "hub", **base}
+    return {**tables, "joints": [hinge, fixed], "bodies": [{"name": "hub"}]}
+
+
 def as_clamped(tables: Table, solution: Solution) -> tuple[RodData, Array, Array]:
     """The clamped rod under point loads that a robot in equilibrium is, and the wrench on its base, N and N m."""
     points = list(tables["loads"])
