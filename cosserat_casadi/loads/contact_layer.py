@@ -39,6 +39,7 @@ from typing import Any, Literal, final
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.load import Rubbing, Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
 from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, stacked_rows
@@ -57,9 +58,6 @@ HISTORY = 12
 
 NOTHING = 1e-9
 """Way along an obstacle, in widths, that counts as none."""
-
-ROUNDED = 1e-2
-"""Share of its radius that the rim of a disk, and sine of the angle that its face, is rounded by."""
 
 
 class ContactLayer(ObstacleLoadRecord):
@@ -289,15 +287,7 @@ def _stiffness(load: ContactLayer) -> Matrix | float:
 
 def _support(load: ContactLayer, section: Section, normal: Matrix) -> tuple[Matrix, Matrix]:
     """How far a disk reaches against the normal, 1×1, m, and from its centre to where it does, 3×1, m."""
-    radius, half = load.radius, load.thickness / 2
-    axis = section.rotation[:, 2]
-    slant = ca.dot(normal, axis)
-    flattened = (1 - ROUNDED**2) * slant
-    across = ca.sqrt(1 - flattened * slant)
-    along = ca.sqrt(slant**2 + ROUNDED**2)
-    reach = radius * across + half * (along - ROUNDED)
-    touching = -radius / across * (normal - flattened * axis) - half * slant / along * axis
-    return reach, touching
+    return disk_reach(normal, section.rotation[:, 2], load.radius, load.thickness)
 
 
 def push_on_disk(load: ContactLayer) -> ca.Function:

@@ -12,6 +12,7 @@ from typing import ClassVar, Literal, final
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.load import Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
 from cosserat_casadi.maths.numbers import Numbers, known
@@ -32,6 +33,7 @@ class Penetration(ObstacleLoadRecord):
     kind: Literal["penetration"] = "penetration"
     stiffness: float
     radius: float = 0.0
+    thickness: float | None = None
     raised: tuple[tuple[float, ...]] = ((0.0,),)
 
 
@@ -48,7 +50,10 @@ class PenetrationLoad(ObstacleLoad[Penetration]):
     def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """k/3 (ρ − d)³, J/m, or J of a body."""
         distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
-        if load.body is not None:
+        if load.thickness is not None:
+            normal = ca.gradient(distance, section.position)
+            depth = disk_reach(normal, section.rotation[:, 2], load.radius, load.thickness)[0] - distance
+        elif load.body is not None:
             depth = load.radius - distance
         else:
             radius, raised = section.data[0], section.data[1]

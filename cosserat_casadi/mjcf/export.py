@@ -396,7 +396,10 @@ class _Robot:
         bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns_body(body.name))
         radius = body.radius or 0.02 * self.size
         style = {"contype": str(bits), "conaffinity": "0", "rgba": "0.5 0.5 0.5 1"}
-        ET.SubElement(put.element, "geom", {"type": "sphere", "size": _numbers(radius), **style})
+        shape = {"type": "sphere", "size": _numbers(radius)}
+        if body.thickness is not None:
+            shape = {"type": "cylinder", "size": _numbers([radius, body.thickness / 2])}
+        ET.SubElement(put.element, "geom", {**shape, **style})
         self.bodies[body.name] = put
 
     def _tree_joint(

@@ -19,7 +19,7 @@ from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene
+from cosserat_casadi.model.floating_frames import UnloadedScene
 
 
 class _Link(NamedTuple):
@@ -123,4 +123,4 @@ def _turned_free(in_body: NumericPose, section: NumericPose, joint: scenes.Joint
 
 
 def _start(unloaded: UnloadedScene, body: str) -> NumericPose:
-    return unloaded.frames[FrameName("body", body)].start
+    return unloaded.body_frame(body).start

@@ -26,6 +26,10 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     yield from _too_thin(model)
+    disks = dict.fromkeys(body.name for body, _ in body_pairs(model.scene) if body.thickness is not None)
+    if disks:
+        what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(disks)}"
+        yield Problem("obstacles", what, f"{remedy}; or take bodies with a radius alone, which are balls")
     moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
     if moving:
         what = (

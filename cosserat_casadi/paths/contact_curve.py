@@ -21,7 +21,7 @@ from cosserat_casadi.equilibrium.contact.contact_judgement import FLAT
 from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium, contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch, continuations
-from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, gap_at, inner_radius, pairs
 from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, ball_is_inside_between, is_inside_between
 from cosserat_casadi.equilibrium.solution import SolvedPoses, poses_between_nodes, rotations
 from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissible_eigenvalues, restricted, variations
@@ -297,8 +297,7 @@ class Arrangement:
         bodies = self.bodies(z, load_factor)
         gaps = {}
         for body, obstacle in pairs_of_bodies:
-            (gap,) = ball_gaps(obstacle, ball_radius(body), bodies[body.name].position[None])
-            gaps[body.name, obstacle.name] = float(gap) / self._length_of(body)
+            gaps[body.name, obstacle.name] = gap_at(obstacle, body, bodies[body.name]) / self._length_of(body)
         return gaps
 
     def _length_of(self, body: scenes.Body) -> float:
@@ -321,7 +320,7 @@ class Arrangement:
         return any(
             ball_is_inside_between(
                 obstacle,
-                ball_radius(body),
+                inner_radius(body),
                 self._length_of(body),
                 before[body.name].position,
                 after[body.name].position,

@@ -194,6 +194,17 @@ mass = 0.1
     radius: Positive | None = Field(
         None, description="radius of the ball about its origin that keeps from obstacles which name it, m"
     )
+    thickness: NotNegative | None = Field(
+        None,
+        description="with radius: thickness of a disk in place of the ball, square to its z axis, for contact at "
+        "rest with obstacles without a width, m",
+    )
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """A disk has a radius."""
+        if "thickness" in given and "radius" not in given:
+            yield Fault(("radius",), "missing", "thickness makes the ball of that radius a disk")
 
     @property
     def inertia_matrix(self) -> FloatArray:

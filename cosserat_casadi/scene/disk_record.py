@@ -25,11 +25,11 @@ from cosserat_casadi.scene.values import (
 
 def lead_through_disks(tables: dict[str, Any]) -> None:
     """Write the holes of tendons that run through disks: places of the disks of their rods within their spans."""
-    for tendon in _tables(tables, "actuators"):
+    for tendon in tables_of(tables, "actuators"):
         if tendon.get("routing") != "disks" or "holes" in tendon:
             continue
         span = numbers_of(tendon.get("span", [0.0, 1.0]))
-        rows = [sound(Disks, row) for row in _tables(tables, "disks") if row.get("rod") == tendon.get("rod")]
+        rows = [sound(Disks, row) for row in tables_of(tables, "disks") if row.get("rod") == tendon.get("rod")]
         places = sorted({at for row in rows if row is not None for at in row.places})
         holes = [at for at in places if len(span) == 2 and span[0] <= at <= span[1]]
         if holes:
@@ -37,7 +37,7 @@ def lead_through_disks(tables: dict[str, Any]) -> None:
             del tendon["routing"]
 
 
-def _tables(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
+def tables_of(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
     """The tables of a list, which may be faulty."""
     listed = tables.get(key)
     return [table for table in listed if isinstance(table, dict)] if isinstance(listed, list) else []

@@ -81,7 +81,12 @@ class ObstacleRecord(Entry):
     """An obstacle: centre lines of rods keep away from it by the radius of their sections, and bodies by theirs.
 
     Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
+
+    Attributes:
+        is_flat: whether its surface has one normal.
     """
+
+    is_flat: ClassVar[bool] = False
 
     references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies", "disks": "disks", "body": "bodies"}
 
@@ -103,8 +108,8 @@ class ObstacleRecord(Entry):
     )
     disks: Names | None = Field(
         None,
-        description="with width: names of the rows of disks that may not enter it, as far as each reaches along the "
-        "normal; none when left out",
+        description="with width, or of a plane: names of the rows of disks that may not enter it, as far as each "
+        "reaches along the normal; none when left out",
     )
     width: Positive | None = Field(
         None,
@@ -184,7 +189,7 @@ class ObstacleRecord(Entry):
                 problem = "is of impacts, which a contact that is smooth does not have"
                 yield Fault(("restitution",), problem, "give damping, s/m, or leave out the width")
             return
-        for key in (*SMOOTH_KEYS[1:], "disks"):
+        for key in SMOOTH_KEYS[1:]:
             if key in given:
                 problem = "is of a contact that is smooth: without width contact is exact"
                 yield Fault((key,), problem, "give width, m, or leave it out")
@@ -200,6 +205,8 @@ class ObstacleRecord(Entry):
             )
             yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
         yield from _unfit_bodies(given, scene)
+        if exact:
+            yield from _disks_without_contact(given, scene, flat=cls.is_flat)
         for name, (_, rod) in scene.named("rods").items():
             if isinstance(named, list | tuple) and name not in named:
                 continue
@@ -222,6 +229,24 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
             yield Fault((key,), problem, f"leave {key} out, or leave body out")
 
 
+def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> Iterator[Fault]:
+    """Rows of disks that are still rows, as reading makes those that touch exactly bodies; and such bodies."""
+    if not flat:
+        for key in ("disks", "bodies"):
+            named = given.get(key)
+            for i, name in enumerate(named if isinstance(named, list | tuple) else ()):
+                _, table = scene.named(key).get(name, (0, {})) if isinstance(name, str) else (0, {})
+                if "thickness" in table or (key == "disks" and table):
+                    problem = f"{name!r} has a rim, and where a rim meets a curved obstacle no closed form tells"
+                    yield Fault((key, i), problem, "give width, m, or bodies with a radius alone, which are balls")
+        return
+    rows = given.get("disks")
+    for i, name in enumerate(rows if isinstance(rows, list | tuple) else ()):
+        if isinstance(name, str) and name in scene.named("disks"):
+            problem = f"disks of {name!r} touch exactly, and their numbers are no parameters"
+            yield Fault(("disks", i), problem, "give width, m, or leave those parameters out")
+
+
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
     """Bodies that have no radius to keep."""
     bodies = given.get("bodies")
@@ -230,8 +255,13 @@ def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
     known = scene.named("bodies")
     for i, name in enumerate(bodies):
         # A name that nothing has is refused with the other references.
-        if isinstance(name, str) and name in known and "radius" not in known[name][1]:
+        if not isinstance(name, str) or name not in known:
+            continue
+        if "radius" not in known[name][1]:
             yield Fault(("bodies", i), f"the body {name!r} has no radius to keep", "give the body a radius, m")
+        if "width" in given and "thickness" in known[name][1]:
+            problem = f"the body {name!r} is a disk, and bodies that touch an obstacle with a width are balls"
+            yield Fault(("bodies", i), problem, "leave out its thickness, or put [[disks]] on the rod")
 
 
 def _not_round(name: str, rod: Table) -> Iterator[Fault]:
@@ -268,6 +298,8 @@ point = [0, 0, -0.1]
 normal = [0, 0, 1]
 rods = ["finger"]
 """
+
+    is_flat: ClassVar[bool] = True
 
     kind: Literal["plane"] = Field(description="half of space")
     point: Vector = Field(description="a point of the plane in world axes, or those of its body, m")

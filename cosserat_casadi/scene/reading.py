@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.disk_record import lead_through_disks
+from cosserat_casadi.scene.disks_in_contact import seat_disks
 from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.faults import SceneTables, faults_of_range, shown
 from cosserat_casadi.scene.input_fields import InputField
@@ -150,6 +151,7 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
     _locate_files(tables, folder)
     place_joints_by_their_ends(tables)
     lead_through_disks(tables)
+    seat_disks(tables)
     make_room_for_waves(tables)
     try:
         scene = Scene.model_validate(tables)

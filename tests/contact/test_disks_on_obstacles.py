@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Scene, SceneError, build, discretise, export, load, scene_from_dict, simulate, solve
+from cosserat_casadi import Scene, SceneError, build, discretise, export, follow, load, scene_from_dict, simulate, solve
 from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.loads.contact_layer import ContactLayer, push_on_disk
 from cosserat_casadi.maths.typing import FloatArray
@@ -48,8 +48,11 @@ def finger(radius: float = RADIUS, parameters: tuple[str, ...] = (), **obstacle:
     )
 
 
-def shot(radius: float = RADIUS) -> tuple[FloatArray, float]:
-    """Tip and pressing force of it by shooting: the lowest point of a cylinder, pressed by 2 R k (w − g)³/(3 w²)."""
+def shot(radius: float = RADIUS, *, hard: bool = False) -> tuple[FloatArray, float]:
+    """Tip and pressing force of it by shooting: the lowest point of a cylinder, pressed by 2 R k (w − g)³/(3 w²).
+
+    A hard floor presses with what leaves no gap.
+    """
     unit = 2 * radius * STIFFNESS * WIDTH / 3
 
     def along(s: float, state: FloatArray, force: FloatArray) -> list[float]:
@@ -70,7 +73,8 @@ def shot(radius: float = RADIUS) -> tuple[FloatArray, float]:
         touching = -radius * edge - THICKNESS / 2 * np.sign(slant) * tangent
         gap = (np.array([x, 0.0, z]) + touching - POINT) @ NORMAL
         pressed = (max(WIDTH - gap, 0.0) / WIDTH) ** 3
-        return [moment - unknown[1] * unit * np.cross(touching, NORMAL)[1], pressed - unknown[1]]
+        left = gap / WIDTH if hard else pressed - unknown[1]
+        return [moment - unknown[1] * unit * np.cross(touching, NORMAL)[1], left]
 
     found = fsolve(residual, [0.0128, 1.06 / unit], xtol=1e-11)
     return tip(found)[:2], float(found[1] * unit)
@@ -86,6 +90,38 @@ def test_a_tip_pressed_on_a_leaning_floor_vs_shooting() -> None:
     assert_allclose(contact.force, force * NORMAL, rtol=0, atol=5e-3 * force)
     assert (contact.owner, contact.start, contact.end) == ("a", 1.0, 1.0)
     assert_allclose(solution.base_wrench().force, -PUSH - contact.force, rtol=0, atol=1e-12)
+
+
+HARD = {"width": None, "stiffness": None}
+
+
+def test_exact_contact_of_a_tip_vs_shooting() -> None:
+    """At rest and along a path; the corners of the disk are as rounded as in smooth contact."""
+    model = build(finger(**HARD))
+    solution = solve(model)
+    place, force = shot(hard=True)
+    (contact,) = solution.contacts
+    assert solution.stable
+    assert_allclose(solution.tip().position[[0, 2]], place, rtol=0, atol=1e-4 * RADIUS + 1e-2 * THICKNESS)
+    assert_allclose(contact.force, force * NORMAL, rtol=0, atol=1e-4 * force)
+    assert_allclose(solution.base_wrench().force, -PUSH - contact.force, rtol=0, atol=1e-12)
+    assert (contact.owner, contact.of_body) == ("d_1", True)
+    path = follow(model, "push.force", PUSH.tolist())
+    assert path.converged
+    assert_allclose(path.tip().position[-1], solution.tip().position, rtol=0, atol=1e-8)
+
+
+def test_a_disk_that_stands_on_its_face_in_exact_contact() -> None:
+    """A rod that is bent to the floor presses on it within the face, not by the rim: its arm is shorter."""
+    tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
+    tables["rods"][0]["intrinsic"] = {"curvature": [0, np.pi / 2 / LENGTH, 0]}
+    tip = 2 * LENGTH / np.pi
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, -tip - THICKNESS / 2 + 2e-4], "normal": [0, 0, 1]}
+    solution = solve(build(scene_from_dict({**tables, "obstacles": [{**floor, "bodies": ["d_1"]}], "loads": []})))
+    (contact,) = solution.contacts
+    arm = abs(solution.base_wrench().moment[1]) / contact.force[2]
+    assert solution.converged
+    assert abs(arm - solution.tip().position[0]) < 0.5 * RADIUS
 
 
 def test_the_radius_of_disks_that_touch_as_a_parameter() -> None:
@@ -170,12 +206,20 @@ def test_a_rod_on_disks_slides_as_a_point_mass() -> None:
 @pytest.mark.parametrize(
     ("changes", "where", "problem"),
     [
-        ({"width": None}, "obstacles[0].disks", "is of a contact that is smooth: without width contact is exact"),
+        (
+            {**HARD, "kind": "sphere", "centre": [0.3, 0, -1], "radius": 0.5, "point": None, "normal": None},
+            "obstacles[0].disks[0]",
+            "'d' has a rim, and where a rim meets a curved obstacle no closed form tells",
+        ),
+        (
+            {**HARD, "parameters": ("d.radius",)},
+            "obstacles[0].disks[0]",
+            "disks of 'd' touch exactly, and their numbers are no parameters",
+        ),
         ({"disks": ["e"]}, "obstacles[0].disks[0]", "no row of disks is named 'e'"),
     ],
 )
 def test_refusals(changes: dict[str, Any], where: str, problem: str) -> None:
-    given = {"stiffness": None, **changes} if "width" in changes else changes
     with pytest.raises(SceneError) as refused:
-        finger(**given)
+        finger(**changes)
     assert (where, problem) in [(one.where, one.problem) for one in refused.value.problems]

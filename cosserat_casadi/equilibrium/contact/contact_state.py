@@ -282,9 +282,11 @@ class ContactState:
             modes: polynomials of the curvature of each rod, by name.
         """
         obstacles = {obstacle.name: obstacle for obstacle in scene.obstacles}
+        disks = {body.name: body for body in scene.bodies if body.thickness is not None}
         loads: list[scenes.LoadRecord] = []
         for touch in self.touches:
             obstacle = obstacles[touch.obstacle]
+            disk = disks.get(touch.owner) if touch.of_body else None
             for end in touch.carriers:
                 loads.append(
                     ContactPoint.model_construct(
@@ -294,6 +296,8 @@ class ContactState:
                         obstacle=obstacle,
                         at=end,
                         force=0.0,
+                        radius=0.0 if disk is None or disk.radius is None else disk.radius,
+                        thickness=None if disk is None else disk.thickness,
                     )
                 )
             if not touch.is_line:

@@ -11,7 +11,7 @@ from functools import cached_property
 from math import isfinite
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_radius, body_gap, body_pairs, gap_along, pairs
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, body_gap, body_pairs, gap_along, inner_radius, pairs
 from cosserat_casadi.equilibrium.contact.passing_through import (
     MIDDLE,
     LookedAt,
@@ -68,7 +68,7 @@ class Barriers:
             length = self.model.discrete.body_frame(body.name).length
             pose = self.model.body[body.name]
             way = (pose(before, self.inputs)[0].full().T, pose(after, self.inputs)[0].full().T)
-            if ball_is_inside_between(obstacle, ball_radius(body), length, *way, self._deepest_ball(body, obstacle)):
+            if ball_is_inside_between(obstacle, inner_radius(body), length, *way, self._deepest_ball(body, obstacle)):
                 return True
         return False
 
@@ -96,7 +96,7 @@ class Barriers:
 
     def _deepest_ball(self, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
         """The same of a body, whose centre may come as near to the middle."""
-        radii = obstacle.thickness / 2 + ball_radius(body)
+        radii = obstacle.thickness / 2 + inner_radius(body)
         return MIDDLE * radii / self.model.discrete.body_frame(body.name).length
 
     def _shape(self, x: FloatArray) -> Solution:

@@ -162,6 +162,7 @@ def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetrat
             rod=None,
             body=body.name,
             radius=radius,
+            thickness=body.thickness,
             obstacle=obstacle,
             stiffness=unit * max(BALL_STIFFNESS, THIN_BALL_FORCE * thinness**2) * factor,
         )

@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Place, Touch
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius, obstacle_of
+from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, reach_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.loads.penetration import section_radius
@@ -69,9 +69,9 @@ def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | 
 def _body_gap(system: System, touch: Touch) -> Matrix:
     """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
     body = system.discrete.bodies[touch.owner]
-    position = system.frame(FrameName("body", touch.owner)).position
-    distance, _, _ = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)
-    gap: Matrix = (distance - ball_radius(body)) / system.discrete.body_frame(touch.owner).length
+    pose = system.frame(FrameName("body", touch.owner))
+    distance, normal, _ = surface(obstacle_of(system.discrete.scene, touch.obstacle))(pose.position)
+    gap: Matrix = (distance - reach_of(body, normal, pose.rotation)) / system.discrete.body_frame(touch.owner).length
     return gap
 
 

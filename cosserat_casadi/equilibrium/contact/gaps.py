@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.body_obstacles import seen_positions, world_directions
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distances, surface
-from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.equilibrium.solution import Contact, Solution, SolvedPoses
+from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.penetration import section_radius
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
 DENSE = np.linspace(0.0, 1.0, 801)
@@ -31,7 +33,7 @@ def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
 
 
 def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.ObstacleRecord]]:
-    """Every body with every obstacle that it touches exactly, if at all, as a ball of its radius about its origin."""
+    """Every body with every obstacle that it touches exactly, if at all, as a ball or a disk about its origin."""
     for body in scene.bodies:
         concerned = [
             obstacle for obstacle in scene.obstacles if obstacle.concerns_body(body.name) and not obstacle.is_smooth
@@ -80,8 +82,31 @@ def section_gaps(
 def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
     """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
     length = solution.model.discrete.body_frame(body.name).length
-    (gap,) = ball_gaps(obstacle, ball_radius(body), solution.body(body.name).position[None])
-    return float(gap) / length
+    return gap_at(obstacle, body, solution.body(body.name)) / length
+
+
+def gap_at(obstacle: scenes.ObstacleRecord, body: scenes.Body, pose: SolvedPoses) -> float:
+    """Distance of the surface of a body in a pose from an obstacle, m."""
+    distance, normal, _ = surface(obstacle)(pose.position)
+    return float(distance - reach_of(body, normal, ca.DM(pose.rotation)))
+
+
+def reach_of(body: scenes.Body, normal: Matrix, rotation: Matrix) -> Matrix | float:
+    """How far a body reaches from its origin against the normal of an obstacle, m.
+
+    Args:
+        body: a ball, or a disk about its z axis.
+        normal: 3×1.
+        rotation: of the body, 3×3.
+    """
+    if body.thickness is None:
+        return ball_radius(body)
+    return disk_reach(normal, rotation[:, 2], ball_radius(body), body.thickness)[0]
+
+
+def inner_radius(body: scenes.Body) -> float:
+    """Radius of the largest ball about the origin of a body that is inside it, m."""
+    return ball_radius(body) if body.thickness is None else min(ball_radius(body), body.thickness / 2)
 
 
 def ball_gaps(obstacle: scenes.ObstacleRecord, radius: float, positions: FloatArray) -> FloatArray:
@@ -129,7 +154,12 @@ def touching_points(solution: Solution, contact: Contact, along: int) -> FloatAr
         (body,) = [body for body in solution.model.scene.bodies if body.name == contact.owner]
         obstacle = obstacle_of(solution.model.scene, contact.obstacle)
         normal = body_normal(solution, body.name, obstacle)
-        return np.asarray(solution.body(body.name).position[None] - ball_radius(body) * normal)
+        pose = solution.body(body.name)
+        if body.thickness is None:
+            return np.asarray(pose.position[None] - ball_radius(body) * normal)
+        axis = ca.DM(pose.rotation[:, 2])
+        _, touching = disk_reach(ca.DM(normal), axis, ball_radius(body), body.thickness)
+        return np.asarray(pose.position[None] + ca.DM(touching).full().T)
     count = along if contact.start < contact.end else 1
     X = np.linspace(contact.start, contact.end, count)
     return solution.pose(X, contact.owner).position

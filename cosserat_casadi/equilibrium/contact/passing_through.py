@@ -21,8 +21,8 @@ from cosserat_casadi.equilibrium.contact.body_obstacles import in_axes_of
 from cosserat_casadi.equilibrium.contact.gaps import (
     DENSE,
     ball_gaps,
-    ball_radius,
     body_pairs,
+    inner_radius,
     pairs,
     section_gaps,
     seen_sections,
@@ -94,7 +94,7 @@ def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> 
     for body, obstacle in body_pairs(after.model.scene):
         length = after.model.discrete.body_frame(body.name).length
         way = (before.body(body.name).position, after.body(body.name).position)
-        if ball_is_inside_between(obstacle, ball_radius(body), length, *way, deepest):
+        if ball_is_inside_between(obstacle, inner_radius(body), length, *way, deepest):
             return True
     return False
 
