@@ -21,7 +21,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, disk_colour, rod_style
 from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
-from cosserat_casadi.scene import Disks, Scene
+from cosserat_casadi.scene import Body, Disks, Scene
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -158,6 +158,9 @@ def draw_bodies(canvas: Canvas, solution: Solution) -> None:
 
 def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     pose = solution.body(body.name)
+    if body.thickness is not None:
+        canvas.line(in_world(pose, disk_rim(body)), color=BODIES, linewidth=1.6)
+        return
     scene = solution.model.scene
     joints = [(joint, place.position) for joint in scene.joints for place in joint.places if place.body == body.name]
     points = in_world(pose, np.array([position for _, position in joints]))
@@ -217,8 +220,9 @@ def draw_disks(canvas: Canvas, solution: Solution) -> None:
             label = None
 
 
-def disk_rim(row: Disks) -> FloatArray:
-    """The rims of both faces of a disk in the axes of its section, one line, shape (k, 3), m."""
+def disk_rim(row: Disks | Body) -> FloatArray:
+    """The rims of both faces of a disk in the axes of its section or body, one line, shape (k, 3), m."""
+    assert row.radius is not None and row.thickness is not None, "a disk has both"
     angles = np.linspace(0.0, 2.0 * np.pi, RIM)
     around = row.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     faces = [np.column_stack([around, np.full(RIM, height)]) for height in (-row.thickness / 2, row.thickness / 2)]

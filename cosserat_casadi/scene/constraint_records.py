@@ -240,7 +240,12 @@ class CarriedBody(Oriented):
     """The body that another body, or the world, carries by a joint, with its place in that body."""
 
     example: ClassVar[str] = """\
-carries = { body = "platform", position = [0, 0, 0.1] }     # in a joint, instead of rod
+[[joints]]
+name = "pivot"
+kind = "revolute"
+position = [0, 0, 0.5]                                      # in the world; with body in another body
+axis = [0, 1, 0]
+carries = { body = "platform", position = [0, 0, 0.1] }     # instead of rod
 """
 
     body: str = Field(description="name of the body that is carried")

@@ -230,7 +230,7 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
 
 
 def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> Iterator[Fault]:
-    """Rows of disks that are still rows, as reading makes those that touch exactly bodies; and such bodies."""
+    """Rows of disks that are still rows, as reading makes bodies of rows that touch exactly; and such bodies."""
     if not flat:
         for key in ("disks", "bodies"):
             named = given.get(key)
