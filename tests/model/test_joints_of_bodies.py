@@ -99,7 +99,10 @@ def test_jacobian_vs_ad(elbow: dict[str, Any]) -> None:
 
 def test_frequencies_of_a_double_pendulum() -> None:
     """Those of M q̈ + K q = 0 in the angles of the links, which hang; those of the rod beside them come after."""
-    modes = modes_of(scene_from_dict(pendulum())).modes
+    tables = pendulum(bodies=[body(0), body(1, centre_of_mass=[0, 0, 0.05 - ARMS[1]])])
+    # The hinge is beside the origin of the lower link.
+    tables["joints"][1]["between"][1]["position"] = [0, 0, 0.05]
+    modes = modes_of(scene_from_dict(tables)).modes
     (m1, m2), (l1, l2) = MASSES, ARMS
     mass = np.diag(INERTIAS + MASSES * ARMS**2)
     mass += m2 * np.array([[FIRST**2, FIRST * l2], [FIRST * l2, 0.0]])
