@@ -52,8 +52,9 @@ def slider_crank(angle: float = 0.3, **changes: Any) -> dict[str, Any]:
     """A crank that is driven in the world, and pushes a slider, which a force holds against."""
     joints = [
         hinge({"world": True}, {"body": "arm"}, name="crank", angle=angle),
-        hinge({"body": "arm", "position": [CRANK, 0, 0]}, {"body": "coupler"}),
-        hinge({"body": "coupler", "position": [COUPLER, 0, 0]}, {"body": "slider"}),
+        # The coupler has its origin between its hinges.
+        hinge({"body": "arm", "position": [CRANK, 0, 0]}, {"body": "coupler", "position": [-0.1, 0, 0]}),
+        hinge({"body": "coupler", "position": [COUPLER - 0.1, 0, 0]}, {"body": "slider"}),
         {
             "kind": "prismatic",
             "axis": [1, 0, 0],
@@ -193,7 +194,7 @@ def test_places_are_parameters() -> None:
     tables = slider_crank(1.0, parameters=["pin.position", "pin.carries.position"])
     tables["joints"][1]["name"] = "pin"
     model = build(scene_from_dict(tables))
-    changed = {"pin.position": [0.12, 0, 0], "pin.carries.position": [-0.01, 0, 0]}
+    changed = {"pin.position": [0.12, 0, 0], "pin.carries.position": [-0.11, 0, 0]}
     moved = solve(model, parameters=changed)
     tables = slider_crank(1.0)
     for end, place in zip(tables["joints"][1]["between"], changed.values(), strict=True):
