@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 from cosserat_casadi import SceneError, build, export, load, modes_of, scene_from_dict, simulate, solve
 from cosserat_casadi.maths.typing import FloatArray
-from tests.model.test_base_joints import GRAVITY, link, scene
+from tests.model.test_base_joints import GRAVITY, WEIGHT, link, scene
 
 MASSES, ARMS, INERTIAS = np.array([0.7, 0.4]), np.array([0.3, 0.2]), np.array([0.01, 0.004])
 """Of two rigid links: kg, distance of the centre from the hinge above it, m, and moment of inertia about it, kg m²."""
@@ -49,7 +49,7 @@ def pendulum(**changes: Any) -> dict[str, Any]:
 
 
 def slider_crank(angle: float = 0.3, **changes: Any) -> dict[str, Any]:
-    """A crank that is driven in the world, and pushes a slider, which a force holds against."""
+    """A crank that is driven in the world, and pushes a slider, which a force pulls; all have weight."""
     joints = [
         hinge({"world": True}, {"body": "arm"}, name="crank", angle=angle),
         # The coupler has its origin between its hinges.
@@ -66,7 +66,7 @@ def slider_crank(angle: float = 0.3, **changes: Any) -> dict[str, Any]:
     bodies = [{"name": name, **solid} for name in ("arm", "coupler", "slider")]
     push = {"name": "push", "kind": "body_wrench", "body": "slider", "force": [5.0, 0, 0]}
     beside = [link("a", base={"position": [1, 0, 0]})]
-    return scene(beside, joints, **{"bodies": bodies, "loads": [push], "inputs": ["crank.angle"], **changes})
+    return scene(beside, joints, **{"bodies": bodies, "loads": [push, WEIGHT], "inputs": ["crank.angle"], **changes})
 
 
 def reach(angle: float) -> tuple[float, float]:
@@ -167,7 +167,9 @@ def test_slider_crank(angle: float) -> None:
     place, slope = reach(angle)
     assert solution.converged
     assert_allclose(solution.body("slider").position, [place, 0, 0], rtol=0, atol=1e-9)
-    assert_allclose(solution.joint("crank")["moment"], -5.0 * slope, rtol=1e-8, atol=0)
+    # The weight of the coupler acts a third of its length from the crank.
+    lifted = -2 / 3 * CRANK * np.cos(angle)
+    assert_allclose(solution.joint("crank")["moment"], 0.2 * GRAVITY * lifted - 5.0 * slope, rtol=1e-8, atol=0)
     assert [placed.size for placed in model.discrete.constraints] == [6, 5, 5, 2]
 
 
