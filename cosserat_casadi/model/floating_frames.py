@@ -311,9 +311,9 @@ class UnloadedScene:
             return _Seat(self.section(joint.rod, joint.at), place, held)
         carried = place_of(joint.carries)
         if joint.carries.body == body:
-            carrier = IDENTITY if joint.body is None else self._body_frame(joint.body).start
+            carrier = IDENTITY if joint.body is None else self.body_frame(joint.body).start
             return _Seat(carrier.then(place), carried, held)
-        return _Seat(self._body_frame(joint.carries.body).start.then(carried), place, held)
+        return _Seat(self.body_frame(joint.carries.body).start.then(carried), place, held)
 
     def _starts_on_body(self, rod: str) -> bool:
         """Whether the base of a rod, or of one that carries it, is held to a body."""
