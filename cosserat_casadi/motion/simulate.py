@@ -87,6 +87,13 @@ NEWTON = 1e-3
 CLOSED = 1e-10
 """Error of Newton's method, over the length, where supports, joints or cables are to stay closed."""
 
+FORCE_LEFT = 0.1
+"""Force, in EI/ℓ², that the error of Newton's method may make of a stretch: π² in compression buckle a hinged rod.
+
+A steel wire, ten thousand times as long as it is thick, was buckled by what a thousandth of the tolerance leaves, and
+steps became ever shorter.
+"""
+
 
 @dataclass(frozen=True)
 class Companion:
@@ -165,12 +172,19 @@ class Simulator:
 
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
-        newton = NEWTON
+        left = min(NEWTON * tolerance, max(CLOSED, FORCE_LEFT * self._stretch))
         if self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential):
             # What Newton's method leaves is what supports and joints are open by, or contacts.
-            newton = min(newton, CLOSED / tolerance)
-        settings = StepSettings(tolerance=tolerance / self.displacements, newton=newton)
+            left = min(left, CLOSED)
+        settings = StepSettings(tolerance=tolerance / self.displacements, newton=left / tolerance)
         return self._integrated(radau(STAGES), settings)
+
+    @property
+    def _stretch(self) -> float:
+        """Least stretch or shear, over the length, that a force of EI/ℓ² makes; infinite where rods admit none."""
+        rods = self.model.discrete.rods.values()
+        scales = [rod.scales[number] for rod in rods for number, strain in enumerate(rod.admitted) if strain in rod.linear]
+        return min(scales, default=np.inf) ** 2
 
     def stepped(self, size: float) -> History:
         """The motion with equal steps, s, by the integrator that is asked for."""
