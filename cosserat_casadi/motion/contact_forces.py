@@ -15,6 +15,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_gap import FAR, FLATTEST, Facing, SectionGap
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.moving_points import MovingPoints
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
 
@@ -130,6 +131,46 @@ class Follower:
         gradients = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
         return ContactsAtState(places, gaps, gradients)
 
+    def open_by(self, gaps: Sequence[SectionGap]) -> list[float]:
+        """What gaps are wider than the heights that the contacts keep, over the lengths."""
+        return [gap.value - touch.height for gap, touch in zip(gaps, self.touches, strict=True)]
+
+    def pushed(self, gaps: Sequence[SectionGap], forces: FloatArray) -> dict[MovingPoints, FloatArray]:
+        """Forces of all contacts on the points that they press, stacked point by point: one push for each rod or body.
+
+        Args:
+            gaps: of the contacts.
+            forces: their forces, shape (m,).
+        """
+        pushed: dict[MovingPoints, FloatArray] = {}
+        for facing, gap, force in zip(self.facings, gaps, forces, strict=True):
+            pushed[facing.points] = pushed.get(facing.points, 0.0) + force * facing.weights(gap)
+        return pushed
+
+    def curvature(
+        self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap], forces: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Sum of the forces times the second derivatives of their gaps with the unknowns, (n, n), and gradients, (m, n).
+
+        Args:
+            x: unknowns, shape (n,).
+            inputs: stacked inputs, shape (k,).
+            gaps: of the contacts.
+            forces: their forces, shape (m,).
+        """
+        total = np.zeros((len(x), len(x)))
+        gradients = np.zeros((len(gaps), len(x)))
+        moved = {points: points.jacobian(x, inputs) for points in {facing.points for facing in self.facings}}
+        for points, weights in self.pushed(gaps, forces).items():
+            total += points.hessian(x, inputs, weights)
+        for number, (facing, touch, gap, force) in enumerate(
+            zip(self.facings, self.touches, gaps, forces, strict=True)
+        ):
+            by_nodes = moved[facing.points]
+            gradients[number] = facing.weights(gap) @ by_nodes.reshape(-1, len(x))
+            total += force * facing.turning(by_nodes, gap, slides=touch.slides)
+        return total, gradients
+
     def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Rates of the gaps, 1/s, and second derivatives without accelerations of the unknowns, shape (m,) each, 1/s².
 
@@ -160,29 +201,24 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
         piece: of the inputs.
     """
     size = plain.size
-    touches = follower.touches
-    count = len(touches)
+    count = len(follower.touches)
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        state = follower.state(x[:size], piece.at(t).value)
+        inputs = piece.at(t).value
+        _, gaps = follower.gaps(x[:size], inputs)
         rows = plain.residual(t, x[:size], v[:size], a[:size])
-        for force, gradient in zip(x[size:], state.gradients, strict=True):
-            rows = rows - force * gradient
-        open_by = [gap.value - touch.height for gap, touch in zip(state.gaps, touches, strict=True)]
-        return np.concatenate([rows, open_by])
+        for points, weights in follower.pushed(gaps, x[size:]).items():
+            rows = rows - points.gradient(x[:size], inputs, weights)
+        return np.concatenate([rows, follower.open_by(gaps)])
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         stiffness, damping, mass = (_bordered(part, count) for part in plain.jacobians(t, x[:size], v[:size], a[:size]))
         inputs = piece.at(t).value
-        state = follower.state(x[:size], inputs)
-        for number, touch in enumerate(touches):
-            row = size + number
-            facing = follower.facings[number]
-            gap = state.gaps[number]
-            curvature = facing.hessian(x[:size], inputs, gap, slides=touch.slides)
-            stiffness[:size, :size] -= x[row] * curvature
-            stiffness[:size, row] = -state.gradients[number]
-            stiffness[row, :size] = state.gradients[number]
+        _, gaps = follower.gaps(x[:size], inputs)
+        curvature, gradients = follower.curvature(x[:size], inputs, gaps, x[size:])
+        stiffness[:size, :size] -= curvature
+        stiffness[:size, size:] = -gradients.T
+        stiffness[size:, :size] = gradients
         return stiffness, damping, mass
 
     def rates_of_last(t: float, x: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -106,7 +106,7 @@ class Facing(ABC):
 
     def nodes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """World positions of the points, shape (M, 3), m."""
-        return self.points.positions(x, inputs).reshape(-1, 3)
+        return self.points.positions(x, inputs)
 
     @abstractmethod
     def at(self, nodes: FloatArray, X: float) -> SectionGap:
@@ -139,11 +139,11 @@ class Facing(ABC):
 
     def gradient(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
         """Derivative of a gap with the unknowns, shape (n,)."""
-        return self.points.gradient(x, inputs, self._weights(gap)) / self.length
+        return self.points.gradient(x, inputs, self.weights(gap))
 
     def by_inputs(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
         """Derivative of a gap with the inputs, shape (m,)."""
-        return self.points.by_inputs(x, inputs, self._weights(gap)) / self.length
+        return self.points.by_inputs(x, inputs, self.weights(gap))
 
     def hessian(self, x: FloatArray, inputs: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
         """Second derivative of a gap with the unknowns, shape (n, n).
@@ -155,10 +155,20 @@ class Facing(ABC):
             slides: whether its place is where the gap is least, and not a given one.
         """
         by_nodes = self.points.jacobian(x, inputs)
-        moved = np.einsum("k,kin->in", gap.rows.value, by_nodes)
-        second = self.points.hessian(x, inputs, self._weights(gap)) + moved.T @ gap.curvature @ moved
+        return self.points.hessian(x, inputs, self.weights(gap)) + self.turning(by_nodes, gap, slides=slides)
+
+    def turning(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
+        """Second derivative of a gap with the unknowns without that of the points, shape (n, n).
+
+        Args:
+            by_nodes: derivative of the points with the unknowns, shape (M, 3, n), m.
+            gap: the gap.
+            slides: whether its place is where the gap is least, and not a given one.
+        """
+        moved = np.tensordot(gap.rows.value, by_nodes, 1)
+        second = moved.T @ gap.curvature @ moved
         if slides:
-            turned = np.einsum("k,kin->in", gap.rows.first, by_nodes)
+            turned = np.tensordot(gap.rows.first, by_nodes, 1)
             slope = gap.normal @ turned + gap.tangent @ gap.curvature @ moved
             second = second - np.outer(slope, slope) / (gap.bend * self.length)
         return np.asarray(second / self.length)
@@ -187,6 +197,6 @@ class Facing(ABC):
             second += self.length * float(self.by_inputs(x, value, gap) @ acceleration)
         return first / self.length, second / self.length
 
-    def _weights(self, gap: SectionGap) -> FloatArray:
-        """Weights of the positions of the points, stacked point by point, whose sum varies as the gap does."""
-        return np.outer(gap.rows.value, gap.normal).ravel()
+    def weights(self, gap: SectionGap) -> FloatArray:
+        """Weights of the positions of the points, stacked point by point, whose sum varies as the gap does, 1/m."""
+        return np.outer(gap.rows.value, gap.normal / self.length).ravel()

@@ -20,6 +20,7 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_bodies import BodyFacing
 from cosserat_casadi.motion.contact_gap import FAR, Facing, Minimum, Rows, SectionGap
@@ -268,7 +269,7 @@ def _rows_of(grid: Grid, X: float) -> Rows:
     element = int(grid.element_of(np.array([X]))[0])
     width = ends[element + 1] - ends[element]
     share = (X - ends[element]) / width
-    local = chebyshev.interpolation_matrix(grid.intervals, [share], beyond=BEYOND / width)[0]
+    local = chebyshev.interpolation_row(grid.intervals, share)
     per_element = grid.intervals + 1
     own = slice(element * per_element, (element + 1) * per_element)
     rows = np.zeros((3, grid.size))
@@ -294,6 +295,11 @@ def _step_down(gaps: FloatArray, index: int) -> float:
 
 def facings(model: Model) -> list[Facing]:
     """Every rod and every body with every obstacle that it may touch exactly."""
+    # Its functions are those of every motion of the model.
+    return kept_with(model, "_facings", lambda: _facings(model))
+
+
+def _facings(model: Model) -> list[Facing]:
     found: list[Facing] = []
     exact = [obstacle for obstacle in model.scene.obstacles if not obstacle.is_smooth]
     for rod in model.scene.rods:

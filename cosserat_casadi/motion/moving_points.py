@@ -26,6 +26,10 @@ class MovingPoints:
     Args:
         model: the model, built for a motion.
         placed: the positions in a system, 3×M.
+
+    Attributes:
+        push: (x, inputs, weights) ↦ derivative of the weighted sum of the positions with the unknowns, n×1.
+        gradient: the same on arrays, shape (n,).
     """
 
     def __init__(self, model: Model, placed: Callable[[System], Matrix]) -> None:
@@ -37,10 +41,20 @@ class MovingPoints:
         total = ca.dot(weights, positions)
         gradient = ca.densify(ca.gradient(total, x))
         # As scalars: they are asked for in every iteration, and before and after every step.
-        self.positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]).expand())
-        self.gradient = RepeatedCall(ca.Function("gradient", [x, inputs, weights], [gradient]).expand())
+        self._positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]).expand())
+        self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        self.push = ca.Function("gradient", [x, inputs, weights], [gradient]).expand()
+        self.gradient = RepeatedCall(self.push)
         self._symbols = [x, inputs, weights]
         self._written = (positions, total, gradient)
+
+    def positions(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """The positions, shape (M, 3), m; several contacts and guards ask for them at one state."""
+        last = self._last
+        if last is None or not (np.array_equal(last[0], x) and np.array_equal(last[1], inputs)):
+            last = x.copy(), inputs.copy(), self._positions(x, inputs).reshape(-1, 3)
+            self._last = last
+        return last[2]
 
     @cached_property
     def by_inputs(self) -> RepeatedCall:
@@ -84,12 +98,12 @@ class MovingPoints:
     @cached_property
     def _hessian(self) -> RepeatedCall:
         second = ca.densify(ca.jacobian(self._written[2], self._symbols[0]))
-        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]))
+        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]).expand())
 
     @cached_property
     def _jacobian(self) -> RepeatedCall:
         first = ca.densify(ca.jacobian(self._written[0], self._symbols[0]))
-        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]))
+        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]).expand())
 
 
 def nodes_of(model: Model, rod: str) -> MovingPoints:

@@ -155,10 +155,9 @@ def _turning(
     facings: Sequence[Facing], pressing: Touches, forces: FloatArray, x: FloatArray, inputs: FloatArray
 ) -> FloatArray:
     """Change of the forces on the unknowns as normals turn and places slide, shape (n, n)."""
-    total = np.zeros((len(x), len(x)))
-    _, gaps = Follower(facings, pressing).gaps(x, inputs)
-    for touch, force, gap in zip(pressing, forces, gaps, strict=True):
-        total += force * facings[touch.facing].hessian(x, inputs, gap, slides=touch.slides)
+    follower = Follower(facings, pressing)
+    _, gaps = follower.gaps(x, inputs)
+    total, _ = follower.curvature(x, inputs, gaps, forces)
     return total
 
 
