@@ -14,15 +14,19 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_frame import BaseKernels, SeenFromBase, frame_weights
+from cosserat_casadi.motion.contact_forces import PushedResidual
+from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import flies_alone
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations, Residual
 from cosserat_casadi.rod.rod_motion import StrainRates
 
 ORDERS = 3
@@ -51,10 +55,12 @@ class CentredCoordinates:
 
     def __init__(self, model: Model) -> None:
         ((_, entries),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
+        self._model = model
         self._pose = np.arange(entries.start, entries.stop)
         self._size = model.size
         self._strains = np.delete(np.arange(model.size), self._pose)
         functions = _Functions(model)
+        self._functions = functions
         self._base = RepeatedCall(functions.base.expand())
         self._position = functions.position.expand()
         self._derivatives = functions.derivatives
@@ -99,10 +105,6 @@ class CentredCoordinates:
             plain: in the unknowns of the model.
         """
 
-        def residual(t: float, y: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-            at = self.to_model(Instant(t, y, v, a))
-            return plain.residual(t, at.x, at.v, at.a)
-
         def jacobians(
             t: float, y: FloatArray, v: FloatArray, a: FloatArray
         ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -120,7 +122,69 @@ class CentredCoordinates:
             mass[:, own] += by_mass @ value
             return stiffness, damping, mass
 
-        return replace(plain, residual=residual, jacobians=jacobians, rates_of_last=None)
+        return replace(plain, residual=self._residual(plain.residual), jacobians=jacobians, rates_of_last=None)
+
+    def _residual(self, plain: Residual) -> Residual:
+        """A residual in these coordinates: one function of them, where its parts are known."""
+        if isinstance(plain, KernelResidual):
+            return replace(plain, call=self._dynamics)
+        if not (isinstance(plain, PushedResidual) and isinstance(plain.plain.residual, KernelResidual)):
+            raise TypeError("equations in centred coordinates are those of a model, with the forces of contacts or not")
+        follower, inputs_at = plain.follower, plain.plain.residual.inputs_at
+        own = slice(0, self._size)
+
+        def pushed(t: float, y: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+            inputs = inputs_at(t)
+            x = y[own].copy()
+            x[self._pose] = self._place(x)
+            _, gaps = follower.gaps(x, inputs[0])
+            # The rod is alone: all contacts push it.
+            (weights,) = follower.pushed(gaps, y[self._size :]).values()
+            return np.concatenate([self._pushed(y[own], v[own], a[own], *inputs, weights), follower.open_by(gaps)])
+
+        return pushed
+
+    @cached_property
+    def _place(self) -> RepeatedCall:
+        """Unknowns of the base alone, from y."""
+        return RepeatedCall(self._position)
+
+    @cached_property
+    def _dynamics(self) -> RepeatedCall:
+        """(y, v, a, inputs, inputs_rate, inputs_acceleration) ↦ residual of the model."""
+        return self._composed([])
+
+    @cached_property
+    def _pushed(self) -> RepeatedCall:
+        """The same less the derivative of a weighted sum of positions, whose weights are the last argument."""
+        # All obstacles face the same points.
+        return self._composed([facings(self._model)[0].points.push])
+
+    def _composed(self, pushes: list[ca.Function]) -> RepeatedCall:
+        dynamics = self._model.inverse_dynamics
+        *_, value, rate, acceleration = dynamics.mx_in()
+        y = [ca.MX.sym(word, self._size) for word in ("y", "v", "a")]
+        x, v, a = (
+            self._with_base(own, base)
+            for own, base in zip(y, ca.vertsplit(self._functions.base(*y), POSE_SIZE), strict=True)
+        )
+        rows = dynamics(x, v, a, value, rate, acceleration)
+        arguments = [*y, value, rate, acceleration]
+        for push in pushes:
+            weights = ca.MX.sym("weights", push.size1_in(2))
+            rows -= push(x, value, weights)
+            arguments.append(weights)
+        function = ca.Function("centred_dynamics", arguments, [ca.densify(rows)])
+        # As scalars it takes half to nine tenths of the time.
+        if not chooses(dynamics):
+            function = function.expand()
+        return RepeatedCall(function)
+
+    def _with_base(self, own: ca.MX, base: ca.MX) -> ca.MX:
+        """Unknowns of the model, or their rates, from those of the steps and those of the base."""
+        order = np.arange(self._size)
+        order[self._pose] = self._size + np.arange(POSE_SIZE)
+        return ca.vertcat(own, base)[order.tolist()]
 
     def _own(self, instant: Instant) -> Instant:
         """A state without the forces of contacts."""

@@ -188,6 +188,31 @@ class Follower:
         return first, second
 
 
+@dataclass(frozen=True)
+class PushedResidual:
+    """Residual of equations of motion with forces of contacts, and their gaps behind it: (t, x, v, a) ↦ shape (n + m,).
+
+    Attributes:
+        plain: equations of the model.
+        follower: the contacts.
+        piece: of the inputs.
+    """
+
+    plain: MotionEquations
+    follower: Follower
+    piece: Piece
+
+    def __call__(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        """The residual, and the gaps."""
+        size = self.plain.size
+        inputs = self.piece.at(t).value
+        _, gaps = self.follower.gaps(x[:size], inputs)
+        rows = self.plain.residual(t, x[:size], v[:size], a[:size])
+        for points, weights in self.follower.pushed(gaps, x[size:]).items():
+            rows = rows - points.gradient(x[:size], inputs, weights)
+        return np.concatenate([rows, self.follower.open_by(gaps)])
+
+
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
     """Equations of motion with the forces of contacts as further unknowns, and their gaps as further rows.
 
@@ -202,14 +227,6 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
     """
     size = plain.size
     count = len(follower.touches)
-
-    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        inputs = piece.at(t).value
-        _, gaps = follower.gaps(x[:size], inputs)
-        rows = plain.residual(t, x[:size], v[:size], a[:size])
-        for points, weights in follower.pushed(gaps, x[size:]).items():
-            rows = rows - points.gradient(x[:size], inputs, weights)
-        return np.concatenate([rows, follower.open_by(gaps)])
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         stiffness, damping, mass = (_bordered(part, count) for part in plain.jacobians(t, x[:size], v[:size], a[:size]))
@@ -228,7 +245,7 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
     return replace(
         plain,
         differential=differential,
-        residual=residual,
+        residual=PushedResidual(plain, follower, piece),
         jacobians=jacobians,
         rates_of_last=rates_of_last,
     )

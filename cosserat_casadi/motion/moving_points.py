@@ -98,12 +98,12 @@ class MovingPoints:
     @cached_property
     def _hessian(self) -> RepeatedCall:
         second = ca.densify(ca.jacobian(self._written[2], self._symbols[0]))
-        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]).expand())
+        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]))
 
     @cached_property
     def _jacobian(self) -> RepeatedCall:
         first = ca.densify(ca.jacobian(self._written[0], self._symbols[0]))
-        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]).expand())
+        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]))
 
 
 def nodes_of(model: Model, rod: str) -> MovingPoints:

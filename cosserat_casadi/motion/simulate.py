@@ -183,7 +183,9 @@ class Simulator:
     def _stretch(self) -> float:
         """Least stretch or shear, over the length, that a force of EI/ℓ² makes; infinite where rods admit none."""
         rods = self.model.discrete.rods.values()
-        scales = [rod.scales[number] for rod in rods for number, strain in enumerate(rod.admitted) if strain in rod.linear]
+        scales = [
+            rod.scales[number] for rod in rods for number, strain in enumerate(rod.admitted) if strain in rod.linear
+        ]
         return min(scales, default=np.inf) ** 2
 
     def stepped(self, size: float) -> History:

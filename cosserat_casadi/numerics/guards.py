@@ -46,9 +46,12 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
     One that falls through zero and rises again between two looks is found where it does so in one dip.
     """
     times = step.start.time + WATCHED * (step.end.time - step.start.time)
-    values = [guards(step.start)]
-    for time in times[1:]:
-        values.append(guards(step.at(float(time))))
+    seen = {0: guards(step.start)}
+    if _far_from_zero(step, guards, times, seen):
+        return None
+    values = [seen[0]]
+    for number, time in enumerate(times[1:], start=1):
+        values.append(seen[number] if number in seen else guards(step.at(float(time))))
         if np.any(values[-1] < -THROUGH):
             break
     # The looks are at even distances, and what turns between two of them is steep between one of them and the next.
@@ -69,6 +72,24 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
         if found:
             return min(found)
     return None
+
+
+def _far_from_zero(step: TimeStep, guards: Guards, times: FloatArray, seen: dict[int, FloatArray]) -> bool:
+    """Whether every other look at a step tells that no guard comes to zero between them.
+
+    Args:
+        step: the step.
+        guards: all of them.
+        times: of all looks, s.
+        seen: values by the number of the look, which the other looks are added to.
+    """
+    for number in range(2, len(times), 2):
+        before = seen[number - 2]
+        seen[number] = guards(step.at(float(times[number])))
+        change = np.abs(seen[number] - before)
+        if not np.all(np.minimum(before, seen[number]) > STEEPER * change):
+            return False
+    return True
 
 
 def _dip(

@@ -15,6 +15,10 @@ import numpy.typing as npt
 from cosserat_casadi.maths.typing import FloatArray
 
 
+Residual = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
+"""(t, x, v, a) ↦ F, shape (n,)."""
+
+
 @dataclass(frozen=True)
 class Instant:
     """A state of motion at one time; v and a of algebraic entries are zero.
@@ -71,7 +75,7 @@ class MotionEquations:
     """
 
     differential: npt.NDArray[np.bool_]
-    residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
+    residual: Residual
     jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
     rates_of_last: Callable[[float, FloatArray, FloatArray], tuple[FloatArray, FloatArray]] | None = None
