@@ -91,7 +91,7 @@ class MomentumKeeper:
         momentum, rate = (function.expand() for function in _functions(model))
         self._rate = RepeatedCall(rate)
         self._momentum = RepeatedCall(momentum)
-        self._momenta = momentum.map(len(OF_A_BODY))
+        self._momenta = RepeatedCall(momentum.map(len(OF_A_BODY)))
 
     def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
@@ -143,7 +143,11 @@ class MomentumKeeper:
     def _momenta_of(self, motions: FloatArray, instant: Instant, piece: Piece) -> FloatArray:
         """Momentum of rigid motions, in which it is linear, shape (6, 6): that of a rigid body, symmetric."""
         value = piece.at(instant.time).value
-        momenta = self._momenta(instant.x, motions[:, OF_A_BODY], value, np.zeros(len(value))).full()
+        still = np.zeros_like(value)
+        # Column after column, as CasADi has them.
+        columns = [np.tile(part, len(OF_A_BODY)) for part in (instant.x, value, still)]
+        self._momenta(columns[0], motions[:, OF_A_BODY].ravel(order="F"), *columns[1:])
+        momenta = self._momenta.results[0]
         mass, of_turns = momenta[0, 0], momenta[:, 1:]
         return np.block([[mass * np.eye(3), of_turns[:3]], [of_turns[:3].T, of_turns[3:]]])
 

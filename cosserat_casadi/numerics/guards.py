@@ -75,16 +75,17 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
 
 
 def _far_from_zero(step: TimeStep, guards: Guards, times: FloatArray, seen: dict[int, FloatArray]) -> bool:
-    """Whether every other look at a step tells that no guard comes to zero between them.
+    """Whether looks at its ends and its middle tell that no guard comes to zero in a step.
 
     Args:
         step: the step.
         guards: all of them.
         times: of all looks, s.
-        seen: values by the number of the look, which the other looks are added to.
+        seen: values by the number of the look, which these looks are added to.
     """
-    for number in range(2, len(times), 2):
-        before = seen[number - 2]
+    half = len(times) // 2
+    for number in (half, 2 * half):
+        before = seen[number - half]
         seen[number] = guards(step.at(float(times[number])))
         change = np.abs(seen[number] - before)
         if not np.all(np.minimum(before, seen[number]) > STEEPER * change):
