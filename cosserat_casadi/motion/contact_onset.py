@@ -13,7 +13,13 @@ from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touch
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.moving_inputs import InputState, Piece
 from cosserat_casadi.numerics.complementarity import least_pushes
-from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, response, shortly_after
+from cosserat_casadi.numerics.consistent_start import (
+    ConsistentStart,
+    Saddle,
+    consistent_start,
+    response,
+    shortly_after,
+)
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 STILL = 1e-9
@@ -70,6 +76,7 @@ class Onset:
         before: state before the event, without forces of contact.
         interval: time after it in which gaps are smooth, s.
         changes: of contact in the moment before: where there are many, longer times decide.
+        saddle: the linear system of the equations without contact there.
     """
 
     model: Model
@@ -78,7 +85,8 @@ class Onset:
     piece: Piece
     before: Instant
     interval: float
-    changes: int = 0
+    changes: int
+    saddle: Saddle
 
     @property
     def inputs(self) -> InputState:
@@ -102,10 +110,12 @@ class Onset:
     def start(self, pressing: Touches) -> ConsistentStart:
         """Accelerations and forces while some sections press."""
         equations = self.plain
+        saddle = self.saddle
         if pressing:
             equations = with_touches(self.plain, self._follower(pressing), self.piece)
-        x = _padded(self.before.x, pressing)
-        return consistent_start(equations, self.before.time, x, _padded(self.before.v, pressing), self.interval)
+            saddle = saddle.with_constraints(self._gradients(pressing))
+        x, v = (_padded(values, pressing) for values in (self.before.x, self.before.v))
+        return consistent_start(equations, self.before.time, x, v, self.interval, saddle)
 
     def held_still(self, touches: Touches) -> Onset:
         """With velocities at which some sections neither approach nor leave.
@@ -116,7 +126,7 @@ class Onset:
         if not touches:
             return self
         gradients = self._gradients(touches)
-        answers = response(self.plain, self.before, gradients.T)
+        answers = response(self.saddle, gradients.T)
         impulses, *_ = np.linalg.lstsq(gradients @ answers, self.rates(touches), rcond=None)
         return self.at(self.before.v - answers @ impulses)
 
@@ -127,7 +137,7 @@ class Onset:
         speeds = self.rates(touching)
         still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
         gradients = self._gradients(touching)
-        answers = response(self.plain, self.before, gradients.T)
+        answers = response(self.saddle, gradients.T)
         # Newton's law: γ⁺ ≥ −e γ⁻ where gaps close. What has touched before closes by rounding alone.
         shares = np.array([self.facings[touch.facing].obstacle.restitution for touch in touching])
         rebound = np.where(speeds < -still, -shares * speeds, 0.0)

@@ -34,6 +34,7 @@ from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.numerics.consistent_start import saddle_at
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -116,7 +117,8 @@ class ExactContacts:
         moment, changes = phases.moment, phases.changes + 1
         if at.time - moment > MOMENT * interval:
             moment, changes = at.time, 0
-        onset = Onset(self.model, self.facings, plain, piece, before, interval, changes)
+        saddle = saddle_at(plain, before)
+        onset = Onset(self.model, self.facings, plain, piece, before, interval, changes, saddle)
         known = self._known(phases, guard, before, onset.inputs.value)
         if changes > MOST_IN_A_MOMENT:
             known = self._all_lie(known, before, onset.inputs.value)

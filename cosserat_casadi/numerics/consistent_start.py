@@ -10,6 +10,7 @@ balance says nothing of a: along them some small a is taken, and the residual of
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -47,8 +48,55 @@ class ConsistentStart:
     massless: int
 
 
+@dataclass(frozen=True)
+class Saddle:
+    """The linear system of accelerations and algebraic entries; it depends on the positions alone.
+
+    Attributes:
+        constraints: rows in which nothing but positions stands, shape (n,).
+        matrix: derivatives of the rows with accelerations and algebraic entries, constraints twice differentiated,
+            shape (n, n).
+        differential: which entries have accelerations, shape (n,).
+    """
+
+    constraints: npt.NDArray[np.bool_]
+    matrix: FloatArray
+    differential: npt.NDArray[np.bool_]
+
+    @cached_property
+    def inverse(self) -> tuple[FloatArray, int]:
+        """Pseudo-inverse of the matrix, and the number of directions that it leaves out."""
+        return _pseudo_inverse(self.matrix)
+
+    def with_constraints(self, gradients: FloatArray) -> Saddle:
+        """The system with further constraints of these gradients, shape (m, n), and their multipliers, as last rows."""
+        count = len(gradients)
+        added = np.block([[self.matrix, -gradients.T], [gradients, np.zeros((count, count))]])
+        return Saddle(
+            np.append(self.constraints, np.ones(count, dtype=bool)),
+            added,
+            np.append(self.differential, np.zeros(count, dtype=bool)),
+        )
+
+
+def saddle_of(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> Saddle:
+    """The system of equations that are linearised, some of whose entries have accelerations, shape (n,)."""
+    constraints = _constraint_rows(linearisation, differential)
+    return Saddle(constraints, _saddle(linearisation, differential, constraints), differential)
+
+
+def saddle_at(equations: MotionEquations, instant: Instant) -> Saddle:
+    """The system of some equations at an instant."""
+    return saddle_of(equations.linearised(instant), equations.differential)
+
+
 def consistent_start(
-    equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float
+    equations: MotionEquations,
+    time: float,
+    x: FloatArray,
+    v: FloatArray,
+    interval: float,
+    saddle: Saddle | None = None,
 ) -> ConsistentStart:
     """Solve for accelerations and algebraic entries at given positions and velocities.
 
@@ -61,15 +109,15 @@ def consistent_start(
         v: velocities, shape (n,), 1/s.
         interval: time after the start in which the equations are smooth and the motion bends little, s; constraints
             are differentiated in it.
+        saddle: the linear system there, where it is known.
     """
     differential = equations.differential
     instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
-    linearisation = equations.linearised(instant)
-    constraints = _constraint_rows(linearisation, differential)
+    saddle = saddle or saddle_at(equations, instant)
+    constraints, matrix = saddle.constraints, saddle.matrix
     values, rates, accelerations = _in_time(equations, instant, constraints, interval)
 
-    matrix = _saddle(linearisation, differential, constraints)
-    inverse, massless = _pseudo_inverse(matrix)
+    inverse, massless = saddle.inverse
     for _ in range(CORRECTIONS):
         rows = equations.residual_at(instant)
         rows[constraints] = accelerations + matrix[constraints] @ instant.a
@@ -118,20 +166,16 @@ def following(
     return moved
 
 
-def response(equations: MotionEquations, instant: Instant, directions: FloatArray) -> FloatArray:
+def response(saddle: Saddle, directions: FloatArray) -> FloatArray:
     """Accelerations that unit forces make, or velocities that unit impulses make, all constraints kept, shape (n, k).
 
     Args:
-        equations: the equations of motion.
-        instant: positions and velocities at which they are linearised.
+        saddle: the linear system.
         directions: forces on the unknowns, one a column, shape (n, k).
     """
-    differential = equations.differential
-    linearisation = equations.linearised(instant)
-    constraints = _constraint_rows(linearisation, differential)
-    inverse, _ = _pseudo_inverse(_saddle(linearisation, differential, constraints))
-    forced = np.where(constraints[:, None], 0.0, directions)
-    return np.where(differential[:, None], inverse @ forced, 0.0)
+    inverse, _ = saddle.inverse
+    forced = np.where(saddle.constraints[:, None], 0.0, directions)
+    return np.where(saddle.differential[:, None], inverse @ forced, 0.0)
 
 
 def shortly_after(
@@ -152,14 +196,14 @@ def shortly_after(
     """
     differential = equations.differential
     linearisation = equations.linearised(instant)
-    constraints = _constraint_rows(linearisation, differential)
+    saddle = saddle_of(linearisation, differential)
     stiffness, damping = linearisation.stiffness, linearisation.damping
     answering = horizon * damping + horizon**2 * stiffness
-    answering[constraints] = 0.0
-    matrix = _saddle(linearisation, differential, constraints) + np.where(differential, answering, 0.0)
+    answering[saddle.constraints] = 0.0
+    matrix = saddle.matrix + np.where(differential, answering, 0.0)
     inverse, _ = _pseudo_inverse(matrix)
     moved = -horizon * stiffness @ instant.v - answering @ instant.a
-    forced = np.where(constraints[:, None], 0.0, np.column_stack([moved, directions]))
+    forced = np.where(saddle.constraints[:, None], 0.0, np.column_stack([moved, directions]))
     answers = np.where(differential[:, None], inverse @ forced, 0.0)
     return instant.a + answers[:, 0], answers[:, 1:]
 
@@ -186,10 +230,9 @@ def impact(
     """
     differential = equations.differential
     instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
-    linearisation = equations.linearised(instant)
-    constraints = _constraint_rows(linearisation, differential)
-    matrix = _saddle(linearisation, differential, constraints)
-    inverse, _ = _pseudo_inverse(matrix)
+    saddle = saddle_at(equations, instant)
+    constraints, matrix = saddle.constraints, saddle.matrix
+    inverse, _ = saddle.inverse
     wanted = np.zeros(equations.size)
     _, rates, _ = _in_time(equations, instant, constraints, interval)
     wanted[constraints] = -rates
