@@ -172,14 +172,6 @@ def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> Float
     return terms
 
 
-def interpolation_row(N: int, X: float) -> FloatArray:
-    """One row of :func:`interpolation_matrix`, in a tenth of the time; X may lie a little outside too, shape (N + 1,)."""
-    points, weights = _points_and_weights(N)
-    gaps = X - points
-    terms: FloatArray = weights / gaps if gaps.all() else (gaps == 0.0).astype(float)
-    return terms / terms.sum()
-
-
 def quadrature_weights(N: int) -> FloatArray:
     """The weights of Clenshaw–Curtis quadrature on [0, 1]: C. W. Clenshaw, A. R. Curtis, Numer. Math. 2 (1960) 197.
 

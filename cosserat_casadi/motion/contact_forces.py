@@ -150,7 +150,7 @@ class Follower:
     def curvature(
         self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap], forces: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Sum of the forces times the second derivatives of their gaps with the unknowns, (n, n), and gradients, (m, n).
+        """Sum of forces times second derivatives of their gaps with the unknowns, (n, n), and their gradients, (m, n).
 
         Args:
             x: unknowns, shape (n,).

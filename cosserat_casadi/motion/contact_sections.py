@@ -5,16 +5,18 @@ Positions between the nodes are those of the polynomials through the nodes, as r
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import pairwise
 
 import casadi as ca
 import numpy as np
+from numpy.polynomial import chebyshev as polynomial
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.contact.obstacle_surfaces import along_curve, distance_from, distances, surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, distances, surface
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -34,6 +36,9 @@ SECTIONS_IN_ELEMENT = 200
 MOST_ITERATIONS = 20
 """Newton iterations for the place where a gap is least."""
 
+ITERATIONS_AT_ONCE = 4
+"""Iterations of one call: next to a place as many do."""
+
 MOST_HALVINGS = 40
 """Halvings of a stretch in which there is such a place, where Newton's method does not find it."""
 
@@ -45,9 +50,6 @@ AT_END = 1e-12
 
 LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""
-
-REMEMBERED_SECTIONS = 512
-"""Sections whose weights are remembered."""
 
 BEYOND = 0.05
 """How far beyond the ends of a rod its polynomials are followed, over the length."""
@@ -99,22 +101,15 @@ class RodFacing(Facing):
 
     def at(self, nodes: FloatArray, X: float) -> SectionGap:
         """The gap at a section, a little beyond the ends of the rod too."""
-        rows = self._rows(X)
-        tangent = rows.first @ nodes
-        distance = along_curve(self._surface.matrices(rows.value @ nodes), tangent, rows.second @ nodes)
-        taper = self._radii[1] - self._radii[0]
-        gap = distance.value - self._radii[0] - X * taper
-        slope = distance.slope - taper
-        length = self.length
-        return SectionGap(
-            gap / length,
-            slope / length,
-            distance.bend / length,
-            rows,
-            distance.normal,
-            distance.curvature,
-            tangent,
-        )
+        element, start, width = self._element_of(X)
+        coefficients = self._coefficients(nodes, element)
+        parts = self._section.matrices(coefficients, (X - start) / width, start, width)
+        gap, normal, curvature, tangent, basis = parts
+        value, slope, bend = (gap[:, 0] / self.length).tolist()
+        rows = np.zeros((3, len(nodes)))
+        count = len(basis)
+        rows[:, element * count : (element + 1) * count] = basis.T @ self._to_coefficients
+        return SectionGap(value, slope, bend, Rows(*rows), normal[:, 0], curvature, tangent[:, 0])
 
     def place(self, nodes: FloatArray, near: float) -> float:
         """Abscissa next to another where the gap is least; not beyond the ends by more than a little."""
@@ -163,17 +158,28 @@ class RodFacing(Facing):
     def _stationary(self, nodes: FloatArray, near: float) -> float:
         """Newton's method for a place where the slope is zero; not a number where it leads nowhere."""
         X = near
-        for _ in range(MOST_ITERATIONS):
-            gap = self.at(nodes, X)
-            if not gap.bend > 0.0:
-                return float("nan")
-            change = -gap.slope / gap.bend
-            X += change
+        for _ in range(MOST_ITERATIONS // ITERATIONS_AT_ONCE):
+            element, start, width = self._element_of(X)
+            found = self._places.matrices(self._coefficients(nodes, element), (X - start) / width, start, width)
+            share, change = (float(part[0, 0]) for part in found)
+            X = start + width * share
+            # Not where it is not a number.
             if not -BEYOND <= X <= 1.0 + BEYOND:
                 return float("nan")
-            if abs(change) <= PLACED:
+            if abs(width * change) <= PLACED:
                 break
         return X
+
+    def _element_of(self, X: float) -> tuple[int, float, float]:
+        """Number of the element of a section, the abscissa of its base and its width."""
+        ends = self._ends
+        element = min(max(bisect_right(ends, X) - 1, 0), len(ends) - 2)
+        return element, ends[element], ends[element + 1] - ends[element]
+
+    def _coefficients(self, nodes: FloatArray, element: int) -> FloatArray:
+        """Chebyshev coefficients of the positions in an element, column after column, shape (3 (N + 1),), m."""
+        count = len(self._to_coefficients)
+        return (self._to_coefficients @ nodes[element * count : (element + 1) * count]).ravel(order="F")
 
     def _level(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the watched sections, rounded so that a flat gap has no hills, shape (k,)."""
@@ -235,10 +241,62 @@ class RodFacing(Facing):
         return self.model.discrete.rods[self.owner].grid
 
     @cached_property
-    def _surface(self) -> RepeatedCall:
+    def _ends(self) -> tuple[float, ...]:
+        return self._grid.known_places
+
+    @cached_property
+    def _to_coefficients(self) -> FloatArray:
+        """Chebyshev coefficients of a polynomial from its values at the nodes of an element, (N + 1)×(N + 1)."""
+        points = 2.0 * np.asarray(chebyshev.nodes(self._grid.intervals)) - 1.0
+        return np.linalg.inv(polynomial.chebvander(points, self._grid.intervals))
+
+    @cached_property
+    def _section(self) -> RepeatedCall:
+        """(coefficients, share of the element, its base, its width) ↦ gap and two derivatives with X, and more of it.
+
+        Normal, curvature, tangent, and the Chebyshev polynomials with two derivatives with X, (N + 1)×3.
+        """
+        return RepeatedCall(self._gap_function, 5)
+
+    @cached_property
+    def _places(self) -> RepeatedCall:
+        """The same arguments ↦ share at which Newton's method arrives, and its last change."""
+        arguments = [ca.MX.sym(name, *self._gap_function.size_in(k)) for k, name in enumerate("cswx")]
+        coefficients, share, start, width = arguments
+        change = ca.MX(0)
+        for _ in range(ITERATIONS_AT_ONCE):
+            gap = self._gap_function(coefficients, share, start, width)[0]
+            # Where the gap has no bend, the least one is elsewhere.
+            change = ca.if_else(gap[2] > 0, -gap[1] / gap[2], np.nan) / width
+            share = share + change
+        return RepeatedCall(ca.Function("places", arguments, [share, change]), 2)
+
+    @cached_property
+    def _gap_function(self) -> ca.Function:
+        count = self._grid.intervals + 1
+        coefficients = ca.SX.sym("coefficients", 3 * count)
+        share, start, width = (ca.SX.sym(name) for name in ("share", "start", "width"))
+        z = 2 * share - 1
+        polynomials = [ca.SX(1), z]
+        for _ in range(count - 2):
+            polynomials.append(2 * z * polynomials[-1] - polynomials[-2])
+        value = ca.vertcat(*polynomials[:count])
+        first = ca.jacobian(value, share) / width
+        second = ca.jacobian(first, share) / width
+        basis = ca.densify(ca.horzcat(value, first, second))
+        curve = ca.reshape(coefficients, count, 3).T @ basis
+        tangent = curve[:, 1]
         function = surface(self.obstacle)
-        point = function.mx_in()
-        return RepeatedCall(ca.Function("surface", point, [ca.densify(part) for part in function.call(point)]), 3)
+        distance, normal, curvature = function.expand().call([curve[:, 0]])
+        base, tip = self._radii
+        taper = tip - base
+        gap = ca.vertcat(
+            distance - base - (start + width * share) * taper,
+            ca.dot(normal, tangent) - taper,
+            ca.bilin(curvature, tangent, tangent) + ca.dot(normal, curve[:, 2]),
+        )
+        results = [ca.densify(part) for part in (gap, normal, curvature, tangent, basis)]
+        return ca.Function("gap", [coefficients, share, start, width], results)
 
     @cached_property
     def _looking(self) -> FloatArray:
@@ -257,29 +315,6 @@ class RodFacing(Facing):
         """Radius at base and tip, between which it is linear, m."""
         base, tip = section_radius(self.model.discrete.rods[self.owner].properties, np.array([0.0, 1.0])).tolist()
         return base, tip
-
-    def _rows(self, X: float) -> Rows:
-        return _rows_of(self._grid, X)
-
-
-@lru_cache(maxsize=REMEMBERED_SECTIONS)
-def _rows_of(grid: Grid, X: float) -> Rows:
-    """Weights of the nodes of a grid for one section: those of a section that stays are asked for over and over."""
-    ends = grid.known_places
-    element = int(grid.element_of(np.array([X]))[0])
-    width = ends[element + 1] - ends[element]
-    share = (X - ends[element]) / width
-    local = chebyshev.interpolation_row(grid.intervals, share)
-    per_element = grid.intervals + 1
-    own = slice(element * per_element, (element + 1) * per_element)
-    rows = np.zeros((3, grid.size))
-    rows[0, own] = local
-    rows[1, own] = local @ _differentiated(grid.intervals, 1) / width
-    rows[2, own] = local @ _differentiated(grid.intervals, 2) / width**2
-    return Rows(*rows)
-
-
-_differentiated = lru_cache(maxsize=32)(chebyshev.differentiation_matrix)
 
 
 def _inside(X: float) -> bool:

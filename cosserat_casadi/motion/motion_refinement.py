@@ -30,7 +30,9 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
     COARSER,
+    FAR_APART,
     MOST_TIGHTENINGS,
+    NOT_NEARER,
     SLOPE,
     TIGHTER,
     Companion,
@@ -114,6 +116,13 @@ FELT = 0.02
 
 LAST = 3
 """One of so many coefficients counts as one of the last."""
+
+
+ERRATIC = (
+    "More exact steps do not bring the paths nearer to each other: after its impacts the motion hangs on rounding. "
+    "Damp the rod, or give a larger tolerance."
+)
+"""What a user is told of such a motion."""
 
 
 @dataclass(frozen=True)
@@ -333,6 +342,8 @@ def _with_tolerance(search: _Search) -> Motion:
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         search.levels.append(ResolvedMotion(simulator, history, found, rung, distance, unseen))
+        if len(search.levels) == 1 and _is_erratic(search):
+            return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
@@ -347,6 +358,27 @@ def _with_tolerance(search: _Search) -> Motion:
     if len(search.levels) > 1:
         companions.append(Companion(search.levels[-2].history, search.left_over_distance))
     return _judged(search, finest, search.space_error + timed.error, companions)
+
+
+def _is_erratic(search: _Search) -> bool:
+    """Whether more exact steps bring a first motion that strikes no nearer to what it converges to."""
+    level = search.last
+    struck = any(event.kind == "impact" for event in level.history.events)
+    if not struck or not np.isfinite(search.step_tolerance):
+        return False
+    coarse = told_by_coarser(level, search.step_tolerance)
+    before = coarse.error / left_by(COARSER)
+    if not np.isfinite(before) or before <= FAR_APART * search.tolerance:
+        return False
+    distance = level.simulator.finer(coarse, TIGHTER).error / left_by(TIGHTER)
+    search.time_error = distance
+    return distance > NOT_NEARER * before
+
+
+def _erratic(search: _Search) -> Motion:
+    """The motion of the first level, where more exact steps do not converge: nor would more modes."""
+    motion = _judged(search, search.last, search.time_error, [])
+    return replace(motion, message=f"{motion.message} {ERRATIC}")
 
 
 def _ladder(scene: Scene) -> tuple[int, ...]:

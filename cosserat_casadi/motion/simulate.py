@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -71,6 +71,12 @@ LEFT_BY_HALF = 1.0 / 3.0
 
 MOST_TIGHTENINGS = 6
 """Motions, each more exactly computed than the last, before a tolerance is given up."""
+
+NOT_NEARER = 0.5
+"""Share of the distance of two motions from which on the next two, ten times as exact, count as no nearer."""
+
+FAR_APART = 10.0
+"""Distance of theirs, over the error allowed, from which on that tells of a motion that rounding decides."""
 
 FIRST_GAUSS_STEPS = 50
 """Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
@@ -173,10 +179,13 @@ class Simulator:
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
         left = min(NEWTON * tolerance, max(CLOSED, FORCE_LEFT * self._stretch))
-        if self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential):
-            # What Newton's method leaves is what supports and joints are open by, or contacts.
-            left = min(left, CLOSED)
-        settings = StepSettings(tolerance=tolerance / self.displacements, newton=left / tolerance)
+        closed = min(left, CLOSED)
+        if not np.all(self.model.discrete.unknowns.differential):
+            # What Newton's method leaves is what supports and joints are open by, and contacts while they are closed.
+            left = closed
+        settings = StepSettings(
+            tolerance=tolerance / self.displacements, newton=left / tolerance, on_guard=closed / tolerance
+        )
         return self._integrated(radau(STAGES), settings)
 
     @property
@@ -233,10 +242,17 @@ class Simulator:
         """
         timed = TimedHistory(coarse, float("nan"), first)
         factor = TIGHTER
+        before = np.inf
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
             timed = self.finer(timed, factor)
+            distance = timed.error / left_by(factor)
+            struck = any(event.kind == "impact" for event in timed.history.events)
+            if struck and distance > max(NOT_NEARER * before, FAR_APART * tolerance):
+                # Its impacts make the motion hang on rounding.
+                return replace(timed, error=distance)
+            before = distance
             if timed.error <= tolerance:
                 break
             factor = factor_for(timed.error, tolerance)
