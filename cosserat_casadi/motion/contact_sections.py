@@ -103,8 +103,8 @@ class RodFacing(Facing):
         """The gap at a section, a little beyond the ends of the rod too."""
         element, start, width = self._element_of(X)
         coefficients = self._coefficients(nodes, element)
-        parts = self._section.matrices(coefficients, (X - start) / width, start, width)
-        gap, normal, curvature, tangent, basis = parts
+        at = (np.array([number]) for number in ((X - start) / width, start, width))
+        gap, normal, curvature, tangent, basis = self._section.matrices(coefficients, *at)
         value, slope, bend = (gap[:, 0] / self.length).tolist()
         rows = np.zeros((3, len(nodes)))
         count = len(basis)
@@ -160,7 +160,8 @@ class RodFacing(Facing):
         X = near
         for _ in range(MOST_ITERATIONS // ITERATIONS_AT_ONCE):
             element, start, width = self._element_of(X)
-            found = self._places.matrices(self._coefficients(nodes, element), (X - start) / width, start, width)
+            at = (np.array([number]) for number in ((X - start) / width, start, width))
+            found = self._places.matrices(self._coefficients(nodes, element), *at)
             share, change = (float(part[0, 0]) for part in found)
             X = start + width * share
             # Not where it is not a number.
@@ -248,7 +249,7 @@ class RodFacing(Facing):
     def _to_coefficients(self) -> FloatArray:
         """Chebyshev coefficients of a polynomial from its values at the nodes of an element, (N + 1)×(N + 1)."""
         points = 2.0 * np.asarray(chebyshev.nodes(self._grid.intervals)) - 1.0
-        return np.linalg.inv(polynomial.chebvander(points, self._grid.intervals))
+        return np.asarray(np.linalg.inv(polynomial.chebvander(points, self._grid.intervals)))
 
     @cached_property
     def _section(self) -> RepeatedCall:

@@ -14,7 +14,6 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 
-
 Residual = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
 """(t, x, v, a) ↦ F, shape (n,)."""
 

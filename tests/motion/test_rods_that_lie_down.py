@@ -21,7 +21,7 @@ from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.lying_sections import lobatto
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import MotionOutcome
-from cosserat_casadi.numerics.consistent_start import response, shortly_after
+from cosserat_casadi.numerics.consistent_start import response, saddle_at, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step_run import ON_GUARD
 from tests.families import mostly_slow
