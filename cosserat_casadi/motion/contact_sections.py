@@ -48,6 +48,9 @@ PLACED = 1e-14
 AT_END = 1e-12
 """Distance from an end, over the length, at which a place is that end."""
 
+OFF = 10.0
+"""Gap over what it may be lower next to a section that is looked at, from which on the rod is off the obstacle."""
+
 LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""
 
@@ -148,7 +151,11 @@ class RodFacing(Facing):
         ]
         if not others:
             return float("inf")
-        return self._refined(nodes, min(others, key=lambda i: float(gaps[i]))).gap
+        lowest = min(others, key=lambda i: float(gaps[i]))
+        # Far from zero no one asks how much lower it is beside that section.
+        if gaps[lowest] > OFF * _step_down(gaps, lowest):
+            return float(gaps[lowest])
+        return self._refined(nodes, lowest).gap
 
     def deepest(self, nodes: FloatArray) -> Minimum:
         """The section whose gap is the least of all, the base included."""

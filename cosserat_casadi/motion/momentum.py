@@ -21,6 +21,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
 from cosserat_casadi.scene import Scene
@@ -33,6 +34,9 @@ OF_A_BODY = [0, 3, 4, 5]
 
 CORRECTIONS = 2
 """Corrections of the velocities after one step: momentum is linear in them, so that the second is one of rounding."""
+
+REGULAR = 1e-9
+"""Share of the largest momentum of a rigid motion below which one counts as none."""
 
 ROUNDING = 8.0 * float(np.finfo(np.float64).eps)
 """Momentum, relative to the largest entry, that is rounding and not missing."""
@@ -81,6 +85,8 @@ class MomentumKeeper:
         damped = any(rod.properties.mass_damping is not None for rod in model.discrete.rods.values())
         self._loaded = damped or bool(model.scene.loads)
         self._size = model.size
+        # The momentum where the last step was looked at last.
+        self._last: tuple[Instant | None, Piece | None, FloatArray] = (None, None, np.zeros(MOMENTA))
         self._frames = [
             (entries, frame)
             for (_, entries), frame in zip(
@@ -95,18 +101,27 @@ class MomentumKeeper:
 
     def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
-        wanted = self._momentum_of(self._to_model(step.start), piece) + self._impulse(step, piece)
+        known, of_piece, momentum = self._last
+        if known is not step.start or of_piece is not piece:
+            momentum = self._momentum_of(self._to_model(step.start), piece)
+        wanted = momentum + self._impulse(step, piece)
         rounding = ROUNDING * np.abs(wanted).max()
         end = step.end
         motions = self.rigid_motions(end.x)
         arrived = self._to_model(end)
         # Not every rigid motion has momentum: a straight rod without rotary inertia may spin about its axis.
-        inverse = np.linalg.pinv(self._momenta_of(self.rigid_motions(arrived.x), arrived, piece))
+        momenta = self._momenta_of(self.rigid_motions(arrived.x), arrived, piece)
+        inverse = regular_inverse(momenta, REGULAR)
+        if inverse is None:
+            inverse = np.linalg.pinv(momenta)
         for _ in range(CORRECTIONS):
-            missing = wanted - self._momentum_of(self._to_model(end), piece)
+            momentum = self._momentum_of(arrived, piece)
+            self._last = end, piece, momentum
+            missing = wanted - momentum
             if np.abs(missing).max() <= rounding:
                 break
             end = replace(end, v=end.v + motions @ (inverse @ missing))
+            arrived = self._to_model(end)
         return end
 
     def _impulse(self, step: TimeStep, piece: Piece) -> FloatArray:

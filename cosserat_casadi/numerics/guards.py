@@ -40,6 +40,18 @@ MOST_SECTIONS = 40
 """Golden sections of the time between two of them in which a guard may fall through zero and rise again."""
 
 
+def remembering(guards: Guards) -> Guards:
+    """Guards that remember the last state: a step starts where the one before it has ended."""
+    last: list[tuple[Instant, FloatArray]] = []
+
+    def values(instant: Instant) -> FloatArray:
+        if not (last and last[0][0] is instant):
+            last[:] = [(instant, guards(instant))]
+        return last[0][1]
+
+    return values
+
+
 def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
     """The first time, s, in a step at which a guard falls through zero, and its number; None where none does.
 

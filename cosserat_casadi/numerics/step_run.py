@@ -10,7 +10,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.coupled_stages import CoupledStages, solve_coupled_stages
-from cosserat_casadi.numerics.guards import Guards, crossing
+from cosserat_casadi.numerics.guards import Guards, crossing, remembering
 from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
@@ -101,6 +101,8 @@ class StepRun:
         iterations = MOST_ITERATIONS if self.settings.size is None else ITERATIONS_OF_GIVEN_STEP
         self.bounds = NewtonBounds(weights, self.settings.newton, iterations)
         self.memory = self.before
+        if self.guards is not None:
+            self.guards = remembering(self.guards)
         if self.before is None:
             return
         self.longest = self.before.longest
