@@ -1,14 +1,19 @@
-"""Random rods in exact contact: how many are solved, and is each that is solved an equilibrium that holds?
+"""Random rods in contact: how many are solved, and does an independent solver agree with each that is solved?
 
-With ``--family`` bars stand next to a section of the untouched rod: tests/reference/contact_scenes.py says how.
-Judged by what the solver does not look at: gaps on a dense grid, signs of the forces, and the balance of all forces.
+Families of scenes are those of tests/reference/contact_scenes.py. Exact contact is judged by gaps on a dense grid, by
+signs of the forces and by the balance of all forces. The places of all sections, and what each obstacle presses with,
+are compared with discrete rods that IPOPT minimises, with gaps as constraints (tests/reference/discrete_rods.py). Rods
+with friction go along a path of their weight, and so do the discrete rods, in the same increments.
 """
 
 from __future__ import annotations
 
 import sys
 import time
+import tomllib
 from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -18,10 +23,11 @@ import typer
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import build, discretise, parse_scene, solve  # noqa: E402
+from cosserat_casadi import Solution, build, discretise, follow, parse_scene, solve  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
-from tests.contact.verdict import faults  # noqa: E402
-from tests.reference.contact_scenes import FAMILIES, contact_scene, placed_scene  # noqa: E402
+from cosserat_casadi.paths.friction_path import FrictionPath  # noqa: E402
+from tests.contact.verdict import compared, faults  # noqa: E402
+from tests.reference.contact_scenes import COMPOSED, FAMILIES, contact_scene, placed_scene  # noqa: E402
 
 
 def place(text: str, X: float) -> tuple[FloatArray, FloatArray]:
@@ -32,27 +38,77 @@ def place(text: str, X: float) -> tuple[FloatArray, FloatArray]:
     return pose.position[[0, 2]], np.array([-z, x])
 
 
+def text_of(seed: int, family: str) -> str:
+    """The scene of a seed."""
+    if family in COMPOSED:
+        return COMPOSED[family](seed)
+    return placed_scene(seed, family, place) if family else contact_scene(seed)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What is said of a scene.
+
+    Attributes:
+        outcome: of the solve, or of the path.
+        touches: whether anything touches at its end.
+        faults: what is wrong, a sentence each.
+        seconds: processor time of the solve, or of the path.
+    """
+
+    outcome: str
+    touches: bool
+    faults: list[str]
+    seconds: float
+
+
+def judged(text: str, modes: int) -> Judgement:
+    """Solve a scene, or follow its weight where there is friction, and judge the end."""
+    scene = parse_scene(text)
+    model = build(scene, discretise(scene, modes))
+    begun = time.process_time()
+    if model.memory is None:
+        solution = solve(model)
+        seconds = time.process_time() - begun
+        return Judgement(solution.outcome.label, bool(solution.contacts), list(_faults(text, solution)), seconds)
+    still = {"weight.acceleration": [0.0, 0.0, 0.0]}
+    path = follow(model, "weight.acceleration", [0.0, 0.0, -9.81], still)
+    seconds = time.process_time() - begun
+    assert isinstance(path, FrictionPath), "a model with memory"
+    found = list(compared(text, path.solution(0), path)) if path.converged else []
+    return Judgement(path.outcome.label, bool(path.rubbing(-1)), found, seconds)
+
+
+def _faults(text: str, solution: Solution) -> Iterator[str]:
+    if not solution.converged:
+        return
+    tables = tomllib.loads(text)
+    if all("width" not in obstacle for obstacle in tables.get("obstacles", [{"width": 1}])):
+        yield from faults(solution)
+    # A minimum lies next to what is stable alone.
+    if solution.stable is not False:
+        yield from compared(text, solution)
+
+
 def main(
     count: Annotated[int, typer.Option(help="Scenes.")] = 100,
     first: Annotated[int, typer.Option(help="Seed of the first.")] = 0,
     modes: Annotated[int, typer.Option(help="Polynomials per strain and element.")] = 7,
-    family: Annotated[str, typer.Option(help=f"Bars at places: {', '.join(FAMILIES)}.")] = "",
+    family: Annotated[str, typer.Option(help=f"One of {', '.join(FAMILIES)}.")] = "",
 ) -> None:
     """Solve and judge scenes, print the figures; exit code 1 if one that converged is wrong."""
-    outcomes: Counter[str] = Counter()
-    wrong = 0
-    seconds = []
+    verdicts = []
     for seed in range(first, first + count):
-        scene = parse_scene(placed_scene(seed, family, place) if family else contact_scene(seed))
-        begun = time.process_time()
-        solution = solve(build(scene, discretise(scene, modes)))
-        seconds.append(time.process_time() - begun)
-        outcomes[solution.outcome.label] += 1
-        found = faults(solution) if solution.converged else []
-        wrong += bool(found)
-        if found or not solution.converged:
-            print(f"seed {seed}: {solution.outcome.label}: {'; '.join(found)}", flush=True)
-    print(dict(outcomes), f"{wrong} wrong; processor time: median {np.median(seconds):.1f} s, {max(seconds):.1f} s")
+        verdict = judged(text_of(seed, family), modes)
+        verdicts.append(verdict)
+        if verdict.faults or verdict.outcome != "converged":
+            print(f"seed {seed}: {verdict.outcome}: {'; '.join(verdict.faults)}", flush=True)
+    outcomes = Counter(verdict.outcome for verdict in verdicts)
+    touching = sum(verdict.touches for verdict in verdicts)
+    wrong = sum(bool(verdict.faults) for verdict in verdicts)
+    seconds = [verdict.seconds for verdict in verdicts]
+    cost = f"processor time: median {np.median(seconds):.1f} s, {max(seconds):.1f} s"
+    print(f"{dict(outcomes)}, {touching} touch, {wrong} wrong; {cost}")
     raise typer.Exit(int(wrong > 0))
 
 

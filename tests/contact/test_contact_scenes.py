@@ -1,18 +1,61 @@
-"""Random rods with loads on tables, bars and balls: what converged holds, judged by gaps, forces and balance alone."""
+"""Random rods in contact: what converged holds, by gaps, forces and balance, and beside discrete rods."""
 
 from __future__ import annotations
 
-import pytest
+import tomllib
 
-from cosserat_casadi import build, discretise, parse_scene, solve
-from tests.contact.verdict import faults
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import build, discretise, follow, parse_scene, solve
+from cosserat_casadi.paths.friction_path import FrictionPath
+from tests.contact.verdict import NEAR, compared, evenly_apart, faults
 from tests.families import mostly_slow
-from tests.reference.contact_scenes import contact_scene
+from tests.reference.contact_scenes import COMPOSED, contact_scene, smooth_scene
+from tests.reference.discrete_rods import discrete_equilibrium
 
 
 @pytest.mark.parametrize("seed", mostly_slow(range(12), [3]))
 def test_random_contact_holds(seed: int) -> None:
-    scene = parse_scene(contact_scene(seed))
+    text = contact_scene(seed)
+    scene = parse_scene(text)
     solution = solve(build(scene, discretise(scene, 7)))
     assert solution.converged, solution.message
     assert faults(solution) == []
+    assert list(compared(text, solution)) == []
+
+
+@pytest.mark.parametrize("family", mostly_slow(["bodies", "moving", "pairs"], ["moving"]))
+def test_other_contacts_are_where_discrete_rods_have_them(family: str) -> None:
+    text = COMPOSED[family](4)
+    scene = parse_scene(text)
+    solution = solve(build(scene, discretise(scene, 7)))
+    assert solution.converged and solution.contacts
+    assert list(compared(text, solution)) == []
+
+
+def test_a_path_with_friction_ends_where_that_of_discrete_rods_does() -> None:
+    text = COMPOSED["friction"](2)
+    scene = parse_scene(text)
+    model = build(scene, discretise(scene, 7))
+    path = follow(model, "weight.acceleration", [0, 0, -9.81], {"weight.acceleration": [0, 0, 0]})
+    assert isinstance(path, FrictionPath) and path.converged
+    assert {stretch.slips for stretch in path.rubbing(-1)} == {True, False}
+    assert list(compared(text, path.solution(0), path)) == []
+    # An equilibrium without friction is elsewhere.
+    (friction, *_) = [line for line in text.splitlines() if line.startswith("friction")]
+    unhindered = solve(build(parse_scene(text.replace(friction, "friction = 0.0")), discretise(scene, 7)))
+    assert np.abs(unhindered.tip().position - path.solution(-1).tip().position).max() > 10 * NEAR
+
+
+def test_discrete_rods_converge_at_second_order() -> None:
+    text = smooth_scene(0)
+    scene = parse_scene(text)
+    solution = solve(build(scene, discretise(scene, 9)))
+    off = []
+    for segments in (20, 40, 80):
+        poses = evenly_apart(solution, segments)
+        minimum = discrete_equilibrium(tomllib.loads(text), poses)
+        off.append(np.abs(minimum.ends["rod"] - poses["rod"][0][1:]).max())
+    assert_allclose(np.log2(np.divide(off[:-1], off[1:])), 2.0, rtol=0, atol=0.2)

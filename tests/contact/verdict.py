@@ -1,15 +1,31 @@
-"""Whether a solution in exact contact holds, by gaps, forces and balance alone."""
+"""Whether rods in contact are where they should be: by gaps, forces and balance, or by an independent solver."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
 
 import numpy as np
 
 from cosserat_casadi import Solution
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.paths.friction_path import FrictionPath
+from tests.reference.discrete_rods import Poses, discrete_equilibrium, discrete_friction_path
 
 DENSE = np.linspace(0.0, 1.0, 4001)
+
+SEGMENTS = 120
+"""Of a discrete rod; of rods that touch rods, whose sections are all compared with each other, a quarter."""
+
+NEAR = 2e-4
+"""Distance from the discrete rods, of the length, that is allowed beside twice what half the segments change.
+
+A point that touches a bar beside the place of contact is pushed askew: of that the distance is of first order.
+"""
+
+PRESSING = 2e-2
+"""Difference of what an obstacle presses with that is allowed, of the largest of these forces, or of 0.1 N."""
 
 
 def faults(solution: Solution, tolerance: float = 2e-5) -> list[str]:
@@ -38,12 +54,64 @@ def _faults(solution: Solution, tolerance: float) -> Iterator[str]:
     total = np.zeros(3)
     for rod in scene.rods:
         total += solution.base_wrench(rod.name).force
-        assert rod.linear_density is not None
-        total += [0.0, 0.0, -9.81 * rod.linear_density * rod.length]
+        density = rod.linear_density or rod.material.density * np.pi * rod.section.radius**2
+        total += [0.0, 0.0, -9.81 * density * rod.length]
+    for body in scene.bodies:
+        total += [0.0, 0.0, -9.81 * body.mass]
     for load in scene.loads:
         if load.kind == "point_wrench":
             total += np.array(load.force)
+    borne = {obstacle.name for obstacle in scene.obstacles if obstacle.body is not None}
     for contact in solution.contacts:
-        total += contact.force
+        if contact.obstacle not in borne:
+            total += contact.force
     if np.abs(total).max() > 1e-6 * largest:
         yield f"forces add up to {np.abs(total).max():.1e} N"
+
+
+def compared(text: str, solution: Solution, path: FrictionPath | None = None) -> Iterator[str]:
+    """What discrete rods say against a stable solution, or against the end of a path with friction.
+
+    Args:
+        text: the scene; its weight grows along the path.
+        solution: what is compared; with a path, its first point.
+        path: with friction.
+    """
+    tables = tomllib.loads(text)
+    segments = SEGMENTS // 4 if "rod_contacts" in tables else SEGMENTS
+    end = solution if path is None else path.solution(-1)
+    ends = []
+    pressing: dict[str, float] = {}
+    for number in (segments // 2, segments):
+        start = evenly_apart(solution, number)
+        if path is None:
+            minimum = discrete_equilibrium(tables, start)
+            found, pressing = minimum.ends if minimum.solved else None, minimum.pressing
+        else:
+            found = discrete_friction_path(tables, start, path.factor)
+        if found is None:
+            yield "the discrete rods were not solved"
+            return
+        ends.append(found)
+    for rod in solution.model.scene.rods:
+        coarse, fine = (points[rod.name] for points in ends)
+        wanted, _ = evenly_apart(end, segments)[rod.name]
+        apart = np.abs(fine - wanted[1:]).max()
+        if apart > NEAR * rod.length + 2 * np.abs(fine[1::2] - coarse).max():
+            yield f"{rod.name} is {apart:.1e} m from the discrete one"
+    largest = max([0.1, *pressing.values()])
+    for name, force in pressing.items():
+        told = sum(float(np.linalg.norm(contact.force)) for contact in solution.contacts if contact.obstacle == name)
+        if abs(told - force) > PRESSING * largest:
+            yield f"{name} presses with {told:.3g} N, on the discrete rods with {force:.3g} N"
+
+
+def evenly_apart(solution: Solution, segments: int) -> Poses:
+    """Sections of the rods of a solution, as discrete rods begin with them."""
+    ends = np.arange(segments + 1) / segments
+    middles = (ends[1:] + ends[:-1]) / 2
+
+    def sections(rod: str) -> tuple[FloatArray, FloatArray]:
+        return solution.pose(ends, rod).position, solution.pose(middles, rod).rotation
+
+    return {rod.name: sections(rod.name) for rod in solution.model.scene.rods}
