@@ -39,10 +39,11 @@ from typing import Any, Literal, final
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.load import Rubbing, Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, known, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
@@ -55,6 +56,9 @@ HISTORY_FIELD = "history"
 
 HISTORY = 12
 """Numbers that friction remembers of a section: a position, m, and a rotation matrix, column after column."""
+
+GROWTH_INSIDE = 2
+"""Power of the load factor by which a layer grows where the unloaded rod is inside the obstacle, or may be."""
 
 NOTHING = 1e-9
 """Way along an obstacle, in widths, that counts as none."""
@@ -83,14 +87,35 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
     """
 
     record = ContactLayer
-    # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
-    growth = 2
     nodal = HISTORY_FIELD
 
     def abscissa(self, load: ContactLayer) -> Scalar | None:
         """The section of a disk; None of all others."""
         at: Scalar | None = load.at
         return at
+
+    def growth(self, load: ContactLayer, site: Site) -> int:
+        """Power by how far the unloaded rod is in the layer: not at all, in it, or inside the obstacle.
+
+        A layer that grew faster than the other loads would give way to them at small shares, and let a rod through.
+        But a straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at
+        first.
+        """
+        if load.obstacle.body is not None:
+            return GROWTH_INSIDE
+        try:
+            positions = site.unloaded_position
+        except SceneError:
+            # Parameters move the unloaded rod.
+            return GROWTH_INSIDE
+        reach = section_radii(site.rod, site.X) if load.at is None else np.array([load.radius + load.thickness])
+        if any_symbolic([positions, reach]):
+            return GROWTH_INSIDE
+        distances = SURFACES[load.obstacle.kind].function(load.obstacle)(positions)[0].full()[0]
+        gap = np.min(distances - known(reach))
+        if gap < 0.0:
+            return GROWTH_INSIDE
+        return 1 if gap < load.obstacle.width else 0
 
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
         """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body or a disk; None where friction is part of the force."""

@@ -165,7 +165,6 @@ class Load(Kind, ABC, Generic[RecordType]):
     Attributes:
         record: the record of the scene, whose word, inputs and units are those of the load.
         kind: the word of the scene format.
-        growth: power of the load factor by which a load that hangs on the pose grows from the unloaded scene.
         per_mass: whether its force is one per mass, which acts on masses that are fixed to sections as well.
         nodal: name of an input that holds numbers of each node of the rod; empty for none.
     """
@@ -173,9 +172,12 @@ class Load(Kind, ABC, Generic[RecordType]):
     record: ClassVar[type[LoadRecord]]
     family = LOADS
     kinds = EFFECTS
-    growth: ClassVar[int] = 1
     per_mass: ClassVar[bool] = False
     nodal: ClassVar[str] = ""
+
+    def growth(self, load: RecordType, site: Site) -> int:
+        """Power of the load factor by which a load that hangs on the pose grows from the unloaded scene."""
+        return 1
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes.

@@ -49,7 +49,8 @@ def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
     if load_factor is None:
         return load
     if isinstance(load, PoseWrench):
-        return replace(load, scale=load_factor**load.growth * load.scale)
+        growth = 1 if load.growth is None else load.growth()
+        return replace(load, scale=load_factor**growth * load.scale)
     return _scaled_wrench(load, load_factor)
 
 

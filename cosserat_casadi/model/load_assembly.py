@@ -204,7 +204,7 @@ class RodLoads:
             data=kernel.data(site),
             scale=scale,
             motion=motion,
-            growth=kernel.member.growth,
+            growth=partial(kernel.member.growth, kernel.load, site),
             borne_by=kernel.member.seen_from(kernel.load),
         )
 

@@ -155,7 +155,7 @@ class RidingBody:
         # Profiles are those of a load per length: at a point they are one.
         load = self._on_section(on_section, base, stacked, np.ones((data, 1)))
         scale = as_matrix(as_vector([point.factor])) if is_symbolic(point.factor) else point.factor
-        return replace(load, scale=scale, growth=kernel.member.growth)
+        return replace(load, scale=scale)
 
     def inertia(self, base: RodBase, motion: RodMotion) -> PoseWrench | None:
         """Inertia of the body in motion as a load on its section; None of a body that has none."""

@@ -6,6 +6,7 @@ A part that does not exist is None and costs nothing.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from cosserat_casadi.maths.numbers import Numbers, Scalar
@@ -87,7 +88,7 @@ class PoseWrench:
         data: numbers of the load at its sections, such as values of profiles, shape (d, k).
         scale: factor on force, moment and energy.
         motion: of the rod, or as a body sees it; None at rest, and for a kernel that does not depend on rates.
-        growth: power of the load factor by which it grows on the way from the unloaded scene.
+        growth: gives the power of the load factor by which it grows on the way from the unloaded scene; None is 1.
         borne_by: name of the body that bears the opposite wrench; None where the world does.
     """
 
@@ -100,7 +101,7 @@ class PoseWrench:
     data: Numbers
     scale: Matrix | float
     motion: RodMotion | SeenMotion | None = None
-    growth: int = 1
+    growth: Callable[[], int] | None = None
     borne_by: str | None = None
 
     def __post_init__(self) -> None:

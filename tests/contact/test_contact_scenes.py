@@ -35,6 +35,15 @@ def test_other_contacts_are_where_discrete_rods_have_them(family: str) -> None:
     assert list(compared(text, solution)) == []
 
 
+@pytest.mark.parametrize(("seed", "pressed"), [(126, "ball"), (127, "bar")])
+def test_large_loads_do_not_push_a_rod_through_a_layer_while_both_grow(seed: int, pressed: str) -> None:
+    """The ball is farther from the straight rod than it is wide, the bar is nearer."""
+    scene = parse_scene(smooth_scene(seed))
+    solution = solve(build(scene, discretise(scene, 5)))
+    assert solution.converged, solution.message
+    assert pressed in {contact.obstacle for contact in solution.contacts}
+
+
 def test_a_path_with_friction_ends_where_that_of_discrete_rods_does() -> None:
     text = COMPOSED["friction"](2)
     scene = parse_scene(text)

@@ -19,7 +19,7 @@ SEGMENTS = 120
 """Of a discrete rod; of rods that touch rods, whose sections are all compared with each other, a quarter."""
 
 NEAR = 2e-4
-"""Distance from the discrete rods, of the length, that is allowed beside twice what half the segments change.
+"""Distance from the discrete rods, of the length, that is allowed beside twice the estimated errors of both.
 
 A point that touches a bar beside the place of contact is pushed askew: of that the distance is of first order.
 """
@@ -97,7 +97,8 @@ def compared(text: str, solution: Solution, path: FrictionPath | None = None) ->
         coarse, fine = (points[rod.name] for points in ends)
         wanted, _ = evenly_apart(end, segments)[rod.name]
         apart = np.abs(fine - wanted[1:]).max()
-        if apart > NEAR * rod.length + 2 * np.abs(fine[1::2] - coarse).max():
+        told = 0.0 if end.error_estimate is None else end.error_estimate
+        if apart > (NEAR + 2 * told) * rod.length + 2 * np.abs(fine[1::2] - coarse).max():
             yield f"{rod.name} is {apart:.1e} m from the discrete one"
     largest = max([0.1, *pressing.values()])
     for name, force in pressing.items():
