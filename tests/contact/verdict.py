@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.friction_path import FrictionPath
 from tests.reference.discrete_rods import Poses, discrete_equilibrium, discrete_friction_path
+from tests.reference.rods import Table
 
 DENSE = np.linspace(0.0, 1.0, 4001)
 
@@ -24,8 +25,14 @@ NEAR = 2e-4
 A point that touches a bar beside the place of contact is pushed askew: of that the distance is of first order.
 """
 
+FURTHER = 4
+"""Factor on the segments where rods are not where discrete ones have them."""
+
 PRESSING = 2e-2
-"""Difference of what an obstacle presses with that is allowed, of the largest of these forces, or of 0.1 N."""
+"""Difference of the forces of an obstacle that is allowed beside twice the estimated error.
+
+It is a share of the largest of these forces, or of 0.1 N.
+"""
 
 
 def faults(solution: Solution, tolerance: float = 2e-5) -> list[str]:
@@ -79,14 +86,22 @@ def compared(text: str, solution: Solution, path: FrictionPath | None = None) ->
     """
     tables = tomllib.loads(text)
     segments = SEGMENTS // 4 if "rod_contacts" in tables else SEGMENTS
+    found = list(_apart(tables, segments, solution, path))
+    # The smallest number of segments on which they agree decides: what is wrong stays wrong on more of them.
+    yield from found and list(_apart(tables, FURTHER * segments, solution, path))
+
+
+def _apart(tables: Table, segments: int, solution: Solution, path: FrictionPath | None) -> Iterator[str]:
+    """The same on so many segments, and on half of them for the error that they leave."""
     end = solution if path is None else path.solution(-1)
     ends = []
-    pressing: dict[str, float] = {}
+    pressing = []
     for number in (segments // 2, segments):
         start = evenly_apart(solution, number)
         if path is None:
             minimum = discrete_equilibrium(tables, start)
-            found, pressing = minimum.ends if minimum.solved else None, minimum.pressing
+            found = minimum.ends if minimum.solved else None
+            pressing.append(minimum.pressing)
         else:
             found = discrete_friction_path(tables, start, path.factor)
         if found is None:
@@ -100,10 +115,13 @@ def compared(text: str, solution: Solution, path: FrictionPath | None = None) ->
         told = 0.0 if end.error_estimate is None else end.error_estimate
         if apart > (NEAR + 2 * told) * rod.length + 2 * np.abs(fine[1::2] - coarse).max():
             yield f"{rod.name} is {apart:.1e} m from the discrete one"
-    largest = max([0.1, *pressing.values()])
-    for name, force in pressing.items():
+    if path is not None:
+        return
+    coarse_forces, forces = pressing
+    largest = max([0.1, *forces.values()])
+    for name, force in forces.items():
         told = sum(float(np.linalg.norm(contact.force)) for contact in solution.contacts if contact.obstacle == name)
-        if abs(told - force) > PRESSING * largest:
+        if abs(told - force) > PRESSING * largest + 2 * abs(force - coarse_forces[name]):
             yield f"{name} presses with {told:.3g} N, on the discrete rods with {force:.3g} N"
 
 

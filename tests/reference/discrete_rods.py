@@ -22,9 +22,9 @@ from .rods import Array, Table, rod_of
 
 SETTINGS = {
     "print_time": False,
-    "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-10, "max_iter": 400, "mu_strategy": "adaptive"},
+    "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-10, "max_iter": 400, "mu_init": 1e-7},
 }
-"""Options of IPOPT."""
+"""Options of IPOPT; a small barrier keeps it next to where it begins."""
 
 PARTS = 4
 """Points of a segment that are kept off hard obstacles."""

@@ -25,10 +25,22 @@ static touch touch_at(const arrangement *at, const real *z, int number) {
   return made;
 }
 
-/* The largest force, or EI/l2: what forces are compared with. */
+/* The largest force at a section or along a line, or EI/l2: what forces are compared with. The coefficients of a line
+   are forces per length: of a short one they are larger than any force. */
 static real largest_force(const arrangement *at, const real *z) {
   real largest = 1;
-  for (int i = 0; i < at->forces; i++) largest = larger(largest, fabs(z[at->unknowns + i]));
+  for (int number = 0; number < at->touches; number++) {
+    const contact_entry *entry = at->touch + number;
+    const real *forces = z + at->unknowns + entry->first_force;
+    for (int i = 0; i < entry->ends; i++) largest = larger(largest, fabs(forces[i]));
+    if (!entry->is_line) continue;
+    const touch own = touch_at(at, z, number);
+    real mean = 0;
+    for (int k = 0; k <= SAMPLES; k++) {
+      mean += fabs(polynomial(0, forces + entry->ends, entry->along, (real)k / SAMPLES)) / (SAMPLES + 1);
+    }
+    largest = larger(largest, mean * (own.end - own.start));
+  }
   return largest;
 }
 

@@ -91,8 +91,17 @@ class ContactEquilibrium:
 
     @property
     def largest_force(self) -> float:
-        """Scale of the forces, without unit: EI/ℓ², or the largest force at a point."""
-        return max(1.0, float(np.abs(self.forces).max(initial=0.0)))
+        """Scale of the forces, without unit: EI/ℓ², or the largest force at a section or along a line.
+
+        The coefficients of a line are forces per length: of a short one they are larger than any force.
+        """
+        largest = 1.0
+        for touch, carried, line in self.parts():
+            largest = max(largest, float(np.abs(carried).max(initial=0.0)))
+            if touch.is_line:
+                _, pressure = self.pressure(touch, line)
+                largest = max(largest, float(np.abs(pressure).mean() * (touch.end - touch.start)))
+        return largest
 
     def pulls(self) -> Iterator[tuple[Touch, float]]:
         """How much each contact would have to pull at most, relative to the largest force; 0 for one that does not."""
