@@ -16,7 +16,7 @@ int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_residual_1_SZ_ARG 4
 #define six_rod_platform_k_residual_1_SZ_RES 1
 #define six_rod_platform_k_residual_1_SZ_IW 0
-#define six_rod_platform_k_residual_1_SZ_W 2051
+#define six_rod_platform_k_residual_1_SZ_W 536
 int six_rod_platform_k_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_jacobian_0_SZ_RES 1
@@ -36,12 +36,7 @@ int six_rod_platform_k_input_jacobian_1(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_input_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_input_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_input_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_1_SZ_W 2259
-int six_rod_platform_k_input_jacobian_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_input_jacobian_2_SZ_ARG 4
-#define six_rod_platform_k_input_jacobian_2_SZ_RES 1
-#define six_rod_platform_k_input_jacobian_2_SZ_IW 0
-#define six_rod_platform_k_input_jacobian_2_SZ_W 712
+#define six_rod_platform_k_input_jacobian_1_SZ_W 747
 int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_rate_SZ_ARG 5
 #define six_rod_platform_k_rate_SZ_RES 1
