@@ -132,7 +132,7 @@ class Follower:
         return ContactsAtState(places, gaps, gradients)
 
     def open_by(self, gaps: Sequence[SectionGap]) -> list[float]:
-        """What gaps are wider than the heights that the contacts keep, over the lengths."""
+        """By how much gaps are wider than the heights that the contacts keep, over the lengths."""
         return [gap.value - touch.height for gap, touch in zip(gaps, self.touches, strict=True)]
 
     def pushed(self, gaps: Sequence[SectionGap], forces: FloatArray) -> dict[MovingPoints, FloatArray]:

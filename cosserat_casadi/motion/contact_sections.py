@@ -49,7 +49,7 @@ AT_END = 1e-12
 """Distance from an end, over the length, at which a place is that end."""
 
 OFF = 10.0
-"""Gap over what it may be lower next to a section that is looked at, from which on the rod is off the obstacle."""
+"""Gap of a section, over the largest fall of the gap up to the next one, from which on the rod is off the obstacle."""
 
 LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""

@@ -122,7 +122,7 @@ ERRATIC = (
     "More exact steps do not bring the paths nearer to each other: after its impacts the motion hangs on rounding. "
     "Damp the rod, or give a larger tolerance."
 )
-"""What a user is told of such a motion."""
+"""Sentence for a motion that more exact steps do not bring nearer to a limit."""
 
 
 @dataclass(frozen=True)
@@ -361,7 +361,7 @@ def _with_tolerance(search: _Search) -> Motion:
 
 
 def _is_erratic(search: _Search) -> bool:
-    """Whether more exact steps bring a first motion that strikes no nearer to what it converges to."""
+    """Whether more exact steps bring the first motion, if it strikes, no nearer to a limit."""
     level = search.last
     struck = any(event.kind == "impact" for event in level.history.events)
     if not struck or not np.isfinite(search.step_tolerance):

@@ -168,9 +168,9 @@ def constrained(gradients, own):
     mass = np.zeros_like(full)
     mass[:5, :5] = np.eye(5) / units[:, None]
     differential = np.arange(5 + held) < 5
-    unseen = np.zeros((0, 5 + held))
+    norms = np.zeros((0, 5 + held))
     all_units = np.concatenate([units, np.ones(held)])
-    return stiffness, SmallMotions(full, np.zeros_like(full), mass, all_units, differential, unseen)
+    return stiffness, SmallMotions(full, np.zeros_like(full), mass, all_units, differential, norms)
 
 
 def frequencies_of(motions):
@@ -213,4 +213,4 @@ def test_what_moves_nothing_is_left_out():
     direction = np.array([[1.0, 2.0, 0.0, -1.0, 0.5]])
     basis = scipy.linalg.null_space(direction)
     expected = scipy.linalg.eigvalsh(basis.T @ stiffness @ basis)
-    assert_allclose(frequencies_of(replace(motions, unseen=direction)), np.sqrt(expected), rtol=1e-12, atol=0)
+    assert_allclose(frequencies_of(replace(motions, held=direction)), np.sqrt(expected), rtol=1e-12, atol=0)
