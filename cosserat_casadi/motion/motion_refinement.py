@@ -536,9 +536,11 @@ def _interrupted(search: _Search) -> Motion:
     """The finest motion that was computed to its end when the search was stopped."""
     level = search.last
     error = search.space_error + search.time_error
-    told = f"its estimated error is {error:.2g} of the length."
+    told = f": its estimated error is {error:.2g} of the length."
     if not np.isfinite(error):
         error = float("nan")
-        told = "and its error is not known."
-    message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked: {told}"
+        told = ", and its error is not known."
+        if np.isfinite(search.space_error):
+            told = f": its modes leave an error of about {search.space_error:.2g} of the length, its steps one unknown."
+    message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked{told}"
     return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)
