@@ -451,8 +451,11 @@ def check_mass(motions: SmallMotions) -> None:
     """Refuse a scene that has nothing to swing.
 
     Raises:
-        SceneError: nothing that may move has mass.
+        SceneError: nothing may move, or nothing that may move has mass.
     """
+    if not motions.free_mass.size:
+        fault = "nothing may move: supports, joints or contacts hold all of it"
+        raise SceneError(Problem("rods", fault, "leave something free"))
     if not np.any(motions.free_mass):
         fault = "nothing that may move has mass"
         remedy = "give materials a density, rods a linear_density, or bodies a mass"

@@ -9,7 +9,19 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SolveError, build, linearise, modes_of, read_scene, scene_from_dict, simulate, solve
+from cosserat_casadi import (
+    Scene,
+    SceneError,
+    Solution,
+    SolveError,
+    build,
+    linearise,
+    modes_of,
+    read_scene,
+    scene_from_dict,
+    simulate,
+    solve,
+)
 from cosserat_casadi.equilibrium.contact.pressing_contacts import unknowns_by_inputs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.linear_model import DescriptorModel, LinearModel
@@ -159,6 +171,37 @@ def test_a_contact_that_hardly_presses_has_no_modes(pressed: bool) -> None:
     assert "'rod' is" in found.message
     with pytest.raises(SolveError, match="No linear model: 'rod' is"):
         linearise(rest)
+
+
+def pressed_at_tip(depth: float, weight: float, force: float) -> Solution:
+    """A heavy rod above a floor, with a force across it at its tip."""
+    loads = [
+        {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -weight]},
+        {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, force]},
+    ]
+    accuracy = {"modes": 5, "nodes": 14, "tolerance": 1e-3}
+    return solve(build(touching(floor(depth), loads=loads, accuracy=accuracy)), estimate_error=False)
+
+
+def test_a_rod_that_lies_unpressed_on_a_floor_has_no_modes_though_its_tip_presses() -> None:
+    """All of it is on the floor, and may swing to one side alone."""
+    rest = pressed_at_tip(0.0, 0.0, -0.1)
+    assert [(touch.kind, touch.start) for touch in rest.contacts] == [("point", 1.0)]
+    found = modes_of(rest)
+    assert found.outcome is ModesOutcome.MARGINAL_CONTACT
+    assert "of the length from 'obstacle', which it does not press." in found.message
+
+
+def test_points_that_stand_for_a_line_within_the_tolerance_have_no_modes() -> None:
+    """The rod enters the floor between them: it is held by more."""
+    rest = pressed_at_tip(1e-3, 0.3924, 8e-4)
+    assert [touch.kind for touch in rest.contacts] == ["point", "point"]
+    assert "beside its contacts, as accuracy.tolerance lets it" in modes_of(rest).message
+
+
+def test_a_rod_that_a_floor_holds_all_along_has_no_modes() -> None:
+    with pytest.raises(SceneError, match="nothing may move: supports, joints or contacts hold all of it"):
+        modes_of(solve(build(touching(floor(0.0))), estimate_error=False))
 
 
 def test_a_quick_torsion_spoils_no_linear_model() -> None:

@@ -7,16 +7,18 @@ they are those of the rods to the error of the modes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR
 from cosserat_casadi.equilibrium.contact.contact_judgement import pressing
-from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
+from cosserat_casadi.equilibrium.contact.contact_search import Penetrated, equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
-from cosserat_casadi.equilibrium.contact.contact_state import contact_loads, given_entries
+from cosserat_casadi.equilibrium.contact.contact_state import Touch, contact_loads, given_entries
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import solved
@@ -89,7 +91,19 @@ def marginal_contact(solution: Solution) -> str:
             force = push * found.largest_force * discrete.contact_unit(touch.owner, of_body=touch.of_body)
             return f"{touch.owner!r} is on {touch.obstacle!r} and presses with {force:.2g} N only."
     for near in found.penetrations(-LEAST_TOLERANCE):
-        clamped = not near.of_body and near.start == 0.0 and near.end <= NEAR
-        if not clamped and not any(near.is_at(touch) for touch in found.state.touches):
-            return f"{near.owner!r} is {-near.depth:.2g} of the length from {near.obstacle!r}, which it does not press."
+        if not _is_held(near, [touch for touch in found.state.touches if near.is_at(touch)]):
+            way = f"{abs(near.depth):.2g} of the length"
+            if near.depth > LEAST_TOLERANCE:
+                inside = f"{near.owner!r} enters {near.obstacle!r} by {way} beside its contacts"
+                return f"{inside}, as accuracy.tolerance lets it: a smaller one tells what presses there."
+            return f"{near.owner!r} is {way} from {near.obstacle!r}, which it does not press."
     return ""
+
+
+def _is_held(near: Penetrated, touches: Sequence[Touch]) -> bool:
+    """Whether all of what is next to an obstacle belongs to contacts of it, or to a base that is clamped on it."""
+    reached = NEAR if near.start == 0.0 and not near.of_body else -inf
+    for touch in sorted(touches, key=lambda touch: float(touch.start)):
+        if float(touch.start) - NEAR <= max(reached, near.start):
+            reached = max(reached, float(touch.end) + NEAR)
+    return near.end <= reached
