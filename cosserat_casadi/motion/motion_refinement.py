@@ -84,17 +84,17 @@ FINE = 2e-4
 TOLD_AFTER = 3
 """Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
 
-UNKNOWN_RATIO = 0.5
-"""Share of the distance to the next set of modes that is left after it, before two distances tell.
+UNKNOWN_ORDER = 1.7
+"""Power of the modes with which errors fall, before two distances tell; waves of a sudden load have 2.3."""
 
-From 6 modes to 9 the waves of a sudden load, whose errors go with modes^−2.3, leave 0.4.
-"""
+SLOWEST = 0.25
+"""Smallest such power: below it nothing converges."""
 
-FASTEST = 0.1
-"""Smallest such share that is believed."""
+FASTEST = 8.0
+"""Largest such power that is believed."""
 
-SLOWEST = 0.9
-"""Largest such share: beyond it nothing converges."""
+ORDERS = 200
+"""Powers between these that are compared with two distances."""
 
 FEW_MODES = 4
 """Modes of the first level of rods that are cut into short elements, each of which sees less of a rod."""
@@ -134,6 +134,7 @@ class ResolvedMotion:
         history: the motion.
         paths: paths of tips and bodies, which are compared with the paths of the next motion.
         rung: place of the modes on the ladder.
+        modes: most polynomials of a strain in an element.
         distance: of the paths from those of the level before; infinite for the first.
         unseen: displacement over the length by the last coefficients of strains that have no more modes than on the
             level before: the distance tells nothing of modes that they lack.
@@ -143,6 +144,7 @@ class ResolvedMotion:
     history: History
     paths: Paths
     rung: int = 0
+    modes: int = 0
     distance: float = float("inf")
     unseen: float = 0.0
 
@@ -181,19 +183,20 @@ class _Search:
         return self.levels[-1]
 
     @property
-    def ratio(self) -> float:
-        """Share of the error that one rung of the ladder leaves, from the last two distances."""
+    def order(self) -> float:
+        """Power p with which the error falls, as modes^−p, from the last two distances."""
         if len(self.levels) < 3 or self.levels[-2].distance == 0.0:
-            return UNKNOWN_RATIO
-        before, coarser, finer = self.levels[-3:]
-        # The distance to a far better motion is the error of the worse one.
-        climbed = coarser.rung - before.rung
-        by_all = finer.distance / coarser.distance
-        return float(np.clip(by_all ** (1.0 / climbed), FASTEST, SLOWEST))
+            return UNKNOWN_ORDER
+        first, second, third = (level.modes for level in self.levels[-3:])
+        told = self.last.distance / self.levels[-2].distance
+        orders = np.linspace(SLOWEST, FASTEST, ORDERS)
+        # By the law, the distance of the last two levels over that of the two before falls with the order.
+        by_law = (1.0 - (third / second) ** -orders) / ((second / first) ** orders - 1.0)
+        return float(np.interp(-told, -by_law, orders))
 
     @property
     def space_error(self) -> float:
-        """Error of the paths that the modes of the last level leave: the rest of a geometric series.
+        """Error of the paths that the modes of the last level leave, by the power of their number.
 
         Of strains that keep their modes the last coefficients bound the rest.
         """
@@ -204,27 +207,29 @@ class _Search:
     @property
     def left_over_distance(self) -> float:
         """Error of the paths that the modes of the last level leave, over their distance from the level before."""
-        left = self.ratio ** (self.last.rung - self.levels[-2].rung)
+        left: float = (self.last.modes / self.levels[-2].modes) ** -self.order
         return SAFETY * left / (1.0 - left)
 
-    def climb(self, last: int) -> int | None:
+    def climb(self, ladder: Sequence[int]) -> int | None:
         """The next rung: as far up as seems to be needed; None where the last one would not do.
 
         Args:
-            last: the highest rung.
+            ladder: modes of each rung.
         """
         rung = self.last.rung
+        last = len(ladder) - 1
         if rung == last:
             return None
         if len(self.levels) < 3:
             return rung + 1
-        wanted = SPACE_SHARE * self.tolerance
-        if self.space_error * self.ratio ** (last - rung) > self.tolerance:
+        errors = [self.space_error * (modes / self.last.modes) ** -self.order for modes in ladder]
+        if errors[last] > self.tolerance:
             return None
-        needed = np.log(wanted / self.space_error) / np.log(self.ratio)
         # Not further than is foreseen well, and never to stay.
-        above = int(np.clip(np.floor(needed), 1, MOST_RUNGS))
-        return min(rung + above, last)
+        for higher in range(rung + 1, min(rung + MOST_RUNGS, last)):
+            if errors[higher] <= SPACE_SHARE * self.tolerance:
+                return higher
+        return min(rung + MOST_RUNGS, last)
 
 
 def simulate(
@@ -341,13 +346,13 @@ def _with_tolerance(search: _Search) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        search.levels.append(ResolvedMotion(simulator, history, found, rung, distance, unseen))
+        search.levels.append(ResolvedMotion(simulator, history, found, rung, modes, distance, unseen))
         if len(search.levels) == 1 and _is_erratic(search):
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
-        rung = search.climb(len(ladder) - 1)
+        rung = search.climb(ladder)
     timed = _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
         raise KeyboardInterrupt

@@ -1,0 +1,34 @@
+"""The error that modes leave is told by the power of their number, also where rungs of modes are unevenly apart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.motion.motion_refinement import FASTEST, SAFETY, SLOWEST, ResolvedMotion, _Search
+from cosserat_casadi.scene.simulation import Simulation
+
+
+def search(modes: tuple[int, ...], order: float) -> _Search:
+    """A search whose errors are modes^−order."""
+    anything: Any = None
+    found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance=1e-3)
+    before = float("inf")
+    for number in modes:
+        error = float(number) ** -order
+        found.levels.append(ResolvedMotion(anything, anything, anything, 0, number, before - error))
+        before = error
+    return found
+
+
+@pytest.mark.parametrize("order", [1.0, 2.3, 5.0])
+@pytest.mark.parametrize("modes", [(6, 9, 12), (9, 12, 16), (6, 12, 14)])
+def test_errors_by_a_power_are_told_with_the_factor_of_safety(modes: tuple[int, ...], order: float) -> None:
+    assert_allclose(search(modes, order).space_error, SAFETY * modes[-1] ** -order, rtol=2e-3, atol=0)
+
+
+def test_orders_beyond_belief_are_bounded() -> None:
+    assert search((6, 9, 12), 20.0).order == FASTEST
+    assert search((6, 9, 12), 0.01).order == SLOWEST
