@@ -202,9 +202,8 @@ def _equations(model: Model) -> list[Any]:
     levels: list[Any] = []
     discrete: DiscreteScene | None = model.discrete
     while discrete is not None:
-        scene = discrete.scene.model_copy(update={"title": "", "motions": (), "velocities": (), "simulation": None})
         discretisation = {name: rod.discretisation for name, rod in discrete.rods.items()}
-        levels.append((scene, discrete.layout, discretisation))
+        levels.append((discrete.scene.of_equations(), discrete.layout, discretisation))
         discrete = discrete.scaling
     return levels
 

@@ -175,7 +175,7 @@ class DiscreteScene:
         return replace(self, scaling=scaling, moving=True)
 
     def told_as(self, scene: scenes.Scene) -> DiscreteScene:
-        """The same constants for a scene that differs in what no equation reads: title, motions, velocities, times."""
+        """The same constants for a scene that differs in what no equation reads, as :meth:`Scene.of_equations`."""
         told = replace(self, scene=scene)
         # They follow from the places of frames, which take time to find.
         assert self.unknowns, "a scene has unknowns"

@@ -37,8 +37,7 @@ def model_at_rest(model: Model) -> Model:
 
 def _sharing(scene: Scene, discretisation: Mapping[str, Discretisation], *, moving: bool) -> Model:
     """A model without parameters that shares constants and functions with models of the same rods."""
-    still = scene.model_copy(update={"title": "", "motions": (), "velocities": (), "simulation": None})
-    kept = _kept(still, tuple(discretisation.items()), moving)
+    kept = _kept(scene.of_equations(), tuple(discretisation.items()), moving)
     model = Model(kept.discrete.told_as(scene))
     share_functions(model, kept)
     return model

@@ -340,6 +340,15 @@ inputs = ["push.force", "cable.tension"]
         rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
         return self.model_copy(update={"rods": rods})
 
+    def of_equations(self) -> Scene:
+        """The scene without what no equation of motion reads: title, motions, rates of rods, times.
+
+        A body whose velocity is given has a pose among the unknowns, whatever the velocity is.
+        """
+        of_bodies = tuple(InitialVelocity(body=velocity.body) for velocity in self.velocities if velocity.rod is None)
+        without = {"title": "", "motions": (), "velocities": of_bodies, "simulation": None}
+        return self.model_copy(update=without)
+
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")
         # The rules have seen to it that every listed input has its owner and is one of its fields.

@@ -62,6 +62,21 @@ def test_a_body_goes_along_with_the_strains() -> None:
     assert np.abs(motion.energy.imbalance).max() < 1e-6
 
 
+def test_a_body_that_one_rod_carries_has_a_velocity_of_its_own() -> None:
+    velocity = [1.0, 2.0, 3.0]
+    body = {"name": "plate", "mass": 0.1, "inertia": [2e-4, 3e-4, 4e-4]}
+    more = {"bodies": [body], "joints": [{"rod": "arm", "body": "plate", "kind": "fixed"}], "free": True}
+    more["accuracy"] = {"modes": 2, "nodes": 6}
+    of_rod = {"rod": "arm", "linear": velocity}
+    of_body = {"body": "plate", "linear": velocity}
+    one, both = (simulate(scene_from_dict(tables(*given, **more))) for given in ([of_rod], [of_rod, of_body]))
+    assert both.converged, both.message
+    assert both.model.size == one.model.size + 13
+    wanted = np.array([0.0, 0.0, LENGTH]) + both.times[:, None] * velocity
+    for motion in (one, both):
+        assert_allclose(motion.body("plate").position, wanted, rtol=0, atol=1e-9)
+
+
 def test_velocities_that_a_support_does_not_allow_are_refused() -> None:
     support = {"rod": "arm", "kind": "pinned", "position": [0.0, 0.0, LENGTH]}
     scene = scene_from_dict(tables({"rod": "arm", "curvature_rate": [1.0, 0, 0]}, supports=[support]))
