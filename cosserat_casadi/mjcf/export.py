@@ -132,6 +132,11 @@ def _place(pose: NumericPose) -> dict[str, str]:
     return {"pos": _numbers(pose.position), "quat": _numbers(pose.quaternion)}
 
 
+def _cylinder(radius: float, thickness: float) -> dict[str, str]:
+    """Attributes of a disk, which has some thickness in MuJoCo."""
+    return {"type": "cylinder", "size": _numbers([radius, max(thickness, 1e-3 * radius) / 2])}
+
+
 def _turned(position: FloatArray) -> NumericPose:
     """A pose without rotation."""
     return NumericPose(position, IDENTITY.quaternion)
@@ -307,7 +312,7 @@ class _Robot:
         ET.SubElement(put.element, "geom", {**size, **style})
         for row in self.scene.disks:
             if row.rod == rod.name and any(abs(at - link.at) < 1e-9 for at in row.places):
-                size = {"type": "cylinder", "size": _numbers([row.radius, max(row.thickness, 1e-3 * row.radius) / 2])}
+                size = _cylinder(row.radius, row.thickness)
                 met = sum(1 << i for i, obstacle in obstacles if obstacle.concerns_disks(row.name))
                 style = {"contype": str(met), "conaffinity": "0", "rgba": ".5 .5 .5 .4"}
                 ET.SubElement(put.element, "geom", {**size, **style})
@@ -398,7 +403,7 @@ class _Robot:
         style = {"contype": str(bits), "conaffinity": "0", "rgba": "0.5 0.5 0.5 1"}
         shape = {"type": "sphere", "size": _numbers(radius)}
         if body.thickness is not None:
-            shape = {"type": "cylinder", "size": _numbers([radius, body.thickness / 2])}
+            shape = _cylinder(radius, body.thickness)
         ET.SubElement(put.element, "geom", {**shape, **style})
         self.bodies[body.name] = put
 

@@ -114,8 +114,10 @@ def links_of(joint: Table) -> tuple[str | None, str | None]:
 
 
 def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
-    """A tip has a support and a joint, or a section has two joints."""
+    """A tip has a support and a joint, or a section has two joints; disks that go along with it hold nothing."""
     holders: dict[tuple[str, float], str] = {}
+    disks = {name for name, (_, body) in scene.named("bodies").items() if "thickness" in body}
+    of_bodies = [name for _, joint in scene.tables("joints") for name in links_of(joint)]
     for i, support in scene.tables("supports"):
         name = support.get("rod")
         # Two supports of one tip are another rule's; the first of them counts.
@@ -125,6 +127,9 @@ def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
         name = joint.get("rod")
         at = joint.get("at", TIP)
         if not isinstance(name, str) or not isinstance(at, int | float):
+            continue
+        body, _ = links_of(joint)
+        if joint.get("kind") == "fixed" and body in disks and of_bodies.count(body) == 1:
             continue
         section = (name, float(at))
         if section in holders:

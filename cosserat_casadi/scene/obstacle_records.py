@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
-from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.records import Entry, Record, sound
 from cosserat_casadi.scene.rod_records import admitted_strains, is_round
 from cosserat_casadi.scene.values import (
     BY_LENGTH,
@@ -242,7 +243,9 @@ def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> I
         return
     rows = given.get("disks")
     for i, name in enumerate(rows if isinstance(rows, list | tuple) else ()):
-        if isinstance(name, str) and name in scene.named("disks"):
+        _, row = scene.named("disks").get(name, (0, {})) if isinstance(name, str) else (0, {})
+        # A row that is faulty has faults of its own.
+        if sound(Disks, row) is not None:
             problem = f"disks of {name!r} touch exactly, and their numbers are no parameters"
             yield Fault(("disks", i), problem, "give width, m, or leave those parameters out")
 

@@ -111,6 +111,21 @@ def test_exact_contact_of_a_tip_vs_shooting() -> None:
     assert_allclose(path.tip().position[-1], solution.tip().position, rtol=0, atol=1e-8)
 
 
+def test_a_disk_that_touches_exactly_where_a_joint_is() -> None:
+    """A body without weight at the section of a disk changes nothing."""
+    tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
+    alone = solve(build(scene_from_dict(tables)))
+    # Reading has made bodies of the disks.
+    bodies = [{"name": "hand", "mass": 0.0}, *tables["bodies"]]
+    joint = {"rod": "a", "body": "hand", "kind": "fixed", "position": [0.0, 0.0, -0.02]}
+    held = solve(build(scene_from_dict({**tables, "bodies": bodies, "joints": [joint, *tables["joints"]]})))
+    for solution in (alone, held):
+        assert solution.converged, solution.message
+        (contact,) = solution.contacts
+        assert contact.owner == "d_1"
+    assert_allclose(held.tip().position, alone.tip().position, rtol=0, atol=1e-9)
+
+
 def test_a_disk_that_stands_on_its_face_in_exact_contact() -> None:
     """A rod that is bent to the floor presses on it within the face, not by the rim: its arm is shorter."""
     tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
