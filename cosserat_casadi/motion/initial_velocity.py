@@ -25,7 +25,7 @@ POINTS = 200
 
 
 def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
-    """A start with the velocities of the scene, in which bodies and carried bases go along as joints demand.
+    """A start with the velocities of the scene; bodies, carried bases and joints' coordinates go along with them.
 
     Args:
         model: of the scene in motion.
@@ -37,7 +37,7 @@ def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
     unknowns = model.discrete.unknowns
     v = np.zeros(model.size)
     follows = np.zeros(model.size, dtype=bool)
-    for _, entries in unknowns.of_kind(BlockKind.POSE):
+    for _, entries in unknowns.of_kind(BlockKind.POSE, BlockKind.COORDINATE):
         follows[entries] = True
     inputs = piece.at(piece.start).value
     for velocity in model.scene.velocities:

@@ -77,6 +77,20 @@ def test_a_body_that_one_rod_carries_has_a_velocity_of_its_own() -> None:
         assert_allclose(motion.body("plate").position, wanted, rtol=0, atol=1e-9)
 
 
+def test_a_hinge_with_a_spring_turns_as_its_body_does() -> None:
+    """A pendulum in the world that is pushed from where its spring is slack."""
+    rate, inertia, spring = 2.0, 3e-4, 0.05
+    body = {"name": "plate", "inertia": [2e-4, inertia, 2e-4]}
+    ends = [{"world": True, "position": [1.0, 0.0, 0.0]}, {"body": "plate"}]
+    joint = {"name": "hinge", "kind": "revolute", "axis": [0, 1, 0], "stiffness": spring, "between": ends}
+    more = {"bodies": [body], "joints": [joint], "accuracy": {"modes": 1, "nodes": 4}}
+    motion = simulate(scene_from_dict(tables({"body": "plate", "angular": [0, rate, 0]}, **more)))
+    assert motion.converged, motion.message
+    frequency = np.sqrt(spring / inertia)
+    angle = rate / frequency * np.sin(frequency * motion.times)
+    assert_allclose(motion.joint("hinge").conjugate, angle, rtol=0, atol=1e-4)
+
+
 def test_velocities_that_a_support_does_not_allow_are_refused() -> None:
     support = {"rod": "arm", "kind": "pinned", "position": [0.0, 0.0, LENGTH]}
     scene = scene_from_dict(tables({"rod": "arm", "curvature_rate": [1.0, 0, 0]}, supports=[support]))
