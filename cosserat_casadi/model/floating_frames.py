@@ -31,6 +31,8 @@ MOST_CORRECTIONS = 20
 """Corrections of a body's pose before its joints count as ones that no pose closes."""
 
 FIRST_CORRECTIONS = 4
+"""Corrections that are made in any case: gaps may grow at first."""
+
 STALLED = 0.9
 """Share of the largest gap that each correction after the first ones leaves where no pose closes the joints."""
 

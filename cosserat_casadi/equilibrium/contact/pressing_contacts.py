@@ -101,7 +101,7 @@ def marginal_contact(solution: Solution) -> str:
 
 
 def _is_held(near: Penetrated, touches: Sequence[Touch]) -> bool:
-    """Whether all of what is next to an obstacle belongs to contacts of it, or to a base that is clamped on it."""
+    """Whether a whole stretch next to an obstacle belongs to contacts of it, or to a base that is clamped on it."""
     reached = NEAR if near.start == 0.0 and not near.of_body else -inf
     for touch in sorted(touches, key=lambda touch: float(touch.start)):
         if float(touch.start) - NEAR <= max(reached, near.start):
