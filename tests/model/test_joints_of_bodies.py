@@ -209,6 +209,7 @@ def test_places_are_parameters() -> None:
 SMALL = {"modes": 1, "nodes": 4}
 
 
+@pytest.mark.slow
 def test_in_c(tmp_path: Path) -> None:
     model = build(scene_from_dict(slider_crank(accuracy=SMALL)))
     library = load(export(model, tmp_path / "crank"))

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
+from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, link, scene
 from tests.model.test_joints_of_bodies import ARMS, FIRST, INERTIAS, MASSES, body, hinge
 
@@ -99,7 +100,7 @@ def swung(reach: float, times: FloatArray) -> tuple[FloatArray, float, bool]:
     return np.array(angles), blow, leaves
 
 
-@pytest.mark.parametrize("reach", FLOORS)
+@pytest.mark.parametrize("reach", mostly_slow(FLOORS, [0.2]))
 def test_a_blow_of_a_floor_takes_a_joint_off_its_stop_or_presses_it_on(reach: float) -> None:
     motion = simulate(scene_from_dict(leaning(reach)))
     assert motion.converged
