@@ -102,13 +102,17 @@ class Leg:
         piece: the inputs.
         integration: the steps; beside the unknowns of the model they have the forces of contacts.
         restart: the change at the beginning of the leg, and the phases in it.
-        equations: of motion of the model, without what makes cables slack or contacts push.
+        equations: of motion of the model, without what makes cables slack or contacts push; None in a copy by pickle.
     """
 
     piece: Piece
     restart: Restart[object]
     integration: Integration
-    equations: MotionEquations
+    equations: MotionEquations | None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Addresses of compiled functions are those of one process.
+        return vars(self) | {"equations": None}
 
     @property
     def start(self) -> ConsistentStart:
@@ -204,7 +208,8 @@ class History:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
         leg, instant = self.locate(time)
         inputs = leg.piece.at(instant.time).value
-        return MotionState(self._closing.closed(instant, leg.equations), instant.v, instant.a, inputs)
+        equations = leg.equations or equations_of(self.model, leg.piece)
+        return MotionState(self._closing.closed(instant, equations), instant.v, instant.a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
