@@ -366,18 +366,30 @@ def _with_tolerance(search: _Search) -> Motion:
 
 
 def _is_erratic(search: _Search) -> bool:
-    """Whether more exact steps bring the first motion, if it strikes, no nearer to a limit."""
+    """Whether the first motion strikes, and is as far from one of coarser steps as that is from one of still coarser.
+
+    Errors that go with LEAST_SLOPE or faster fall to a third from one distance to the next.
+    """
     level = search.last
     struck = any(event.kind == "impact" for event in level.history.events)
     if not struck or not np.isfinite(search.step_tolerance):
         return False
-    coarse = told_by_coarser(level, search.step_tolerance)
-    before = coarse.error / left_by(COARSER)
-    if not np.isfinite(before) or before <= FAR_APART * search.tolerance:
+    paths, tolerance = level.paths, search.step_tolerance
+    distances: list[float] = []
+    for _ in range(2):
+        tolerance *= TIGHTER
+        coarse = level.simulator.controlled(tolerance)
+        if not coarse.completed:
+            return False
+        coarse_paths = level.simulator.paths(coarse)
+        distances.append(path_distance(paths, coarse_paths))
+        if distances[0] <= FAR_APART * search.tolerance:
+            return False
+        paths = coarse_paths
+    if distances[0] <= NOT_NEARER * distances[1]:
         return False
-    distance = level.simulator.finer(coarse, TIGHTER).error / left_by(TIGHTER)
-    search.time_error = distance
-    return distance > NOT_NEARER * before
+    search.time_error = distances[0]
+    return True
 
 
 def _erratic(search: _Search) -> Motion:

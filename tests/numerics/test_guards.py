@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.consistent_start import consistent_start, impact
-from cosserat_casadi.numerics.guards import Guards
+from cosserat_casadi.numerics.guards import WATCHED, Guards, crossing, remembering
 from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.time_steps import integrate
@@ -148,3 +148,31 @@ def test_a_guard_that_dips_between_two_looks_is_found(height: float) -> None:
         return
     assert run.outcome is StepOutcome.GUARDED
     assert_allclose(run.end.time, 0.5 - np.sqrt(0.25 - 2 * height), rtol=0, atol=1e-9)
+
+
+def test_guards_far_from_zero_are_looked_at_three_times_and_others_all_along() -> None:
+    looked_at: list[float] = []
+
+    def watched(level: float) -> Guards:
+        def values(instant: Instant) -> FloatArray:
+            looked_at.append(instant.time)
+            return np.array([level - instant.x[0]])
+
+        return values
+
+    flight = until(FLIGHT, np.array([0.3, 0.0, 0.0]), np.array([0.4, 0.5, 0.0]), watched(100.0), radau(3), 0.5)
+    (step, *_) = flight.steps
+    times = step.start.time + WATCHED * step.size
+    for level, looks in ((100.0, times[::4]), (step.end.x[0] + 0.01, times)):
+        looked_at.clear()
+        assert crossing(step, watched(level)) is None
+        assert set(looks) <= set(looked_at)
+        assert level < 1.0 or len(looked_at) == len(looks)
+
+
+def test_the_end_of_a_step_is_not_looked_at_again_as_the_start_of_the_next() -> None:
+    calls: list[Instant] = []
+    guards = remembering(lambda instant: calls.append(instant) or sag(instant))  # type: ignore[func-returns-value]
+    here, there = (Instant(0.0, np.array([x, 0.0, 0.0]), np.zeros(3), np.zeros(3)) for x in (0.2, 0.4))
+    assert_allclose([guards(one)[0] for one in (here, here, there, here)], [0.96, 0.96, 0.84, 0.96], rtol=1e-15, atol=0)
+    assert len(calls) == 3
