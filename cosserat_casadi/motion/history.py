@@ -505,9 +505,7 @@ def _with_forces(settings: StepSettings, size: int) -> StepSettings:
     more = size - len(settings.tolerance)
     if more == 0:
         return settings
-    tolerance = np.concatenate([settings.tolerance, np.ones(more)])
-    newton = settings.newton if settings.on_guard is None else settings.on_guard
-    return replace(settings, tolerance=tolerance, newton=newton)
+    return replace(settings, tolerance=np.concatenate([settings.tolerance, np.ones(more)]))
 
 
 def _chatters(legs: Sequence[Leg], duration: float) -> bool:

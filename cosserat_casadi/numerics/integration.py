@@ -43,7 +43,6 @@ class StepSettings:
         longest: longest step, s.
         shortest: shortest step, as a share of the piece.
         newton: error that Newton's method may leave, over the tolerance.
-        on_guard: the same of a step that ends on a guard, and while contacts are closed; None for no other one.
     """
 
     tolerance: FloatArray
@@ -52,7 +51,6 @@ class StepSettings:
     longest: float = np.inf
     shortest: float = 1e-9
     newton: float = 1e-3
-    on_guard: float | None = None
 
 
 @dataclass(frozen=True)

@@ -295,8 +295,6 @@ class StepRun:
             guard: number of the guard.
         """
         assert self.guards is not None
-        if self.settings.on_guard is not None:
-            self.bounds = replace(self.bounds, error=self.settings.on_guard)
         time = cut.end.time
         stands = cut
         for _ in range(MOST_LENGTHS):
