@@ -95,7 +95,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
         return at
 
     def growth(self, load: ContactLayer, site: Site) -> int:
-        """Power by how far the unloaded rod is in the layer: not at all, in it, or inside the obstacle.
+        """Power of the load factor: 0 where the unloaded rod is not in the layer, 1 in it, 2 inside the obstacle.
 
         A layer that grew faster than the other loads would give way to them at small shares, and let a rod through.
         But a straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at
