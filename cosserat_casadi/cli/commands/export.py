@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -12,8 +13,10 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.accuracy.models import build
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay
@@ -35,12 +38,102 @@ from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.export import LINKS, check_mjcf, mjcf_of
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.load_cases import CaseLayout, case_layout, read_load_cases, spread
+from cosserat_casadi.model.load_cases import case_layout, read_load_cases, spread
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
+
+
+@dataclass(frozen=True)
+class SourceOptions:
+    """Options of the sources in C: their parts beside equations, Jacobians and solver.
+
+    Attributes:
+        parts: whether each part is asked for, by the keyword of :func:`cosserat_casadi.export`.
+        over: file of the load cases whose exact contacts the sources know.
+        period: seconds that the longest turn of a control loop may take.
+        estimate_errors: whether every answer carries the estimate of its error.
+    """
+
+    parts: Mapping[str, bool]
+    over: Path | None
+    period: float | None
+    estimate_errors: bool
+
+    @property
+    def asked(self) -> dict[str, bool]:
+        """Whether each option stands in the command."""
+        return {
+            **{f"--{part}": wanted for part, wanted in self.parts.items()},
+            "--over": self.over is not None,
+            "--period": self.period is not None,
+            "--no-error-estimate": not self.estimate_errors,
+        }
+
+
+@dataclass(frozen=True)
+class Targets:
+    """The folder and the files that an export writes; None for each that is not asked for.
+
+    Attributes:
+        output: folder of the sources in C.
+        page: page for a browser.
+        fmu: unit for other simulators.
+        mjcf: model of MuJoCo.
+    """
+
+    output: Path | None
+    page: Path | None
+    fmu: Path | None
+    mjcf: Path | None
+
+    @property
+    def files(self) -> dict[str, Path]:
+        """Files to write beside the folder, by option."""
+        files = {"--page": self.page, "--fmu": self.fmu, "--mjcf": self.mjcf}
+        return {option: file for option, file in files.items() if file is not None}
+
+    @property
+    def written(self) -> dict[str, Path | None]:
+        """Files to write, by option, and files of an earlier export in the folder, which are written over."""
+        # Names of files are no options: they tell the many of one folder apart.
+        there = self.output.iterdir() if self.output is not None and self.output.is_dir() else ()
+        return {**self.files, **{f"--output, {file.name}": file for file in there}}
+
+    @property
+    def need_a_solve(self) -> bool:
+        """Whether any of them is written from a model whose modes and nodes a solve chooses."""
+        return any(target is not None for target in (self.output, self.page, self.fmu))
+
+    def moves(self, sources: SourceOptions) -> bool:
+        """Whether the model has motions."""
+        return sources.parts["dynamics"] or self.fmu is not None
+
+    def check(self, name: str, sources: SourceOptions) -> None:
+        """Refuse an export of nothing, files that cannot be written, and options of sources without their folder.
+
+        Raises:
+            ExportError: one of them is refused.
+        """
+        if self.output is None and not self.files:
+            remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"
+            raise ExportError(Problem("--output", "missing", remedy))
+        if self.output is None:
+            remedy = "name a folder for them with --output, or leave it out"
+            lost = [option for option, asked in sources.asked.items() if asked]
+            if lost:
+                raise ExportError(*(Problem(option, "is for the sources in C", remedy) for option in lost))
+        else:
+            check_export(self.output, name)
+        checks: dict[str, Callable[[Path], None]] = {
+            "--page": partial(check_writable, option="--page"),
+            "--fmu": check_fmu,
+            "--mjcf": check_mjcf,
+        }
+        for option, file in self.files.items():
+            checks[option](file)
 
 
 def export(
@@ -110,93 +203,108 @@ def export(
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
-    files = {"--page": page, "--fmu": fmu, "--mjcf": mjcf}
+    targets = Targets(output, page, fmu, mjcf)
     parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches, "cuda": cuda}
-    of_sources = {
-        **{f"--{part}": wanted for part, wanted in parts.items()},
-        "--over": over is not None,
-        "--period": period is not None,
-        "--no-error-estimate": not estimate_errors,
-    }
+    sources = SourceOptions(parts, over, period, estimate_errors)
     # All that can be refused is refused before the solve, which may take a minute.
-    _check_files(output, files, name, of_sources)
-    check_inputs_stay({**files, **_earlier_files(output)}, scene, settings, over)
-    moves = dynamics or fmu is not None
-    exported_scene = read_scene(scene, tuple(settings or ()))
-    if exported_scene.tubes:
-        of_files = {option: file is not None for option, file in files.items()}
-        check_tubes({**of_sources, "--range": bool(ranges), **of_files})
+    targets.check(name, sources)
+    check_inputs_stay(targets.written, scene, settings, over)
+    read = read_scene(scene, tuple(settings or ()))
+    if read.tubes:
+        check_tubes({**sources.asked, "--range": bool(ranges), **dict.fromkeys(targets.files, True)})
         assert output is not None
-        _export_tubes(exported_scene, output, name)
+        _export_tubes(read, output, name)
         return
     if mjcf is not None:
-        _export_mjcf(exported_scene, mjcf, links)
-        if output is None and page is None and fmu is None:
-            return
-    check_period(exported_scene, period)
-    cases = None
-    if output is not None:
-        check_contact(exported_scene, parts)
-    layout = case_layout(exported_scene)
-    asked = asked_ranges(ranges, exported_scene)
-    if over is not None or (ranges and exported_scene.touches_exactly):
-        cases = _load_cases(over, ranges or [], samples, layout)
-        check_load_cases(exported_scene, cases)
+        _export_mjcf(read, mjcf, links)
+    if not targets.need_a_solve:
+        return
+    asked = asked_ranges(ranges, read)
+    cases = _load_cases(read, over, ranges or [], samples)
+    exported_scene = _checked_scene(read, targets, sources, name)
+
+    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
+    moves = targets.moves(sources)
+    solved_scene = exported_scene.held() if moves else exported_scene
     chosen_cases = None
     if over is not None and cases is not None:
         # A library begins at the scene's own inputs.
-        chosen_cases = [{}, *map(layout.unpack, cases)]
-    if moves:
-        exported_scene = exported_scene.with_motion_inputs()
-        check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
-    scene_names(name, exported_scene)
-    if stability:
-        check_stability(build(exported_scene, discretise(exported_scene, 1, 2)))
-    if batches:
-        check_batches(build(exported_scene, discretise(exported_scene, 1, 2)))
-    if page is not None:
-        # Last: a scene that has no page has none with a compiler either.
-        find_wasm_compiler()
-
-    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
-    solved_scene = exported_scene.held() if moves else exported_scene
+        chosen_cases = [{}, *map(case_layout(read).unpack, cases)]
     solution, choice = solve_for_ranges(solved_scene, asked, chosen_cases)
-    verified = choice.verified
-    exported_scene = fixed_by_rod(exported_scene, choice.model.discretisation, choice.ranges.described)
     _check_solved(solution)
-    console = Console()
-    model = solution.model
-    if moves or exported_scene.parameters:
-        model = build(exported_scene, model.discretisation, moving=moves)
-    estimate = solution.error_estimate
-    if output is not None:
-        export_model(
-            model,
-            output,
-            name,
-            error_estimate=estimate,
-            verified=verified,
-            **parts,
-            load_cases=cases,
-            period=period,
-            estimate_errors=estimate_errors,
-        )
-        print_export(console, solution, output)
-    if fmu is not None:
-        with Console(stderr=True).status("Compiling the FMU"):
-            write_fmu(model, fmu, name, error_estimate=estimate, verified=verified)
-        print_plain(console, f"wrote {escape(str(fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
-    if page is not None:
-        with Console(stderr=True).status("Compiling the page"):
-            export_page(solution, page, asked)
-        print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
-    print_choice(console, choice)
+    _write(targets, sources, name, exported_scene, solution, choice, cases, asked)
+    print_choice(Console(), choice)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False
     if missed:
         print_missed(Console(stderr=True), fixed=solved_scene.accuracy.fixed)
     if missed or choice.locked:
         raise typer.Exit(NOT_FOUND)
+
+
+def _checked_scene(scene: Scene, targets: Targets, sources: SourceOptions, name: str) -> Scene:
+    """The scene with the inputs that its export has.
+
+    Raises:
+        ExportError: the scene, the name or an option is refused.
+    """
+    check_period(scene, sources.period)
+    if targets.output is not None:
+        check_contact(scene, sources.parts)
+    if targets.moves(sources):
+        scene = scene.with_motion_inputs()
+        check_motion(build(scene, discretise(scene, 1, 2), moving=True))
+    scene_names(name, scene)
+    if sources.parts["stability"]:
+        check_stability(build(scene, discretise(scene, 1, 2)))
+    if sources.parts["batches"]:
+        check_batches(build(scene, discretise(scene, 1, 2)))
+    if targets.page is not None:
+        # Last: a scene that has no page has none with a compiler either.
+        find_wasm_compiler()
+    return scene
+
+
+def _write(
+    targets: Targets,
+    sources: SourceOptions,
+    name: str,
+    scene: Scene,
+    solution: Solution,
+    choice: Choice,
+    cases: FloatArray | None,
+    ranges: Given,
+) -> None:
+    """Write sources, FMU and page of a scene on the modes and nodes that were chosen, and say where they are."""
+    console = Console()
+    moves = targets.moves(sources)
+    model = solution.model
+    if moves or scene.parameters:
+        fixed_scene = fixed_by_rod(scene, choice.model.discretisation, choice.ranges.described)
+        model = build(fixed_scene, model.discretisation, moving=moves)
+    estimate = solution.error_estimate
+    verified = choice.verified
+    if targets.output is not None:
+        export_model(
+            model,
+            targets.output,
+            name,
+            error_estimate=estimate,
+            verified=verified,
+            **sources.parts,
+            load_cases=cases,
+            period=sources.period,
+            estimate_errors=sources.estimate_errors,
+        )
+        print_export(console, solution, targets.output)
+    if targets.fmu is not None:
+        with Console(stderr=True).status("Compiling the FMU"):
+            write_fmu(model, targets.fmu, name, error_estimate=estimate, verified=verified)
+        print_plain(console, f"wrote {escape(str(targets.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
+    if targets.page is not None:
+        with Console(stderr=True).status("Compiling the page"):
+            export_page(solution, targets.page, ranges)
+        print_plain(console, f"wrote {escape(str(targets.page))}; any browser opens it", soft_wrap=True)
 
 
 def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
@@ -208,17 +316,21 @@ def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
     print_plain(Console(), f"wrote {escape(str(path))}; MuJoCo opens it", soft_wrap=True)
 
 
-def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: CaseLayout) -> FloatArray:
-    """Load cases of a file, or spread over ranges, shape (count, size of a case).
+def _load_cases(scene: Scene, over: Path | None, ranges: list[str], samples: int) -> FloatArray | None:
+    """Load cases whose exact contacts the sources know, shape (count, size of a case); None without exact contact.
 
     Raises:
-        SceneError: both or none stand in the command, or one of them is refused.
+        SceneError: the command has both a file and ranges, or one of them is refused.
+        ExportError: the scene has no exact contact, and a file names load cases.
     """
-    if over is not None and not ranges:
-        return read_load_cases(over, layout)
-    if over is None and ranges:
-        return spread(ranges, samples, layout)
-    raise SceneError(Problem("--over", "stands beside --range, or both are missing", "give one of them"))
+    if over is None and not (ranges and scene.touches_exactly):
+        return None
+    if over is not None and ranges:
+        raise SceneError(Problem("--over", "stands beside --range", "give one of them"))
+    layout = case_layout(scene)
+    cases = read_load_cases(over, layout) if over is not None else spread(ranges, samples, layout)
+    check_load_cases(scene, cases)
+    return cases
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:
@@ -235,34 +347,3 @@ def _export_tubes(scene: Scene, output: Path, name: str) -> None:
     _check_solved(solution)
     export_model(build(scene, solution.model.steps), output, name, error_estimate=solution.error_estimate)
     print_tubes_export(Console(), solution, output)
-
-
-def _check_files(
-    output: Path | None, files: Mapping[str, Path | None], name: str, of_sources: Mapping[str, bool]
-) -> None:
-    """Refuse an export without a file, files that cannot be written, and options of sources in C without a folder."""
-    if output is None and not any(files.values()):
-        remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"
-        raise ExportError(Problem("--output", "missing", remedy))
-    if output is None:
-        remedy = "name a folder for them with --output, or leave it out"
-        lost = [Problem(option, "is for the sources in C", remedy) for option, asked in of_sources.items() if asked]
-        if lost:
-            raise ExportError(*lost)
-    else:
-        check_export(output, name)
-    checks: dict[str, Callable[[Path], None]] = {
-        "--page": partial(check_writable, option="--page"),
-        "--fmu": check_fmu,
-        "--mjcf": check_mjcf,
-    }
-    for option, file in files.items():
-        if file is not None:
-            checks[option](file)
-
-
-def _earlier_files(output: Path | None) -> dict[str, Path]:
-    """Files of an earlier export in the folder, which are written over."""
-    # Names of files are no options: they tell the many of one folder apart.
-    there = output.iterdir() if output is not None and output.is_dir() else ()
-    return {f"--output, {file.name}": file for file in there}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +19,7 @@ from cosserat_casadi.cli.options import (
     check_outputs,
     collect_problems,
 )
-from cosserat_casadi.cli.progress import sweep_display
+from cosserat_casadi.cli.progress import CountCallback, sweep_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
@@ -113,20 +114,16 @@ def sweep(
 
     # Asked now: once the sweep has run it is finished in any case.
     finished_before = plan.finished
-    try:
-        with sweep_display() as show_count:
-            if part is not None:
-                rows = run_shard(plan, part, scheduler=scheduler, cores=cores, progress=show_count)
-            elif merge:
-                swept = merge_shards(plan, progress=show_count)
-            else:
-                swept = run_sweep(plan, scheduler=scheduler, cores=cores, progress=show_count)
-    except KeyboardInterrupt:
-        print_stopped_sweep(Console(stderr=True), plan.part if part is None else part.file(output))
-        raise StoppedError from None
     if part is not None:
+        with _stoppable(part.file(output)) as show_count:
+            rows = run_shard(plan, part, scheduler=scheduler, cores=cores, progress=show_count)
         print_shard(Console(), part, rows, output, finished=finished_before)
         return
+    with _stoppable(plan.part) as show_count:
+        if merge:
+            swept = merge_shards(plan, progress=show_count)
+        else:
+            swept = run_sweep(plan, scheduler=scheduler, cores=cores, progress=show_count)
 
     if sobol is not None:
         print_sweep(Console(), swept, output, None, finished=finished_before)
@@ -138,6 +135,17 @@ def sweep(
     # The rows are written in any case; the exit code says whether they can be trusted.
     if not swept.holds:
         raise typer.Exit(NOT_FOUND)
+
+
+@contextmanager
+def _stoppable(kept: Path | None) -> Iterator[CountCallback]:
+    """Show how far a sweep is; where it is stopped, say in which file the rows stand that are done."""
+    try:
+        with sweep_display() as show_count:
+            yield show_count
+    except KeyboardInterrupt:
+        print_stopped_sweep(Console(stderr=True), kept)
+        raise StoppedError from None
 
 
 def _check_shard(shard: str | None, merge: bool, plot: Path | None, problems: list[Problem]) -> Shard | None:
