@@ -13,7 +13,7 @@ from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiler import compiler_words
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
-from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.model.build import Model
 
@@ -101,7 +101,7 @@ def _sources(model: Model, names: Names) -> dict[str, str]:
     beside = kernel_sources([f for f in every if f.name() in untimed], names, "untimed")
     header = "timed_kernels.h"
     files = {
-        **library_sources(model, names, parts, generated, None),
+        **library_sources(model, names, FolderContents(generated, parts)),
         **beside,
         **timed,
         header: generated[header],

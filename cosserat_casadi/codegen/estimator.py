@@ -15,7 +15,7 @@ from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernel, kernels
-from cosserat_casadi.codegen.library import LEAST_MISFIT, library_sources
+from cosserat_casadi.codegen.library import LEAST_MISFIT, FolderContents, library_sources
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import loaded, to_compile
@@ -236,7 +236,7 @@ def _texts(model: Model, measured: ca.Function, indices: Sequence[int]) -> dict[
         "sections": measured.nnz_in(2),
         "measured": measured.nnz_in(3),
     }
-    files = {**library_sources(model, names, parts, generated, None), **generated}
+    files = {**library_sources(model, names, FolderContents(generated, parts)), **generated}
     # A part of the library's own source: it uses the solver's linear algebra.
     files[f"{NAME}.c"] += render("estimate.c.in", words)
     files[LEAST_MISFIT] = resource("c", LEAST_MISFIT)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernel_files import external_sources, kernel_sources
 from cosserat_casadi.codegen.kernels import differentiable, kernels
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
-from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest, with_manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
@@ -201,25 +200,13 @@ def folder_files(
     motion = motion_in_c(model, names) if dynamics else None
     functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names, on_device=cuda)
-    by_hand_within = partial(
-        library_sources,
-        model,
-        names,
-        parts,
-        generated,
-        error_estimate,
-        verified=verified,
-        derivatives=derivatives,
-        stability=stability,
-        motion=motion,
-        rows=_side_by_side(model, names) if batches else None,
-        on_device=cuda,
-    )
-    by_hand = by_hand_within()
+    rows = _side_by_side(model, names) if batches else None
+    contents = FolderContents(generated, parts, motion, rows, derivatives, stability, on_device=cuda)
+    by_hand = library_sources(model, names, contents, error_estimate, verified)
     budget = ALWAYS
     if period is not None:
         budget = fitting(costs_of(model, names, {**by_hand, **generated}), period)
-        by_hand = by_hand_within(budget=budget)
+        by_hand = library_sources(model, names, contents, error_estimate, verified, budget)
     files = {
         **by_hand,
         **(stability_sources(model, names) if stability else {}),

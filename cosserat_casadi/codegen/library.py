@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
@@ -134,72 +135,101 @@ ROLES = {
 """What each file is for."""
 
 
+@dataclass(frozen=True)
+class FolderContents:
+    """The parts of a folder that stand beside the solver.
+
+    Attributes:
+        generated: source and header of the kernels by file name.
+        parts: the equations of an assembly in parts; None for one rod.
+        motion: the equations of motion, where the folder has them.
+        rows: the solver of batches side by side, where the folder has it.
+        derivatives: whether the folder holds derivatives of the equations for CasADi.
+        stability: whether it holds the stability of equilibria.
+        on_device: whether it holds batches on a GPU.
+    """
+
+    generated: Mapping[str, str]
+    parts: Assembled | None
+    motion: MotionInC | None = None
+    rows: InLanes | None = None
+    derivatives: bool = False
+    stability: bool = False
+    on_device: bool = False
+
+    def verbatim(self, names: Names) -> tuple[str, ...]:
+        """Files of the folder ``c`` that the library includes."""
+        estimate = ERROR_FILES if estimates_errors(names) else ()
+        linear = DENSE if self.parts is None else BLOCKS
+        motion = () if self.motion is None else MOTION_FILES
+        return (*SHARED, *estimate, *linear, *motion)
+
+    @property
+    def to_compile(self) -> dict[str, str]:
+        """Words of the build file for sources and headers that a plain folder does not have."""
+        stability = self.stability
+        lanes_source = "" if self.rows is None else " {name}_lanes.c"
+        return {
+            "more_sources": (" {name}_stability.c" if stability else "") + lanes_source,
+            "more_compiled": lanes_source,
+            "more_headers": " {name}_stability.h" if stability else "",
+        }
+
+    def absent(self, names: Names) -> set[str]:
+        """Files of :data:`ROLES` that the folder does not have."""
+        absent = {*(BLOCKS if self.parts is None else DENSE)}
+        if f"{names.name}_kernels_in_fours.h" not in self.generated:
+            absent |= {*FOURS, "{name}_kernels_in_fours.h", "{name}_derivatives_in_fours.h"}
+        if not any(file in self.generated for file in PROGRAM):
+            absent |= {*PROGRAM}
+        if self.rows is None:
+            absent |= {*lanes.FILES, "{name}_lanes.c", "{name}_lanes.h"}
+        if not estimates_errors(names):
+            absent |= {*ERROR_FILES}
+        if not self.on_device:
+            absent |= {*device_files("{name}")}
+        if self.motion is None:
+            absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
+        if not self.derivatives:
+            absent |= {"{name}_derivatives.c", "{name}_derivatives_in_fours.h"}
+        if not self.stability:
+            absent |= {"{name}_stability.c", "{name}_stability.h", SECOND_VARIATION}
+        return absent
+
+
 def library_sources(
     model: Model,
     names: Names,
-    parts: Assembled | None,
-    generated: Mapping[str, str],
-    error_estimate: float | None,
-    *,
+    contents: FolderContents,
+    error_estimate: float | None = None,
     verified: Verified | None = None,
-    derivatives: bool = False,
-    stability: bool = False,
-    motion: MotionInC | None = None,
-    rows: InLanes | None = None,
     budget: TurnBudget = ALWAYS,
-    on_device: bool = False,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
     Args:
         model: what is exported.
         names: what things are called.
-        parts: the equations of an assembly in parts.
-        generated: source and header of the kernels by file name.
+        contents: the parts that stand beside the solver.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length.
         verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
-        derivatives: whether the folder holds the derivatives too.
-        stability: whether it holds the stability of equilibria.
-        motion: the equations of motion, where the folder has them.
-        rows: what solves batches side by side, where the folder has it.
         budget: what a turn of a control loop may take by default.
-        on_device: whether the folder holds batches on a GPU.
     """
-    accuracy = accuracy_words(model.scene, error_estimate, verified)
-    words = _words(model, names, parts, generated, accuracy, motion, rows, on_device=on_device)
+    words = _words(model, names, contents) | accuracy_words(model.scene, error_estimate, verified)
     words |= {
         "default_iterations": budget.iterations,
         "default_continuation_steps": budget.steps,
         "budget_note": budget.note,
+        "file_rows": _file_rows(names, contents),
     }
-    held = {
-        "derivatives": derivatives,
-        "stability": stability,
-        "dynamics": motion is not None,
-        "rows": rows is not None,
-        "on_device": on_device,
-    }
-    fours = f"{names.name}_kernels_in_fours.h" in generated
-    held["programs"] = any(file in generated for file in PROGRAM)
-    held["errors"] = estimates_errors(names)
-    words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
-    words["more_sources"] = f" {name}_stability.c" if stability else ""
-    words["more_compiled"] = ""
-    if rows is not None:
-        words["more_sources"] += f" {name}_lanes.c"
-        words["more_compiled"] = f" {name}_lanes.c"
-    words["more_headers"] = f" {name}_stability.h" if stability else ""
-    estimate = ERROR_FILES if estimates_errors(names) else ()
-    linear = DENSE if parts is None else BLOCKS
-    in_motion = () if motion is None else MOTION_FILES
-    verbatim = (*SHARED, *estimate, *linear, *in_motion)
-    files = rendered(words, verbatim)
-    if motion is not None:
+    words |= {word: files.format(name=name) for word, files in contents.to_compile.items()}
+    files = rendered(words, contents.verbatim(names))
+    if contents.motion is not None:
         files[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
-    if on_device:
+    if contents.on_device:
         files |= {file: render(f"device_batch.{file.rpartition('.')[2]}.in", words) for file in device_files(name)}
-    return {**files, **({} if rows is None else rows.files)}
+    return {**files, **({} if contents.rows is None else contents.rows.files)}
 
 
 def device_files(name: str) -> tuple[str, str]:
@@ -260,23 +290,16 @@ def _batch_words(name: str, rows: InLanes | None) -> dict[str, Any]:
     }
 
 
-def _words(
-    model: Model,
-    names: Names,
-    parts: Assembled | None,
-    generated: Mapping[str, str],
-    accuracy: dict[str, str],
-    motion: MotionInC | None,
-    rows: InLanes | None,
-    *,
-    on_device: bool,
-) -> dict[str, Any]:
-    sizes = _sizes(model, names, generated) | {"on_device": on_device}
+def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, Any]:
+    parts = contents.parts
+    motion = contents.motion
+    on_device = contents.on_device
+    sizes = _sizes(model, names, contents.generated) | {"on_device": on_device}
     sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     in_motion = {} if motion is None else motion_words(render, sizes, model, names, motion)
     sizes |= error_words(model, names)
-    sizes |= _batch_words(names.name, rows)
+    sizes |= _batch_words(names.name, contents.rows)
     functions = public_functions(model, names)
     margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights
@@ -310,7 +333,6 @@ def _words(
         "prototypes": "".join(function.prototype(with_device) for function in functions),
         "functions": "".join(function.wrapper(with_device) for function in functions),
         "function_rows": "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions),
-        **accuracy,
     }
 
 
@@ -458,36 +480,8 @@ def _pose_words(names: Names) -> dict[str, Any]:
     return {"pose_owners": "each rod,\n   then each body: position, then quaternion"}
 
 
-def _file_rows(
-    names: Names,
-    parts: Assembled | None,
-    *,
-    fours: bool,
-    programs: bool,
-    derivatives: bool,
-    stability: bool,
-    dynamics: bool,
-    rows: bool,
-    errors: bool,
-    on_device: bool,
-) -> str:
-    absent = {*(BLOCKS if parts is None else DENSE)}
-    if not fours:
-        absent |= {*FOURS, "{name}_kernels_in_fours.h", "{name}_derivatives_in_fours.h"}
-    if not programs:
-        absent |= {*PROGRAM}
-    if not rows:
-        absent |= {*lanes.FILES, "{name}_lanes.c", "{name}_lanes.h"}
-    if not errors:
-        absent |= {*ERROR_FILES}
-    if not on_device:
-        absent |= {*device_files("{name}")}
-    if not dynamics:
-        absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
-    if not derivatives:
-        absent |= {"{name}_derivatives.c", "{name}_derivatives_in_fours.h"}
-    if not stability:
-        absent |= {"{name}_stability.c", "{name}_stability.h", SECOND_VARIATION}
+def _file_rows(names: Names, contents: FolderContents) -> str:
+    absent = contents.absent(names)
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 

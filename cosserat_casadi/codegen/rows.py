@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.lanes import in_lanes, lanes_files
-from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
@@ -163,7 +163,7 @@ def _row_texts(model: Model, columns: tuple[str, ...], *, stability: bool, lanes
     generated = kernel_sources(kernels(model, names, parts), names)
     side_by_side = in_lanes(model, names) if lanes else None
     files = {
-        **library_sources(model, names, parts, generated, None, rows=side_by_side),
+        **library_sources(model, names, FolderContents(generated, parts, rows=side_by_side)),
         **(stability_sources(model, names) if stability else {}),
         **generated,
         f"{NAME}_rows.c": _rows_source(model, names, columns, lanes=side_by_side is not None),
