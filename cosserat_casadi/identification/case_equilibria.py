@@ -6,7 +6,9 @@ strays is followed along the straight line to the new inputs and parameters, wit
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -14,18 +16,24 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import column, continuation_limits, load_path
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.continuation import Path, follow
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 from cosserat_casadi.tubes.tube_solve import solve_at
+from cosserat_casadi.tubes.tube_stability import stability_of as stability_of_tubes
 
 STEPS = 12
 """Newton steps of all cases together; cases that have not converged by then are followed one by one."""
 
 CONTRACTION = 0.05
 """Share of the residual that a step with an earlier Jacobian may leave; else the next one has a new Jacobian."""
+
+NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
+"""Why a case has none there."""
 
 Flags = npt.NDArray[np.bool_]
 
@@ -46,6 +54,16 @@ class Point:
     p: FloatArray
     inverses: FloatArray
 
+    def chosen(self, kept: Sequence[int]) -> Point:
+        """The equilibria of some cases."""
+        return Point(self.x[kept], self.inputs[kept], self.p, self.inverses[kept])
+
+    def joined(self, other: Point) -> Point:
+        """The equilibria of these cases, then of others at the same parameters."""
+        pairs = [(self.x, other.x), (self.inputs, other.inputs), (self.inverses, other.inverses)]
+        x, inputs, inverses = map(np.concatenate, pairs)
+        return Point(x, inputs, self.p, inverses)
+
 
 class Equilibria:
     """The equations of all cases.
@@ -61,11 +79,22 @@ class Equilibria:
         self.cases = cases
         self.sought: Flags = np.ones(cases, dtype=bool) if unloaded is None else ~unloaded
         self._tolerance = NewtonSettings()
-        self._residual = self._mapped(model.residual)
-        self._jacobian = self._mapped(model.jacobian)
-        self._moved = model.shape_unknowns
-        self._input_jacobian: ca.Function | None = None
-        self._parameter_jacobian: ca.Function | None = None
+
+    @cached_property
+    def _residual(self) -> ca.Function:
+        return self._mapped(self.model.residual)
+
+    @cached_property
+    def _jacobian(self) -> ca.Function:
+        return self._mapped(self.model.jacobian)
+
+    @cached_property
+    def _input_jacobian(self) -> ca.Function:
+        return self._mapped(self.model.input_jacobian)
+
+    @cached_property
+    def _parameter_jacobian(self) -> ca.Function:
+        return self._mapped(self.model.parameter_jacobian)
 
     def _mapped(self, function: ca.Function) -> ca.Function:
         """A function of x and inputs, and perhaps of p, for all cases that share p."""
@@ -82,18 +111,51 @@ class Equilibria:
 
     def by_inputs(self, point: Point) -> FloatArray:
         """Derivatives of the residuals with the inputs, shape (cases, size, size of the inputs)."""
-        if self._input_jacobian is None:
-            self._input_jacobian = self._mapped(self.model.input_jacobian)
         return split(self._input_jacobian(*self._arguments(point.x, point.inputs, point.p)), self.cases)
 
     def by_parameters(self, point: Point) -> FloatArray:
         """Derivatives of the residuals with the parameters, shape (cases, size, size of the parameters)."""
-        if self._parameter_jacobian is None:
-            self._parameter_jacobian = self._mapped(self.model.parameter_jacobian)
         return split(self._parameter_jacobian(*self._arguments(point.x, point.inputs, point.p)), self.cases)
 
     def _arguments(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
         return [x.T, inputs.T, p] if self.model.parameters.size else [x.T, inputs.T]
+
+    def started(
+        self, inputs: FloatArray, wanted: FloatArray, first_p: FloatArray, p: FloatArray
+    ) -> tuple[Point, list[str]]:
+        """The equilibria from which a search begins, and why a case has none there.
+
+        Args:
+            inputs: the scene's own, which are solved first, shape (cases, size of the inputs).
+            wanted: inputs where the search begins, shape (cases, size of the inputs).
+            first_p: the scene's own parameters.
+            p: parameters where the search begins.
+
+        Returns:
+            the equilibria, and a sentence for each case, empty where it has one.
+        """
+        point, outcomes = self.loaded(inputs, first_p)
+        # From the scene's own numbers to the start, where a bound or another value moves it.
+        moved, reached = self.tracked(point, point.x, wanted, p)
+        converged = np.array([outcome is Outcome.CONVERGED for outcome in outcomes])
+        if not np.all(converged & reached) and (np.any(p != first_p) or np.any(wanted != point.inputs)):
+            # There may be an equilibrium where the search begins, and none at the scene's own numbers.
+            direct, direct_outcomes = self.loaded(wanted, p)
+            for i in np.flatnonzero(~(converged & reached)):
+                if direct_outcomes[i] is Outcome.CONVERGED:
+                    moved.x[i] = direct.x[i]
+                    outcomes[i] = Outcome.CONVERGED
+                    reached[i] = True
+        reasons = []
+        for i, outcome in enumerate(outcomes):
+            reason = "" if reached[i] else NOT_FOLLOWED
+            if outcome is not Outcome.CONVERGED:
+                reason = outcome.value
+            elif not reason and resolution_index(self.model, moved.x[i], moved.inputs[i], p) > 1.0:
+                reason = Outcome.UNRESOLVED.value
+            reasons.append(reason)
+        # The equilibria of those that were reached otherwise are of other Jacobians.
+        return self.at_point(moved), reasons
 
     def loaded(self, inputs: FloatArray, p: FloatArray) -> tuple[Point, list[Outcome]]:
         """The equilibria at the ends of the load paths, and how each path ended.
@@ -136,6 +198,52 @@ class Equilibria:
         """The same equilibria with Jacobians that are of them."""
         return Point(point.x, point.inputs, point.p, self._inverses(point.x, point.inputs, point.p))
 
+    def sensitivities(
+        self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of the equilibria with shared unknowns, and with those of the case.
+
+        Args:
+            point: the equilibria, with Jacobians that are of them.
+            p_by_shared: derivatives of the parameters with the n shared unknowns, shape (parameters, n).
+            inputs_by_shared: of the inputs, shape (inputs, n).
+            inputs_by_own: of the inputs of each case with its k unknowns, shape (cases, inputs, k).
+        """
+        cases, size = point.x.shape
+        by_shared = np.zeros((cases, size, p_by_shared.shape[1]))
+        by_own = np.zeros((cases, size, inputs_by_own.shape[2]))
+        if np.any(p_by_shared):
+            by_shared += self.by_parameters(point) @ p_by_shared
+        if np.any(inputs_by_shared) or inputs_by_own.size:
+            by_inputs = self.by_inputs(point)
+            by_shared += by_inputs @ inputs_by_shared
+            by_own += by_inputs @ inputs_by_own
+        sought = self.sought[:, None, None]
+        return np.where(sought, -point.inverses @ by_shared, 0.0), np.where(sought, -point.inverses @ by_own, 0.0)
+
+    def unstable(self, point: Point) -> Flags:
+        """Which cases have an unstable equilibrium, where that has a meaning, shape (cases,)."""
+        jacobians = self.jacobians(point.x, point.inputs, point.p)
+        flags = np.zeros(self.cases, dtype=bool)
+        is_stable = self._stability(point.p)
+        for i, (x, inputs, jacobian) in enumerate(zip(point.x, point.inputs, jacobians, strict=True)):
+            if self.sought[i] and self.model.has_potential(inputs):
+                flags[i] = not is_stable(x, inputs, jacobian)
+        return flags
+
+    def _stability(self, p: FloatArray) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
+        """(x, inputs, Jacobian) ↦ whether an equilibrium with these parameters is stable."""
+        model = self.model
+        if not isinstance(model, TubeFunctions):
+            allowed = variations(model)
+            return lambda x, inputs, jacobian: bool(stability_of(admissible_eigenvalues(jacobian, allowed)).stable)
+        try:
+            bound = model.at(p)
+        except SceneError:
+            # Numbers that the scene refuses are no tubes whose stability could be told.
+            return lambda x, inputs, jacobian: True
+        return lambda x, inputs, jacobian: bool(stability_of_tubes(bound, x, inputs).stable)
+
     def tracked(
         self, near: Point, predicted: FloatArray, inputs: FloatArray, p: FloatArray, *, far: bool = True
     ) -> tuple[Point, Flags]:
@@ -149,7 +257,7 @@ class Equilibria:
             far: whether cases that Newton's method does not reach from there are followed along a path.
         """
         x, inverses, converged = self._newton(predicted, inputs, p, near.inverses)
-        moved = np.linalg.norm((x - predicted)[:, self._moved], axis=1)
+        moved = np.linalg.norm((x - predicted)[:, self.model.shape_unknowns], axis=1)
         reached = converged & (moved <= MAX_DISTANCE)
         astray = np.flatnonzero(~reached & far)
         for case in astray:
@@ -221,6 +329,12 @@ class Equilibria:
             return change
 
         return Path(residual, jacobian, rate, near.x[case], step_weights=model.step_weights)
+
+
+def resolution_index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
+    """Resolution index, which is above 1 where the nodes do not resolve the rods, or the steps the tubes."""
+    parameters: list[FloatArray] = [p] if model.parameters.size else []
+    return float(model.resolution_index(x, inputs, *parameters))
 
 
 def mapped(function: ca.Function, cases: int, *, has_parameters: bool) -> ca.Function:

@@ -118,6 +118,7 @@ class Ending:
             cases=tuple(case.where for case in misfit.cases),
             unknowns_x=fit.state.point.x,
             inputs=fit.state.point.inputs,
+            equilibria=misfit.solutions(fit.state),
             unstable=tuple(self.unstable),
             left_out=tuple(self.left_out),
             at_bounds=tuple(at_bounds),

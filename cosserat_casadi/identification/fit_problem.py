@@ -6,12 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
-from cosserat_casadi.equilibrium.strain_limits import BeyondLimit, first_beyond
-from cosserat_casadi.errors import SceneError
+from cosserat_casadi.identification.case_contacts import ContactEquilibria, ContactMisfit
 from cosserat_casadi.identification.case_equilibria import Equilibria, Point
 from cosserat_casadi.identification.case_motions import StartInputs
 from cosserat_casadi.identification.case_time_steps import STEP_ERROR, error_of_steps, given_steps, with_steps
@@ -23,14 +20,11 @@ from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.identification.misfit import Misfit, MisfitState, inputs_of, moving
 from cosserat_casadi.identification.statistics import NoiseFrom, Statistics, statistics
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.sections import sizes_of
 from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, ArrowStep, Fit, Limits
-from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
-from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
-from cosserat_casadi.tubes.tube_stability import stability_of as stability_of_tubes
+from cosserat_casadi.tubes.tube_functions import AnyModel
 
 SEED = 16
 """Of the cases that are held out, and of the random starts."""
@@ -40,9 +34,6 @@ DECADES = 10.0
 
 SAME_COST = 1e-3
 """Difference of half the sums of squares within which two starts have ended at one optimum."""
-
-NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
-"""Why a case has none there."""
 
 NEAREST = 0.05
 """Share of the way to a start at which it is given up, and the search begins where the first one does."""
@@ -136,9 +127,10 @@ class Task:
             rows += self._rows(*predicted, held_out=True)
         ending.warnings += plausibility(self.model, self.layout, rows)
         ending.joint_modes += misfit.joint_modes(fit.state)
-        ending.unstable += _unstable(misfit, fit.state.point)
-        ending.unresolved += _unresolved(misfit, fit.state)
-        ending.beyond += _beyond_limits(misfit, fit.state)
+        ending.unstable += misfit.unstable(fit.state)
+        ending.unresolved += misfit.unresolved(fit.state)
+        ending.beyond += misfit.beyond_limits(fit.state)
+        ending.warnings += misfit.marginal(fit.state)
         found = ending.concluded(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
         if not misfit.motions.times:
             return found
@@ -148,40 +140,18 @@ class Task:
         """The misfit of the cases that have an equilibrium or a motion at the start, and the other cases."""
         _, own = self.layout.start(len(cases))
         moves = moving(cases)
-        unloaded = moves & self._starts_unloaded
         start = StartInputs(self.model)
-        everyone = Equilibria(self.model, len(cases), unloaded)
         inputs = inputs_of(cases)
-        point, outcomes = everyone.loaded(start.of(inputs, moves), self.layout.p)
-        # From the scene's own numbers to the start, where a bound or another value moves it.
         wanted = start.of(self.layout.inputs(shared, own, inputs), moves)
-        p = self.layout.parameters(shared)
-        moved, reached = everyone.tracked(point, point.x, wanted, p)
-        converged = np.array([outcome is Outcome.CONVERGED for outcome in outcomes])
-        if not np.all(converged & reached) and (np.any(p != self.layout.p) or np.any(wanted != point.inputs)):
-            # There may be an equilibrium where the search begins, and none at the scene's own numbers.
-            direct, direct_outcomes = everyone.loaded(wanted, p)
-            for i in np.flatnonzero(~(converged & reached)):
-                if direct_outcomes[i] is Outcome.CONVERGED:
-                    moved.x[i] = direct.x[i]
-                    outcomes[i] = Outcome.CONVERGED
-                    reached[i] = True
-        missing = []
-        kept = []
-        for i, (case, outcome) in enumerate(zip(cases, outcomes, strict=True)):
-            if outcome is not Outcome.CONVERGED:
-                missing.append(_Missing(case, outcome.value))
-            elif not reached[i]:
-                missing.append(_Missing(case, NOT_FOLLOWED))
-            elif _index(self.model, moved.x[i], moved.inputs[i], p) > 1.0:
-                missing.append(_Missing(case, Outcome.UNRESOLVED.value))
-            else:
-                kept.append(i)
+        everyone = self._equilibria(cases)
+        point, reasons = everyone.started(
+            start.of(inputs, moves), wanted, self.layout.p, self.layout.parameters(shared)
+        )
+        missing = [_Missing(case, reason) for case, reason in zip(cases, reasons, strict=True) if reason]
+        kept = [i for i, reason in enumerate(reasons) if not reason]
         if not kept:
             return None, missing
-        # The equilibria of those that were reached otherwise are of other Jacobians.
-        whole = everyone.at_point(moved)
-        return self._of_finite([cases[i] for i in kept], _chosen(whole, kept), shared, own[kept], missing)
+        return self._of_finite([cases[i] for i in kept], point.chosen(kept), shared, own[kept], missing)
 
     def _of_finite(
         self, cases: list[Case], point: Point, shared: FloatArray, own: FloatArray, missing: list[_Missing]
@@ -199,12 +169,16 @@ class Task:
                 return None, missing
             # Steps were halved as long as some motion could not be computed: the others may take longer ones.
             misfit = self._misfit([cases[i] for i in kept])
-            state = with_steps(misfit, misfit.first(_chosen(point, kept), shared, own[kept]))
+            state = with_steps(misfit, misfit.first(point.chosen(kept), shared, own[kept]))
         return _Started(misfit, state, missing), missing
 
     def _misfit(self, cases: Sequence[Case]) -> Misfit:
-        unloaded = moving(cases) & self._starts_unloaded
-        return Misfit(self.model, self.layout, cases, Equilibria(self.model, len(cases), unloaded))
+        kind = ContactMisfit if self.model.scene.touches_exactly else Misfit
+        return kind(self.model, self.layout, cases, self._equilibria(cases))
+
+    def _equilibria(self, cases: Sequence[Case]) -> Equilibria:
+        kind = ContactEquilibria if self.model.scene.touches_exactly else Equilibria
+        return kind(self.model, len(cases), moving(cases) & self._starts_unloaded)
 
     @property
     def _starts_unloaded(self) -> bool:
@@ -219,13 +193,7 @@ class Task:
             further, missing = self._first([one.case for one in started.missing], fit.shared)
             if further is None:
                 break
-            points = (fit.state.point, further.state.point)
-            point = Point(
-                np.concatenate([one.x for one in points]),
-                np.concatenate([one.inputs for one in points]),
-                fit.state.point.p,
-                np.concatenate([one.inverses for one in points]),
-            )
+            point = fit.state.point.joined(further.state.point)
             misfit = self._misfit([*started.misfit.cases, *further.misfit.cases])
             misfit.motions.size = min(started.misfit.motions.size, further.misfit.motions.size)
             if not started.misfit.motions.times:
@@ -365,78 +333,6 @@ class Task:
                 )
                 rows.append(row)
         return rows
-
-
-def _unstable(misfit: Misfit, point: Point) -> list[str]:
-    """Cases whose equilibrium is unstable, where that has a meaning."""
-    model = misfit.model
-    is_stable = _stable_tubes(model, point.p) if isinstance(model, TubeFunctions) else _stable_rods(model)
-    jacobians = misfit.equilibria.jacobians(point.x, point.inputs, point.p)
-    unstable = []
-    for i, (case, jacobian, inputs) in enumerate(zip(misfit.cases, jacobians, point.inputs, strict=True)):
-        if not misfit.equilibria.sought[i] or not model.has_potential(inputs):
-            continue
-        if not is_stable(point.x[i], inputs, jacobian):
-            unstable.append(case.where)
-    return unstable
-
-
-def _stable_rods(model: Model) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
-    """(x, inputs, Jacobian) ↦ whether the equilibrium is stable."""
-    allowed = variations(model)
-    return lambda x, inputs, jacobian: bool(stability_of(admissible_eigenvalues(jacobian, allowed)).stable)
-
-
-def _stable_tubes(model: TubeFunctions, p: FloatArray) -> Callable[[FloatArray, FloatArray, FloatArray], bool]:
-    """The same of tubes with these parameters."""
-    try:
-        bound = model.at(p)
-    except SceneError:
-        # Numbers that the scene refuses are no tubes whose stability could be told.
-        return lambda x, inputs, jacobian: True
-    return lambda x, inputs, jacobian: bool(stability_of_tubes(bound, x, inputs).stable)
-
-
-def _unresolved(misfit: Misfit, state: MisfitState) -> list[str]:
-    """Cases in which the nodes do not resolve the rods."""
-    unresolved = []
-    for case, x, inputs in _states(misfit, state):
-        indices = [_index(misfit.model, *place, state.point.p) for place in zip(x, inputs, strict=True)]
-        if not np.max(indices) <= 1.0:
-            unresolved.append(case)
-    return unresolved
-
-
-def _beyond_limits(misfit: Misfit, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
-    """Cases that are beyond a limit, and which limit that is."""
-    if isinstance(misfit.model, TubeFunctions) or misfit.model.strain_margins is None:
-        return []
-    bound = misfit.model.at(state.point.p)
-    limits = [(case, first_beyond(bound, x, inputs)) for case, x, inputs in _states(misfit, state)]
-    return [(case, limit) for case, limit in limits if limit is not None]
-
-
-def _states(misfit: Misfit, state: MisfitState) -> Iterator[tuple[str, FloatArray, FloatArray]]:
-    """Each case with its equilibrium and, in motions, the states at all times that were measured."""
-    for i, case in enumerate(misfit.cases):
-        x = state.point.x[i : i + 1]
-        inputs = state.point.inputs[i : i + 1]
-        run = state.runs.get(i)
-        if run is not None:
-            x = np.vstack([x, run.x])
-            inputs = np.vstack([inputs, run.inputs])
-        yield case.where, x, inputs
-
-
-def _index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
-    """Resolution index, which is above 1 where the nodes do not resolve the rods, or the steps the tubes."""
-    parameters: list[npt.NDArray[np.float64]] = [p] if model.parameters.size else []
-    return float(model.resolution_index(x, inputs, *parameters))
-
-
-def _chosen(point: Point, kept: Sequence[int]) -> Point:
-    """The equilibria of some cases."""
-    return Point(point.x[kept], point.inputs[kept], point.p, point.inverses[kept])
 
 
 FAR = 3.0

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout
 from cosserat_casadi.identification.fitted_scene import with_identified
@@ -110,7 +111,8 @@ class Identification(Result):
         cost: half the sum of squares, in squared standard deviations, priors among them.
         rows: every measured number beside the model's.
         cases: their first rows in words.
-        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size).
+        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size). In exact contact
+            each case has a model of its own: see equilibria.
         inputs: stacked inputs of each case, of motions at their start, shape (cases, size of the inputs).
         unstable: cases whose equilibrium is unstable.
         left_out: cases that took no part.
@@ -122,6 +124,7 @@ class Identification(Result):
         error_estimate: largest estimated error that modes and nodes leave in the equilibria that were measured, as of a
             solution: distance over the length, angle in rad, 1 where it is not known; None where there are none.
         error_case: the case in which it is largest; None likewise.
+        equilibria: of the cases with their contacts, where contact is exact.
     """
 
     model: AnyModel
@@ -147,6 +150,7 @@ class Identification(Result):
     step_error: float | None = None
     error_estimate: float | None = None
     error_case: str | None = None
+    equilibria: tuple[Solution, ...] = ()
 
     @property
     def within_tolerance(self) -> bool | None:

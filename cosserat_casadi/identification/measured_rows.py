@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -59,11 +60,16 @@ class MeasuredRows:
         self._known = known.reshape(count, sections * differences)
         deviations = np.broadcast_to(np.asarray(record.sigma, dtype=float), differences)
         self.sigma = np.tile(deviations, sections)
-        function = difference(model, record, sections)
+        self._model = model
+
+    @cached_property
+    def _functions(self) -> tuple[ca.Function, ca.Function]:
+        """The differences of all places, and these with their derivatives."""
+        count, sections = self._at.shape
+        function = difference(self._model, self.record, sections)
         arguments = function.mx_in()
         value = ca.Function("value", arguments, function.call(arguments)[:1])
-        self._values = value.map("values", "serial", count, [2], [])
-        self._derivatives = function.map("derivatives", "serial", count, [2], [])
+        return value.map("values", "serial", count, [2], []), function.map("derivatives", "serial", count, [2], [])
 
     def _arguments(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
         at = self._at.reshape(1, -1)
@@ -78,7 +84,7 @@ class MeasuredRows:
             inputs: theirs, shape (count, size of the inputs).
             p: parameters.
         """
-        values = self._values(*self._arguments(x, inputs, p)).full().T
+        values = self._functions[0](*self._arguments(x, inputs, p)).full().T
         scaled = values / self.sigma
         return np.asarray(scaled[self._known])
 
@@ -87,7 +93,7 @@ class MeasuredRows:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Derivatives of the residual with x, inputs and p of its place, (rows, …) each."""
         count = len(self.cases)
-        _, *matrices = self._derivatives(*self._arguments(x, inputs, p))
+        _, *matrices = self._functions[1](*self._arguments(x, inputs, p))
         by_x, by_inputs, by_p = ((split(matrix, count) / self.sigma[:, None])[self._known] for matrix in matrices)
         return by_x, by_inputs, by_p
 

@@ -6,13 +6,15 @@ that was measured over time begins there, or unloaded, and moves on by the steps
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.identification.case_equilibria import Equilibria, Flags, Point
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.strain_limits import BeyondLimit, first_beyond
+from cosserat_casadi.identification.case_equilibria import Equilibria, Flags, Point, resolution_index
 from cosserat_casadi.identification.case_motions import Motions, Run
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout
 from cosserat_casadi.identification.measured_cases import Case
@@ -20,7 +22,7 @@ from cosserat_casadi.identification.measured_modes import JointModes, MeasuredMo
 from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.measurements import ModeMeasurement
-from cosserat_casadi.tubes.tube_functions import AnyModel
+from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 
 Indices = npt.NDArray[np.int64]
 
@@ -119,7 +121,7 @@ class Misfit:
         inputs = state.point.inputs.shape[1]
         p_by_shared, inputs_by_shared = self.layout.by_shared(state.shared, inputs)
         inputs_by_own = self.layout.by_own(state.own, inputs)
-        state.sensitivities = self._sensitivities(state.point, p_by_shared, inputs_by_shared, inputs_by_own)
+        state.sensitivities = self.equilibria.sensitivities(state.point, p_by_shared, inputs_by_shared, inputs_by_own)
         n = len(state.shared)
         # Shared unknowns and those of the case side by side, for each case.
         inputs_by_all = np.concatenate(
@@ -127,6 +129,14 @@ class Misfit:
         )
         p_by_all = np.hstack([p_by_shared, np.zeros((len(p_by_shared), inputs_by_own.shape[2]))])
         x_by_all = np.concatenate(state.sensitivities, axis=2)
+        whole = self._rates(state, x_by_all, inputs_by_all, p_by_all)
+        sizes = self.layout.scales(state.shared), self.layout.own_scales
+        return without_rounding(whole[:, :n], whole[:, n:], sizes)
+
+    def _rates(
+        self, state: MisfitState, x_by_all: FloatArray, inputs_by_all: FloatArray, p_by_all: FloatArray
+    ) -> FloatArray:
+        """Derivatives of the residual with all unknowns that a row sees, from those of unknowns, inputs, parameters."""
         moved = {
             case: self.motions.sensitivity(run, x_by_all[case], inputs_by_all[case], p_by_all)
             for case, run in state.runs.items()
@@ -144,9 +154,49 @@ class Misfit:
             of_rows = np.einsum("mi,min->mn", by_x, x_by[rows.places])
             of_rows += np.einsum("mi,min->mn", by_inputs, inputs_by[rows.places])
             columns.append(of_rows + by_p @ p_by_all)
-        whole = np.concatenate(columns)[self.order]
-        sizes = self.layout.scales(state.shared), self.layout.own_scales
-        return without_rounding(whole[:, :n], whole[:, n:], sizes)
+        return np.concatenate(columns)[self.order]
+
+    def solutions(self, state: MisfitState) -> tuple[Solution, ...]:
+        """The equilibria of the cases, each with its contacts, where contact is exact; none where it is not."""
+        return ()
+
+    def marginal(self, state: MisfitState) -> list[str]:
+        """Sentences on contacts that the changes of the unknowns to one side alone meet."""
+        return []
+
+    def unstable(self, state: MisfitState) -> list[str]:
+        """Cases whose equilibrium is unstable, where that has a meaning."""
+        flags = self.equilibria.unstable(state.point)
+        return [case.where for case, is_unstable in zip(self.cases, flags, strict=True) if is_unstable]
+
+    def unresolved(self, state: MisfitState) -> list[str]:
+        """Cases in which the nodes do not resolve the rods."""
+        unresolved = []
+        for case, x, inputs in self._states(state):
+            places = zip(x, inputs, strict=True)
+            indices = [resolution_index(self.model, *place, state.point.p) for place in places]
+            if not np.max(indices) <= 1.0:
+                unresolved.append(case)
+        return unresolved
+
+    def beyond_limits(self, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
+        """Cases that are beyond a limit, and which limit that is."""
+        if isinstance(self.model, TubeFunctions) or self.model.strain_margins is None:
+            return []
+        bound = self.model.at(state.point.p)
+        limits = [(case, first_beyond(bound, x, inputs)) for case, x, inputs in self._states(state)]
+        return [(case, limit) for case, limit in limits if limit is not None]
+
+    def _states(self, state: MisfitState) -> Iterator[tuple[str, FloatArray, FloatArray]]:
+        """Each case with its equilibrium and, in motions, the states at all times that were measured."""
+        for i, case in enumerate(self.cases):
+            x = state.point.x[i : i + 1]
+            inputs = state.point.inputs[i : i + 1]
+            run = state.runs.get(i)
+            if run is not None:
+                x = np.vstack([x, run.x])
+                inputs = np.vstack([inputs, run.inputs])
+            yield case.where, x, inputs
 
     def joint_modes(self, state: MisfitState) -> list[JointModes]:
         """Measured modes of one frequency, of which the mean is compared; the Jacobian has been asked for there."""
@@ -189,22 +239,6 @@ class Misfit:
             x[place] = np.nan if run is None else run.x[instant]
             inputs[place] = np.nan if run is None else run.inputs[instant]
         return x, inputs, point.p
-
-    def _sensitivities(
-        self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the equilibria with shared and own unknowns."""
-        cases, size = point.x.shape
-        by_shared = np.zeros((cases, size, p_by_shared.shape[1]))
-        by_own = np.zeros((cases, size, inputs_by_own.shape[2]))
-        if np.any(p_by_shared):
-            by_shared += self.equilibria.by_parameters(point) @ p_by_shared
-        if np.any(inputs_by_shared) or inputs_by_own.size:
-            by_inputs = self.equilibria.by_inputs(point)
-            by_shared += by_inputs @ inputs_by_shared
-            by_own += by_inputs @ inputs_by_own
-        sought = self.equilibria.sought[:, None, None]
-        return np.where(sought, -point.inverses @ by_shared, 0.0), np.where(sought, -point.inverses @ by_own, 0.0)
 
     def _residual(self, point: Point, runs: Mapping[int, Run | None]) -> FloatArray:
         residuals = [rows.residual(*self._at_places(rows, point, runs)) for rows in self.measurements.values()]

@@ -10,6 +10,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
+from cosserat_casadi.equilibrium.contact.contact_answer_error import estimated_in_contact
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.case_motions import StartInputs, check_motions
@@ -21,10 +22,10 @@ from cosserat_casadi.identification.measured_cases import Case, Data, read_cases
 from cosserat_casadi.identification.measured_modes import check_vibrations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
+from cosserat_casadi.scene.measurements import ModeMeasurement
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
 from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, error_beside, finer_than, solution_at
@@ -43,7 +44,6 @@ def identify_model(
     progress: Progress | None = None,
 ) -> Identification:
     """As :func:`identify`, of a model on its modes and nodes."""
-    refuse_obstacles(model.scene, "an identification")
     refuse_row_parameters(model.scene)
     scene = model.scene
     options = scene.identification
@@ -101,7 +101,6 @@ def identify(
     if not isinstance(subject, scenes.Scene):
         return identify_model(subject, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
     scene = subject
-    refuse_obstacles(scene, "an identification")
     refuse_row_parameters(scene)
     completed = scene.with_unknowns()
     draft = build(completed, FEWEST_STEPS) if scene.tubes else build(completed)
@@ -152,9 +151,29 @@ def check_measured(model: AnyModel) -> None:
     if not scene.measurements:
         raise SceneError(Problem("measurements", "missing", "say what was measured"))
     if isinstance(model, Model):
+        if scene.touches_exactly:
+            check_measured_in_contact(scene)
         if scene.measured_over_time:
             check_motions(model)
         check_vibrations(model)
+
+
+def check_measured_in_contact(scene: scenes.Scene) -> None:
+    """Refuse what was measured of motions in exact contact: over time, and of vibrations.
+
+    Raises:
+        SceneError: with every such measurement.
+    """
+    over_time = "was measured over time, and a motion that strikes an obstacle exactly has no derivatives there"
+    vibrating = "is of a vibration, which one identification does not follow as exact contacts change"
+    problems = []
+    for i, measurement in enumerate(scene.measurements):
+        timed = getattr(measurement, "time", None) is not None
+        if timed or isinstance(measurement, ModeMeasurement):
+            problem = over_time if timed else vibrating
+            problems.append(Problem(f"measurements[{i}]", problem, "give each obstacle a width, m"))
+    if problems:
+        raise SceneError(*problems)
 
 
 def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:
@@ -204,16 +223,19 @@ def with_model_error(found: Identification, cases: Mapping[str, Case]) -> Identi
         found: at the end of a search.
         cases: the fitted cases, by their first rows in words.
     """
-    try:
-        model = found.model.at(found.parameters)
-    except SceneError:
-        # Numbers that the scene refuses are no model whose error could be told.
-        return found
-    errors = {
-        where: _error(model, inputs, x)
-        for where, x, inputs in zip(found.cases, found.unknowns_x, found.inputs, strict=True)
-        if not cases[where].moves
-    }
+    errors = {}
+    if found.equilibria:
+        for where, solution in zip(found.cases, found.equilibria, strict=True):
+            errors[where] = _error_in_contact(solution)
+    else:
+        try:
+            model = found.model.at(found.parameters)
+        except SceneError:
+            # Numbers that the scene refuses are no model whose error could be told.
+            return found
+        for where, x, inputs in zip(found.cases, found.unknowns_x, found.inputs, strict=True):
+            if not cases[where].moves:
+                errors[where] = _error(model, inputs, x)
     if not errors:
         return found
     worst = max(errors, key=lambda where: errors[where])
@@ -232,6 +254,15 @@ def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
     equilibrium = Solution(model, inputs, x, Outcome.CONVERGED, "", 0.0, 0)
     error = answer_error(equilibrium)
     return error.shape if equilibrium.model.scene.accuracy.shape else error.watched
+
+
+def _error_in_contact(solution: Solution) -> float:
+    """The same of an equilibrium in exact contact; what the search for contacts does not find has an unknown one."""
+    if not solution.converged:
+        return UNKNOWN
+    judged = estimated_in_contact(solution)
+    error = judged.shape_error_estimate if solution.model.scene.accuracy.shape else judged.error_estimate
+    return UNKNOWN if error is None else error
 
 
 def _warning(found: Identification) -> str:

@@ -5,13 +5,14 @@ are not at the tip. A point of contact gives d(r) = ρ and, where it may move, d
 its ends, and the moments of d − ρ with the polynomials of its force. Where a load acts inside a line its force per
 length is split: the section takes a point force and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
 end at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept.
-See docs/contact.md.
+Parameters of the scene are arguments of the equations as its inputs are: small changes of both move z as
+∂g/∂z dz = −∂g/∂inputs d inputs − ∂g/∂θ dθ while the contacts stay. See docs/contact.md.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import casadi as ca
@@ -26,14 +27,18 @@ from cosserat_casadi.equilibrium.contact.contact_state import (
 )
 from cosserat_casadi.equilibrium.contact.gap_rows import force_widths, gap_rows
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of
+from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discrete_scene import DiscreteScene, with_numbers
+from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.numerics.broyden import solved
 from cosserat_casadi.numerics.newton import Equations
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -123,8 +128,12 @@ class Placed:
 
     def inputs(self, forces: FloatArray) -> FloatArray:
         """Stacked inputs of the model for forces without unit, shape (k,)."""
+        return self.inputs_moved(self.given, forces)
+
+    def inputs_moved(self, given: FloatArray, forces: FloatArray) -> FloatArray:
+        """The same for other stacked inputs of the scene, or for m directions, each with as many columns."""
         by_given, by_forces = self._spread
-        return np.asarray(by_given @ self.given + by_forces @ forces)
+        return np.asarray(by_given @ given + by_forces @ forces)
 
     def written_inputs(self, given: Matrix, forces: Matrix) -> Matrix:
         """The same as expressions of the stacked inputs of the scene too."""
@@ -167,7 +176,7 @@ class Written:
     """The equations of a state as expressions.
 
     Attributes:
-        unknowns: symbols of x, f and p.
+        unknowns: symbols of x, f and p; parameters of the scene stand behind the places in the last.
         given: symbol of the stacked inputs of the scene without contacts.
         state: the contacts, at expressions of p.
         system: rods whose elements end there.
@@ -200,7 +209,7 @@ class Written:
 
     @property
     def jacobian(self) -> Matrix:
-        """Its derivative with z: that of the balance with x is written out; what the contacts add is small."""
+        """Its derivative with the unknowns: that of the balance with x is written out; what contacts add is small."""
         _, f, p = self.unknowns
         balance = self._balance.residual
         by_forces = ca.jacobian(balance, f)
@@ -216,8 +225,8 @@ class Written:
             by_forces: derivative of the balance with the forces.
         """
         x, _, _ = self.unknowns
-        # The balance of a frame is not in the unit of that of a rod.
-        if self.system.discrete.frames:
+        # The balance of a frame is not in the unit of that of a rod, and parameters change no unit.
+        if self.system.discrete.frames or self.system.discrete.parameters.entries:
             return ca.jacobian(self._gaps, x)
         rows: list[Matrix] = [ca.MX(0, x.shape[0])]
         force = 0
@@ -231,6 +240,22 @@ class Written:
 
 
 @dataclass(frozen=True)
+class BehindPlaces(ParameterLayout):
+    """Parameters of a scene behind the places of its contacts, which move elements as parameters do.
+
+    Attributes:
+        places: their number.
+    """
+
+    places: int = 0
+
+    @cached_property
+    def size(self) -> int:
+        """Places and entries of the parameters."""
+        return self.places + sum(entry.size for entry in self.entries)
+
+
+@dataclass(frozen=True)
 class ContactEquations:
     """Equations of one state in z = (x, f, p).
 
@@ -239,24 +264,43 @@ class ContactEquations:
         given: its stacked inputs.
         grids: modes and nodes of every element.
         state: the contacts, at the places that the equations start from.
+        theta: values of the parameters that the scene names.
     """
 
     scene: scenes.Scene
     given: FloatArray
     grids: Grids
     state: ContactState
+    theta: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    def at(self, given: FloatArray, theta: FloatArray) -> ContactEquations:
+        """The same equations, with functions that are written once, for other inputs and parameters."""
+        # What all of them share is written before it is handed on.
+        assert self._functions and self._by_arguments and self.parameters is not None
+        other = replace(self, given=given, theta=theta)
+        vars(other).update({name: value for name, value in vars(self).items() if name not in ("given", "theta")})
+        return other
 
     def placed(self, state: ContactState, given: FloatArray | None = None) -> Placed:
         """The model of the contacts at known places, with other inputs of the scene if there are any."""
         modes = self.grids.bending_modes(self.scene)
-        loaded = with_contacts(self.scene, state, modes)
+        loaded = with_contacts(self.scene.baked(), state, modes)
         model = build(loaded, self.grids.discretisation(loaded))
+        if self.parameters.size:
+            # Unknowns keep their units, those of the scene's own numbers.
+            scene = self.parameters.set_in(self.scene, self.parameters.unpack(self.theta))
+            model = Model(with_numbers(model.discrete, with_contacts(scene, state, modes)))
         return Placed(model, state, self.given if given is None else given, modes)
+
+    @cached_property
+    def parameters(self) -> ParameterLayout:
+        """Parameters of the scene."""
+        return parameter_layout(self.scene)
 
     @cached_property
     def nominal(self) -> Placed:
         """The model that the equations start from, whose elements the places of contact move."""
-        return self.placed(self.state)
+        return replace(self, scene=self.scene.baked()).placed(self.state)
 
     @cached_property
     def slope_rows(self) -> list[int]:
@@ -276,31 +320,47 @@ class ContactEquations:
         nominal = self.nominal
         x = ca.MX.sym("x", nominal.model.size)
         f = ca.MX.sym("f", len(nominal.force_units))
-        p = ca.MX.sym("p", len(self.state.places))
         given = ca.MX.sym("given", len(self.given))
+        model, state = self._moving
+        system = System(model.discrete, Arguments(x, nominal.written_inputs(given, f)))
+        return Written((x, f, model.parameters.symbol), given, state, system, nominal.modes)
+
+    @cached_property
+    def _moving(self) -> tuple[Model, ContactState]:
+        """The model whose parameters are the places of contact, then those of the scene; contacts at these places."""
+        count = len(self.state.places)
+        parameters = BehindPlaces(self.parameters.entries, self.parameters.moving, count)
+        p = parameters.symbol
+        if not p.shape[0]:
+            return self.nominal.model, self.state
         # One expression for each place: what ends there is found by it.
-        state = self.state.at([p[i] for i in range(p.shape[0])])
-        discrete = self._discrete_at(state) if p.shape[0] else nominal.model.discrete
-        system = System(discrete, Arguments(x, nominal.written_inputs(given, f)))
-        return Written((x, f, p), given, state, system, nominal.modes)
+        state = self.state.at([p[i] for i in range(count)])
+        scene = self.parameters.written(self.scene.baked(), p[count:])
+        written = with_contacts(scene, state, self.nominal.modes)
+        return Model(with_numbers(self.nominal.model.discrete, written, parameters)), state
+
+    @property
+    def model(self) -> Model:
+        """The model whose parameters are the places of contact, then those of the scene: what measures rods."""
+        return self._moving[0]
+
+    def arguments(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unknowns, stacked inputs and parameters of :attr:`model`."""
+        x, f, places = self.parts(z)
+        return x, self.nominal.inputs_moved(self.given, f), np.concatenate([places, self.theta])
 
     @cached_property
     def _functions(self) -> tuple[ca.Function, ca.Function]:
-        """(x, f, p, inputs) ↦ residual, and ↦ its derivative with z."""
+        """(x, f, p, inputs) ↦ residual, and ↦ its derivative with x, f and p."""
         written = self.written
         residual = ca.Function("residual", written.arguments, [written.residual])
         return residual, ca.Function("jacobian", written.arguments, [written.jacobian])
 
     @cached_property
-    def _rate(self) -> ca.Function:
+    def _by_arguments(self) -> ca.Function:
         """(x, f, p, inputs) ↦ derivative of the residual with the inputs."""
         written = self.written
-        return ca.Function("rate", written.arguments, [ca.jacobian(written.residual, written.given)])
-
-    def _discrete_at(self, state: ContactState) -> DiscreteScene:
-        """The scene whose elements end at expressions."""
-        written = with_contacts(self.scene, state, self.nominal.modes)
-        return with_numbers(self.nominal.model.discrete, written)
+        return ca.Function("by_inputs", written.arguments, [ca.jacobian(written.residual, written.given)])
 
     def ends(self, rod: str, p: FloatArray) -> FloatArray:
         """Where the elements of a rod end at places of contact p, shape (E + 1,)."""
@@ -341,16 +401,57 @@ class ContactEquations:
         x, f, p = self.parts(z)
         if any(np.diff(self.ends(rod, p)).min() < SHORTEST for rod in self.grids.rods):
             return np.full(len(z), np.nan)
-        return column(self._functions[0](x, f, p, given))
+        return column(self._functions[0](x, f, np.concatenate([p, self.theta]), given))
+
+    def _derivatives(self, z: FloatArray, given: FloatArray) -> FloatArray:
+        """Derivatives of the residual with z, then with the parameters of the scene."""
+        x, f, p = self.parts(z)
+        return np.asarray(self._functions[1](x, f, np.concatenate([p, self.theta]), given).full())
 
     def jacobian(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Derivative of the residual with z."""
-        return np.asarray(self._functions[1](*self.parts(z), given).full())
+        return self._derivatives(z, given)[:, : len(z)]
+
+    def by_inputs(self, z: FloatArray, given: FloatArray) -> FloatArray:
+        """Derivative of the residual with the inputs, shape (len(z), inputs)."""
+        x, f, p = self.parts(z)
+        return np.asarray(self._by_arguments(x, f, np.concatenate([p, self.theta]), given).full())
 
     def rate(self, z: FloatArray, given: FloatArray, change: FloatArray) -> FloatArray:
         """Rate of the residual as the inputs change, shape (len(z),)."""
-        by_given = self._rate(*self.parts(z), given).full()
-        return np.asarray(by_given @ change)
+        return np.asarray(self.by_inputs(z, given) @ change)
+
+    def moved(self, z: FloatArray, by_inputs: FloatArray, by_parameters: FloatArray) -> FloatArray:
+        """Derivatives of the solution z with m arguments of the scene while its contacts stay, (len(z), m).
+
+        Args:
+            z: the solution at the inputs and parameters of these equations.
+            by_inputs: derivatives of the inputs with the arguments, shape (inputs, m).
+            by_parameters: of the parameters, shape (parameters, m).
+
+        Returns:
+            NaN where the equations are singular.
+        """
+        derivatives = self._derivatives(z, self.given)
+        pushed = self.by_inputs(z, self.given) @ by_inputs + derivatives[:, len(z) :] @ by_parameters
+        moved = solved(derivatives[:, : len(z)], -pushed)
+        return np.full(pushed.shape, np.nan) if moved is None else moved
+
+    def arguments_moved(self, by_z: FloatArray, by_inputs: FloatArray, by_parameters: FloatArray) -> FloatArray:
+        """Derivatives of all arguments of :attr:`model`, one stacked behind the other, with m arguments of the scene.
+
+        Args:
+            by_z: derivatives of z, shape (len(z), m).
+            by_inputs: of the inputs of the scene, shape (inputs, m).
+            by_parameters: of its parameters, shape (parameters, m).
+        """
+        x, f, places = np.split(by_z, np.cumsum([self.nominal.model.size, len(self.nominal.force_units)]))
+        inputs = self.nominal.inputs_moved(by_inputs, f)
+        return np.vstack([x, inputs, places, by_parameters])
+
+    def start_near(self, near: Solution) -> FloatArray:
+        """A shape near the solution with the forces that balance it best, shape (n + k + p,)."""
+        return self.start_from(projected(near, self.nominal.model), self.given)
 
     def start_from(self, x: FloatArray, given: FloatArray) -> FloatArray:
         """A shape with the forces that balance it best, at the places of the state: the balance is linear in them.

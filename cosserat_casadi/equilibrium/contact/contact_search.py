@@ -38,7 +38,6 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     pairs,
     runs,
 )
-from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray
@@ -280,7 +279,10 @@ class Settling:
 
     def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
         """Unknowns, forces and places that solve equations, from a shape near them."""
-        start = equations.start_from(projected(near, equations.nominal.model), self.given)
+        return self.solved_from(equations, equations.start_near(near))
+
+    def solved_from(self, equations: ContactEquations, start: FloatArray) -> FloatArray | None:
+        """The same from a start z."""
         self.squeezed = None
         if len(equations.state.places):
             z, solved, taken = sought(equations, start, self.newton)

@@ -17,10 +17,10 @@ from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Plac
 from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, reach_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
-from cosserat_casadi.loads.penetration import section_radius
-from cosserat_casadi.maths.numbers import Scalar, as_matrix
+from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.maths.numbers import Scalar, as_matrix, is_symbolic, known
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -98,12 +98,14 @@ class Distances:
         return quaternion_to_matrix(self.system.base(self.rod).quaternion)
 
     @cached_property
-    def _radii(self) -> FloatArray:
-        """Radius at base and tip, between which it is linear, shape (2,), m."""
-        return section_radius(self._discrete_rod.properties, np.array([0.0, 1.0]))
+    def _radii(self) -> tuple[Scalar, Scalar]:
+        """Radius at base and tip, between which it is linear, m."""
+        radii = section_radii(self._discrete_rod.properties, np.array([0.0, 1.0]))
+        base, tip = (radii[0], radii[1]) if is_symbolic(radii) else known(radii).tolist()
+        return base, tip
 
     def _radius(self, X: Place) -> Place:
-        base, tip = self._radii.tolist()
+        base, tip = self._radii
         return base + X * (tip - base)
 
     def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
@@ -124,7 +126,7 @@ class Distances:
         rate = grid.rates_in(grid.element_of_node[[node]])
         if rate is not None:
             tangent = tangent / as_matrix(rate)[0]
-        base, tip = self._radii.tolist()
+        base, tip = self._radii
         slope = ca.dot(normal, tangent) - (tip - base)
         length = self._discrete_rod.properties.length
         return gap / length, slope / length

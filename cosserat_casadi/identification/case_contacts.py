@@ -1,0 +1,295 @@
+"""Equilibria of all cases in exact contact, each with its own contacts, and what was measured of them.
+
+While its contacts stay, a case is one system in z = (x, f, p): unknowns, forces and places of contact, with inputs and
+parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed there, judged at each
+step, and solved anew where a contact opens, closes or changes its kind. The misfit is continuous over such a change and
+its derivatives jump: they are those of the contacts on this side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import judged
+from cosserat_casadi.equilibrium.contact.contact_search import (
+    ContactEquilibrium,
+    Settling,
+    contact_equilibrium,
+    next_states,
+)
+from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in
+from cosserat_casadi.equilibrium.contact.passing_through import passes_through
+from cosserat_casadi.equilibrium.contact.pressing_contacts import marginal_contact
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.strain_limits import BeyondLimit, first_beyond
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.identification.case_equilibria import Equilibria, Flags, Point
+from cosserat_casadi.identification.case_motions import Run
+from cosserat_casadi.identification.measured_modes import MeasuredModes
+from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
+from cosserat_casadi.identification.misfit import Misfit, MisfitState
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
+from cosserat_casadi.numerics.newton import NewtonSettings
+from cosserat_casadi.numerics.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class CaseInContact:
+    """The equilibrium of one case.
+
+    Attributes:
+        equations: of its contacts, at its inputs and parameters.
+        z: their solution.
+        found: the same with elements that end at the contacts.
+    """
+
+    equations: ContactEquations
+    z: FloatArray
+    found: ContactEquilibrium
+
+    @property
+    def solution(self) -> Solution:
+        """The equilibrium with its contacts by name and its stability."""
+        return judged(self.found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
+
+
+@dataclass(frozen=True)
+class PointInContact(Point):
+    """Equilibria of all cases, of which x holds z and zeros behind it.
+
+    Attributes:
+        cases: the equilibria; None where a case has none.
+    """
+
+    cases: tuple[CaseInContact | None, ...]
+
+    @classmethod
+    def of(cls, cases: Sequence[CaseInContact | None], inputs: FloatArray, p: FloatArray) -> PointInContact:
+        """The equilibria at inputs, shape (cases, inputs), and parameters."""
+        widest = max((len(case.z) for case in cases if case is not None), default=0)
+        x = np.zeros((len(cases), widest))
+        for row, case in zip(x, cases, strict=True):
+            if case is not None:
+                row[: len(case.z)] = case.z
+        return cls(x, inputs, p, np.zeros((len(cases), 0, 0)), tuple(cases))
+
+    @property
+    def settled(self) -> list[CaseInContact]:
+        """The equilibria, where every case has one."""
+        settled = [case for case in self.cases if case is not None]
+        assert len(settled) == len(self.cases), "cases without an equilibrium are left out before"
+        return settled
+
+    def chosen(self, kept: Sequence[int]) -> PointInContact:
+        """The equilibria of some cases."""
+        return PointInContact.of([self.cases[i] for i in kept], self.inputs[kept], self.p)
+
+    def joined(self, other: Point) -> PointInContact:
+        """The equilibria of these cases, then of others at the same parameters."""
+        assert isinstance(other, PointInContact)
+        return PointInContact.of([*self.cases, *other.cases], np.concatenate([self.inputs, other.inputs]), self.p)
+
+
+class ContactEquilibria(Equilibria):
+    """The equilibria of all cases, each with its contacts."""
+
+    model: Model
+
+    def started(
+        self, inputs: FloatArray, wanted: FloatArray, first_p: FloatArray, p: FloatArray
+    ) -> tuple[PointInContact, list[str]]:
+        """The equilibria at wanted inputs and parameters, each from the unloaded rods, and why a case has none."""
+        cases: list[CaseInContact | None] = []
+        reasons = []
+        for own in wanted:
+            solution = self._solved(own, p, None)
+            case = self._settled(solution, own, p) if solution.converged else None
+            unsettled = Outcome.CONTACT_UNSETTLED if solution.converged else solution.outcome
+            cases.append(case)
+            reasons.append("" if case is not None else unsettled.value)
+        return PointInContact.of(cases, wanted, p), reasons
+
+    def at_point(self, point: Point) -> Point:
+        """The same equilibria: each knows its derivatives."""
+        return point
+
+    def tracked(
+        self, near: Point, predicted: FloatArray, inputs: FloatArray, p: FloatArray, *, far: bool = True
+    ) -> tuple[PointInContact, Flags]:
+        """The equilibria at other inputs and parameters, and which could be reached; as of :class:`Equilibria`."""
+        assert isinstance(near, PointInContact)
+        cases = []
+        reached = []
+        for case, start, own in zip(near.settled, predicted, inputs, strict=True):
+            followed = self._followed(case, start[: len(case.z)], own, p)
+            cases.append(followed or case)
+            reached.append(followed is not None)
+        return PointInContact.of(cases, inputs, p), np.array(reached)
+
+    def sensitivities(
+        self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of z with shared unknowns and those of the case while contacts stay, zeros behind them."""
+        assert isinstance(point, PointInContact)
+        shared = inputs_by_shared.shape[1]
+        own = inputs_by_own.shape[2]
+        by_all = np.zeros((*point.x.shape, shared + own))
+        p_by_all = np.hstack([p_by_shared, np.zeros((len(p_by_shared), own))])
+        for rows, case, by_own in zip(by_all, point.settled, inputs_by_own, strict=True):
+            inputs_by_all = np.hstack([inputs_by_shared, by_own])
+            rows[: len(case.z)] = case.equations.moved(case.z, inputs_by_all, p_by_all)
+        return by_all[:, :, :shared], by_all[:, :, shared:]
+
+    def _followed(
+        self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray
+    ) -> CaseInContact | None:
+        """The equilibrium beside another one, with its contacts or with others; None where none is found."""
+        equations = case.equations
+        if np.array_equal(inputs, equations.given) and np.array_equal(p, equations.theta):
+            return case
+        try:
+            near = case.found.solution
+            same = self._judged(equations.at(inputs, p), start)
+            if same is not None and not passes_through(near, same.found.solution):
+                return same
+            solution = self._solved(inputs, p, near)
+            return self._settled(solution, inputs, p) if solution.converged else None
+        except SceneError:
+            # The scene refuses such parameters.
+            return None
+
+    def _solved(self, inputs: FloatArray, p: FloatArray, start: Solution | None) -> Solution:
+        """A search for the contacts."""
+        model = self.model.at(p)
+        return solve_contact(model.scene.baked(), Grids(model.discretisation), model.inputs.unpack(inputs), start=start)
+
+    def _settled(self, solution: Solution, inputs: FloatArray, p: FloatArray) -> CaseInContact | None:
+        """A solution as a case; None where the equations of its contacts do not lead to it."""
+        state = state_in(solution.model.scene)
+        kept: dict[object, ContactEquations] = kept_with(self.model, "_contact_equations", dict)
+        kind = (state.signature, *(touch.seams for touch in state.touches))
+        for equations in [kept.get(kind), self._equations(state)]:
+            if equations is None:
+                continue
+            own = equations.at(inputs, p)
+            case = self._judged(own, own.start_near(solution))
+            if case is not None:
+                kept[kind] = equations
+                return case
+        return None
+
+    def _equations(self, state: ContactState) -> ContactEquations:
+        """The equations of a state, in the parameters of the model."""
+        model = self.model
+        theta = model.parameters.pack()
+        return ContactEquations(model.scene, model.pack(), Grids(model.discretisation), state, theta)
+
+    def _settling(self, equations: ContactEquations) -> Settling:
+        scene = equations.scene
+        tolerance = max(scene.accuracy.tolerance, LEAST_TOLERANCE)
+        return Settling(scene, equations.given, equations.grids, NewtonSettings(), tolerance)
+
+    def _judged(self, equations: ContactEquations, start: FloatArray) -> CaseInContact | None:
+        """The solution from a start z; None where there is none, or where its contacts do not hold."""
+        settling = self._settling(equations)
+        z = settling.solved_from(equations, start)
+        if z is None:
+            return None
+        found = contact_equilibrium(equations, z, equations.given)
+        if any(True for _ in next_states(found, settling.tolerance)):
+            return None
+        return CaseInContact(equations, z, found)
+
+
+class ContactMisfit(Misfit):
+    """The least-squares problem of cases in exact contact."""
+
+    def solutions(self, state: MisfitState) -> tuple[Solution, ...]:
+        """The equilibria of the cases, each with its contacts."""
+        return tuple(case.solution for case in _settled(state.point))
+
+    def unstable(self, state: MisfitState) -> list[str]:
+        """Cases whose equilibrium is unstable."""
+        return [where for where, solution in self._told(state) if solution.stable is False]
+
+    def unresolved(self, state: MisfitState) -> list[str]:
+        """Cases in which the nodes do not resolve the rods."""
+        return [where for where, solution in self._told(state) if solution.outcome is Outcome.UNRESOLVED]
+
+    def beyond_limits(self, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
+        """Cases that are beyond a limit, and which limit that is."""
+        limits = [(where, first_beyond(own.model, own.x, own.inputs)) for where, own in self._told(state)]
+        return [(where, limit) for where, limit in limits if limit is not None]
+
+    def marginal(self, state: MisfitState) -> list[str]:
+        """Sentences on contacts that one side of each change of the unknowns alone meets."""
+        sentences = []
+        for where, solution in self._told(state):
+            sentence = marginal_contact(solution)
+            if sentence:
+                sentences.append(f"{where}: {sentence} Intervals are of changes that leave contacts as they are.")
+        return sentences
+
+    def _told(self, state: MisfitState) -> Iterator[tuple[str, Solution]]:
+        """Each case with its equilibrium."""
+        for case, solution in zip(self.cases, self.solutions(state), strict=True):
+            yield case.where, solution
+
+    def residual_of(self, rows: MeasuredRows | MeasuredModes, state: MisfitState) -> FloatArray:
+        """Differences of one measurement in standard deviations, in the order of its data."""
+        (number,) = [number for number, own in self.measurements.items() if own is rows]
+        settled = _settled(state.point)
+        return np.concatenate([self._measured(number, int(i), settled[i]) for i in np.unique(rows.cases)])
+
+    def _residual(self, point: Point, runs: Mapping[int, Run | None]) -> FloatArray:
+        settled = _settled(point)
+        return np.concatenate([self._measured(number, i, settled[i]) for number, i in self._blocks])
+
+    @property
+    def _blocks(self) -> Iterator[tuple[int, int]]:
+        """Measurements and cases in the order of the residuals: case after case."""
+        for i, case in enumerate(self.cases):
+            for number in self.measurements:
+                if number in case.data:
+                    yield number, i
+
+    def _measured(self, number: int, i: int, case: CaseInContact) -> FloatArray:
+        """Differences of one measurement in one case, in standard deviations."""
+        x, inputs, p = case.equations.arguments(case.z)
+        return self._rows(number, i, case).residual(x[None], inputs[None], p)
+
+    def _rates(
+        self, state: MisfitState, z_by_all: FloatArray, inputs_by_all: FloatArray, p_by_all: FloatArray
+    ) -> FloatArray:
+        """Derivatives of the residual, whose contacts stay."""
+        settled = _settled(state.point)
+        rates = []
+        for number, i in self._blocks:
+            case = settled[i]
+            x, inputs, p = case.equations.arguments(case.z)
+            by_arguments = np.hstack(self._rows(number, i, case).derivatives(x[None], inputs[None], p))
+            moved = case.equations.arguments_moved(z_by_all[i, : len(case.z)], inputs_by_all[i], p_by_all)
+            rates.append(by_arguments @ moved)
+        return np.concatenate(rates)
+
+    def _rows(self, number: int, i: int, case: CaseInContact) -> MeasuredRows:
+        """What was measured in a case, of a model whose elements end at its contacts."""
+        model = case.equations.model
+        kept: dict[tuple[int, str], MeasuredRows] = kept_with(model, "_measured_rows", dict)
+        kind = (number, self.cases[i].where)
+        if kind not in kept:
+            record = model.parametric_scene.measurements[number]
+            kept[kind] = MeasuredRows(model, record, by_instant([(0, self.cases[i].data[number])]))
+        return kept[kind]
+
+
+def _settled(point: Point) -> list[CaseInContact]:
+    assert isinstance(point, PointInContact)
+    return point.settled
