@@ -1,4 +1,4 @@
-"""Equilibria of all cases in exact contact, each with its own contacts, and what was measured of them.
+"""Equilibria of all cases in exact contact, each with its contacts, and the differences from their measurements.
 
 While its contacts stay, a case is one system in z = (x, f, p): unknowns, forces and places of contact, with inputs and
 parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed there, judged at each
@@ -25,6 +25,7 @@ from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, s
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in
 from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.equilibrium.contact.pressing_contacts import marginal_contact
+from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.strain_limits import BeyondLimit, first_beyond
 from cosserat_casadi.errors import SceneError
@@ -105,15 +106,24 @@ class ContactEquilibria(Equilibria):
     def started(
         self, inputs: FloatArray, wanted: FloatArray, first_p: FloatArray, p: FloatArray
     ) -> tuple[PointInContact, list[str]]:
-        """The equilibria at wanted inputs and parameters, each from the unloaded rods, and why a case has none."""
+        """The equilibria at wanted inputs and parameters, and why a case has none.
+
+        Each is sought near the one before, and from the unloaded rods where that has other contacts or is far.
+        """
         cases: list[CaseInContact | None] = []
         reasons = []
+        before: CaseInContact | None = None
         for own in wanted:
-            solution = self._solved(own, p, None)
-            case = self._settled(solution, own, p) if solution.converged else None
-            unsettled = Outcome.CONTACT_UNSETTLED if solution.converged else solution.outcome
+            case = None if before is None else self._alike(before, before.z, own, p)
+            reason = ""
+            if case is None:
+                solution = self._solved(own, p, None)
+                case = self._settled(solution, own, p) if solution.converged else None
+                unsettled = Outcome.CONTACT_UNSETTLED if solution.converged else solution.outcome
+                reason = "" if case is not None else unsettled.value
+            before = case or before
             cases.append(case)
-            reasons.append("" if case is not None else unsettled.value)
+            reasons.append(reason)
         return PointInContact.of(cases, wanted, p), reasons
 
     def at_point(self, point: Point) -> Point:
@@ -155,15 +165,24 @@ class ContactEquilibria(Equilibria):
         if np.array_equal(inputs, equations.given) and np.array_equal(p, equations.theta):
             return case
         try:
-            near = case.found.solution
-            same = self._judged(equations.at(inputs, p), start)
-            if same is not None and not passes_through(near, same.found.solution):
+            same = self._alike(case, start, inputs, p)
+            if same is not None:
                 return same
-            solution = self._solved(inputs, p, near)
+            solution = self._solved(inputs, p, case.found.solution)
             return self._settled(solution, inputs, p) if solution.converged else None
         except SceneError:
             # The scene refuses such parameters.
             return None
+
+    def _alike(self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray) -> CaseInContact | None:
+        """The equilibrium beside another one with the same contacts, from a start z; None where they do not hold."""
+        alike = self._judged(case.equations.at(inputs, p), start)
+        if alike is None:
+            return None
+        shapes = case.equations.nominal.model.shape_unknowns
+        moved = (alike.z - start)[: len(shapes)][shapes]
+        is_near = float(np.linalg.norm(moved)) <= MAX_DISTANCE
+        return alike if is_near and not passes_through(case.found.solution, alike.found.solution) else None
 
     def _solved(self, inputs: FloatArray, p: FloatArray, start: Solution | None) -> Solution:
         """A search for the contacts."""
@@ -197,7 +216,7 @@ class ContactEquilibria(Equilibria):
         return Settling(scene, equations.given, equations.grids, NewtonSettings(), tolerance)
 
     def _judged(self, equations: ContactEquations, start: FloatArray) -> CaseInContact | None:
-        """The solution from a start z; None where there is none, or where its contacts do not hold."""
+        """The solution from a start z; None where Newton's method does not end, or contacts do not hold."""
         settling = self._settling(equations)
         z = settling.solved_from(equations, start)
         if z is None:
@@ -280,7 +299,7 @@ class ContactMisfit(Misfit):
         return np.concatenate(rates)
 
     def _rows(self, number: int, i: int, case: CaseInContact) -> MeasuredRows:
-        """What was measured in a case, of a model whose elements end at its contacts."""
+        """Rows of one measurement in a case, of a model whose elements end at its contacts."""
         model = case.equations.model
         kept: dict[tuple[int, str], MeasuredRows] = kept_with(model, "_measured_rows", dict)
         kind = (number, self.cases[i].where)

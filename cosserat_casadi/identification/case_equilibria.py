@@ -126,9 +126,9 @@ class Equilibria:
         """The equilibria from which a search begins, and why a case has none there.
 
         Args:
-            inputs: the scene's own, which are solved first, shape (cases, size of the inputs).
+            inputs: values of the scene, which are solved first, shape (cases, size of the inputs).
             wanted: inputs where the search begins, shape (cases, size of the inputs).
-            first_p: the scene's own parameters.
+            first_p: parameters of the scene.
             p: parameters where the search begins.
 
         Returns:

@@ -111,8 +111,8 @@ class Identification(Result):
         cost: half the sum of squares, in squared standard deviations, priors among them.
         rows: every measured number beside the model's.
         cases: their first rows in words.
-        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size). In exact contact
-            each case has a model of its own: see equilibria.
+        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size). Cases
+            in exact contact have models that differ: see equilibria.
         inputs: stacked inputs of each case, of motions at their start, shape (cases, size of the inputs).
         unstable: cases whose equilibrium is unstable.
         left_out: cases that took no part.

@@ -159,7 +159,7 @@ def check_measured(model: AnyModel) -> None:
 
 
 def check_measured_in_contact(scene: scenes.Scene) -> None:
-    """Refuse what was measured of motions in exact contact: over time, and of vibrations.
+    """Refuse measurements of motions in exact contact: those over time, and of vibrations.
 
     Raises:
         SceneError: with every such measurement.

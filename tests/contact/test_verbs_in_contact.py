@@ -155,6 +155,12 @@ def _inverted(contact: str, _: Path) -> str:
     return inverse(build(touching(contact, "targets")), estimate_error=False).solution.message
 
 
+def _identified(contact: str, _: Path) -> str:
+    found = identify(build(touching(contact, "identify").with_unknowns()), DATA)
+    assert found.cases, found.message
+    return found.message
+
+
 def _swept(contact: str, _: Path) -> str:
     assert sweep(model(contact), {"push.force.z": [-0.1, -0.11]}, cores=1).converged.all()
     return ""
@@ -188,7 +194,7 @@ VERBS: dict[str, Verb] = {
     "`modes`": lambda contact, _: modes_of(rest(contact), count=1).modes[0],
     "`linearise`": lambda contact, _: linearise(rest(contact)),
     "`inverse`": _inverted,
-    "`identify`": lambda contact, _: identify(build(touching(contact, "identify").with_unknowns()), DATA),
+    "`identify`": _identified,
     "`estimate`": lambda contact, _: estimate(build(touching(contact, "estimate").with_unknowns()), DATA),
     "`sweep`": _swept,
     "parameters": _with_parameters,
