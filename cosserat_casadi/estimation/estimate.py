@@ -1,9 +1,9 @@
 """Estimates of the inputs and places that explain each measured case best, by maximum a posteriori.
 
-The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores; where a place along a rod or
-another parameter is unknown, from several values between its bounds. Its covariance is that of
-the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013, section
-A.3; the Gaussian approximation of Laplace.
+The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores, or in exact contact in Python;
+where a place along a rod or another parameter is unknown, from several values between its bounds. Its covariance is
+that of the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013,
+section A.3; the Gaussian approximation of Laplace.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
-    EstimatorLibrary,
     Knowledge,
     MeasuredCases,
 )
@@ -41,6 +40,7 @@ from cosserat_casadi.estimation.consistency import Consistency, consistency
 from cosserat_casadi.estimation.estimate_outcome import NOT_DETERMINED, REASONS, Estimate, information_of
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
+from cosserat_casadi.estimation.rows_in_contact import RowsInContact, RowSolver
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
 from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
 from cosserat_casadi.identification.concluding import TOLD, named
@@ -49,7 +49,6 @@ from cosserat_casadi.identification.measured_cases import Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.sweeps.local import available_cores
 
@@ -72,7 +71,6 @@ def estimate_model(
 ) -> Estimate:
     """As :func:`estimate`, of a model on its modes and nodes."""
     report = progress or _ignore
-    refuse_obstacles(model.scene, "an estimate")
     check_unknowns(model.scene)
     model = with_unknown_parameters(model)
     layout = unknown_layout(model)
@@ -84,10 +82,15 @@ def estimate_model(
     table = stacked(model, cases, sections)
     known = knowledge_of(layout)
     table.inputs[:, indices[:own]] = expected_values(known, table.inputs[:, indices[:own]])
-    report("Writing and compiling", 0, 0)
-    library = row_library(model, sections, indices, table.at)
+    solver: RowSolver
+    if model.scene.touches_exactly:
+        # Expressions of CasADi are no matter for threads.
+        solver, cores = RowsInContact(model, sections, indices), 1
+    else:
+        report("Writing and compiling", 0, 0)
+        solver = row_library(model, sections, indices, table.at)
     tables = start_tables(table, layout, indices, model.scene)
-    search = Search(library, tables, known, indices, cores or available_cores(), report)
+    search = Search(solver, tables, known, indices, cores or available_cores(), report)
     (found, second), shared, added = _rows_and_shared(search, layout)
     told = information_of(found.first(own), known, layout.own_labels)
     covariance = told.covariance
@@ -171,7 +174,7 @@ class Search:
     """The search for all rows, on all cores.
 
     Attributes:
-        library: the solver in C.
+        library: the solver, in C where contact is not exact.
         tables: the cases, each with the values from which the searches begin.
         known: prior knowledge of the numbers of each row.
         indices: places of these numbers, and of the shared ones behind them, in a row of the inputs.
@@ -179,7 +182,7 @@ class Search:
         report: told how many rows are found.
     """
 
-    library: EstimatorLibrary
+    library: RowSolver
     tables: Sequence[MeasuredCases]
     known: Knowledge
     indices: Sequence[int]
@@ -265,7 +268,7 @@ def estimate(
 
     Raises:
         SceneError: a table is refused, an unknown that all rows share has no prior, or the scene refuses a parameter
-            that is between its bounds; or its contact is exact.
+            that is between its bounds.
         ExportError: there is no C compiler, or it fails.
     """
     if isinstance(subject, Model):
@@ -273,7 +276,6 @@ def estimate(
     scene = subject
     report = progress or _ignore
     refuse_tubes(scene)
-    refuse_obstacles(scene, "an estimate")
     check_unknowns(scene)
     completed = scene.with_unknowns().model_copy(update={"parameters": unknown_parameters(scene)})
     draft = build(completed)
@@ -319,7 +321,7 @@ def start_tables(
 
 
 def _found(
-    library: EstimatorLibrary, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: Progress
+    library: RowSolver, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: Progress
 ) -> list[Estimates]:
     """Estimates from each table of starts, in chunks on all cores."""
     count = len(tables[0].inputs)

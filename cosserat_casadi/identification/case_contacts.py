@@ -138,7 +138,7 @@ class ContactEquilibria(Equilibria):
         cases = []
         reached = []
         for case, start, own in zip(near.settled, predicted, inputs, strict=True):
-            followed = self._followed(case, start[: len(case.z)], own, p)
+            followed = self.followed(case, start[: len(case.z)], own, p)
             cases.append(followed or case)
             reached.append(followed is not None)
         return PointInContact.of(cases, inputs, p), np.array(reached)
@@ -157,7 +157,7 @@ class ContactEquilibria(Equilibria):
             rows[: len(case.z)] = case.equations.moved(case.z, inputs_by_all, p_by_all)
         return by_all[:, :, :shared], by_all[:, :, shared:]
 
-    def _followed(
+    def followed(
         self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray
     ) -> CaseInContact | None:
         """The equilibrium beside another one, with its contacts or with others; None where none is found."""

@@ -1,0 +1,201 @@
+"""Rows of measurements and the inputs that explain them, of rods in exact contact: in Python, row by row.
+
+Each row is a fit of its own numbers, whose equilibrium is followed with its contacts
+(identification/case_contacts.py), with the derivatives and the prior knowledge of the solver in C.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.estimator import ENDINGS, Estimates, Knowledge, MeasuredCases
+from cosserat_casadi.equilibrium.contact.shape_projection import projected
+from cosserat_casadi.estimation.stacking import differences
+from cosserat_casadi.identification.case_contacts import CaseInContact, ContactEquilibria
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, FitOutcome, Limits
+
+
+class RowSolver(Protocol):
+    """Rows of measurements ↦ the numbers that explain them."""
+
+    def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
+        """The numbers that explain each row best."""
+
+    def costs(
+        self, cases: MeasuredCases, inputs: FloatArray, x: FloatArray, known: Knowledge, steps: FloatArray
+    ) -> FloatArray:
+        """Costs some steps away from estimates, shape (cases, draws); infinite where there is no equilibrium."""
+
+
+@dataclass(frozen=True)
+class _State:
+    """A row at some numbers.
+
+    Attributes:
+        shared: the numbers, shape (k,).
+        own: none, shape (1, 0).
+        case: the equilibrium.
+        residual: differences in standard deviations, shape (rows,).
+        by_numbers: their derivatives, shape (rows, k).
+        z_by_numbers: those of the solution in contact, shape (len(z), k).
+    """
+
+    shared: FloatArray
+    own: FloatArray
+    case: CaseInContact
+    residual: FloatArray
+    by_numbers: FloatArray
+    z_by_numbers: FloatArray
+
+
+@dataclass(frozen=True)
+class _Row:
+    """One row as a problem of least squares.
+
+    Attributes:
+        solver: of all rows.
+        table: the row alone.
+    """
+
+    solver: RowsInContact
+    table: MeasuredCases
+
+    @property
+    def offsets(self) -> npt.NDArray[np.int64]:
+        """One block of residuals."""
+        return np.array([0, self.table.weights.size])
+
+    def given(self, numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Inputs and parameters for values of the numbers."""
+        given = self.table.inputs[0].copy()
+        given[self.solver.indices] = numbers
+        inputs = self.solver.model.inputs.size
+        return given[:inputs], given[inputs:]
+
+    def first(self, numbers: FloatArray) -> _State | None:
+        """The row at the numbers to begin with; None where it has no equilibrium."""
+        inputs, p = self.given(numbers)
+        point, reasons = self.solver.equilibria.started(inputs[None], inputs[None], p, p)
+        return None if reasons[0] else self._state(numbers, point.settled[0])
+
+    def at(self, shared: FloatArray, own: FloatArray, near: _State) -> _State | None:
+        """The row at other numbers; None where its equilibrium cannot be followed there."""
+        predicted = near.case.z + near.z_by_numbers @ (shared - near.shared)
+        case = self.solver.equilibria.followed(near.case, predicted, *self.given(shared))
+        state = None if case is None else self._state(shared, case)
+        return state if state is not None and np.all(np.isfinite(state.by_numbers)) else None
+
+    def jacobians(self, state: _State) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of the residual with the numbers, and with nothing."""
+        return state.by_numbers, np.zeros((len(state.residual), 0))
+
+    def _state(self, numbers: FloatArray, case: CaseInContact) -> _State:
+        """The row at an equilibrium, with its derivatives while contacts stay."""
+        equations = case.equations
+        chosen = np.zeros((self.table.inputs.shape[1], len(numbers)))
+        chosen[self.solver.indices, np.arange(len(numbers))] = 1.0
+        by_inputs, by_parameters = np.split(chosen, [self.solver.model.inputs.size])
+        z_by_numbers = equations.moved(case.z, by_inputs, by_parameters)
+        x, inputs, p = equations.arguments(case.z)
+        measured = self.solver.measured(equations.model)
+        given = np.concatenate([inputs, p])
+        value, by_x, by_given = measured(x, given, self.table.at[0], self.table.measured[0])
+        moved = equations.arguments_moved(z_by_numbers, by_inputs, by_parameters)
+        weights = self.table.weights[0]
+        by_numbers = weights[:, None] * (np.hstack([by_x.full(), by_given.full()]) @ moved)
+        return _State(numbers, np.zeros((1, 0)), case, weights * value.full()[:, 0], by_numbers, z_by_numbers)
+
+
+@dataclass(frozen=True)
+class RowsInContact:
+    """The solver of all rows.
+
+    Attributes:
+        model: the measured model.
+        sections: rows of each measurement in one case, by its number.
+        indices: of the numbers that are found among the stacked inputs and the parameters behind them.
+    """
+
+    model: Model
+    sections: Mapping[int, int]
+    indices: list[int]
+
+    @property
+    def equilibria(self) -> ContactEquilibria:
+        """The equilibrium of one row, with its contacts."""
+        return ContactEquilibria(self.model, 1)
+
+    def measured(self, model: Model) -> ca.Function:
+        """The differences of all measurements, of a model whose elements end at contacts."""
+        everything = range(model.inputs.size + model.parameters.size)
+        # Abscissae that differ from row to row are arguments.
+        abscissae = np.outer([0.0, 1.0], np.ones(sum(self.sections.values())))
+        return kept_with(model, "_differences", lambda: differences(model, dict(self.sections), everything, abscissae))
+
+    def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
+        """The numbers that explain each row best."""
+        rows = [self._estimated(cases.part(slice(i, i + 1)), known) for i in range(len(cases.inputs))]
+        return Estimates.joined(rows)
+
+    def _estimated(self, table: MeasuredCases, known: Knowledge) -> Estimates:
+        row = _Row(self, table)
+        numbers = np.clip(table.inputs[0, self.indices], known.lower, known.upper)
+        state = row.first(numbers)
+        if state is None:
+            return self._ended("no_equilibrium", table, numbers)
+        if not np.all(np.isfinite(state.by_numbers)):
+            return self._ended("singular", table, numbers)
+        limits = Limits(known.lower, known.upper, known.mean, known.weight, np.zeros(len(numbers), dtype=bool))
+        none = np.zeros(0)
+        nothing = Limits(none, none, none, none, np.zeros(0, dtype=bool))
+        fit = ArrowFit(row, limits, nothing).run(numbers, state.own, state)
+        ending = "found" if fit.outcome is FitOutcome.CONVERGED else "not_found"
+        ended = self._ended(ending, table, fit.shared, fit.iterations)
+        by_numbers, residual = fit.state.by_numbers, fit.state.residual
+        ended.cost[0] = fit.cost
+        ended.information[0] = by_numbers.T @ by_numbers + np.diag(known.weight**2)
+        ended.gradient[0] = by_numbers.T @ residual + known.weight * limits.residual(fit.shared)
+        ended.residuals[0] = residual
+        ended.x[0] = projected(fit.state.case.found.solution, self.model.at())
+        return ended
+
+    def _ended(self, ending: str, table: MeasuredCases, numbers: FloatArray, iterations: int = 0) -> Estimates:
+        """The end of a search, of which the numbers alone are known."""
+        k = len(numbers)
+        return Estimates(
+            outcome=np.array([ENDINGS.index(ending)]),
+            iterations=np.array([iterations]),
+            cost=np.full(1, np.nan),
+            unknowns=numbers[None] if ending == "found" else np.full((1, k), np.nan),
+            information=np.full((1, k, k), np.nan),
+            gradient=np.full((1, k), np.nan),
+            residuals=np.full(table.weights.shape, np.nan),
+            x=np.full((1, self.model.size), np.nan),
+        )
+
+    def costs(
+        self, cases: MeasuredCases, inputs: FloatArray, x: FloatArray, known: Knowledge, steps: FloatArray
+    ) -> FloatArray:
+        """Costs some steps away from estimates, shape (cases, draws); infinite where there is no equilibrium."""
+        costs = np.full(steps.shape[:2], np.inf)
+        for i, of_row in enumerate(steps):
+            row = _Row(self, cases.part(slice(i, i + 1)))
+            numbers = inputs[i, self.indices]
+            start = row.first(numbers)
+            for k, step in enumerate(of_row):
+                drawn = numbers + step
+                inside = np.all((drawn >= known.lower) & (drawn <= known.upper))
+                state = row.at(drawn, np.zeros((1, 0)), start) if start is not None and inside else None
+                if state is not None:
+                    prior = known.weight * (drawn - known.mean)
+                    costs[i, k] = float(state.residual @ state.residual + prior @ prior) / 2
+        return costs
