@@ -8,6 +8,7 @@ is not, the next turn tries with the derivatives of that side.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,11 +21,12 @@ from cosserat_casadi.control.inverse_result import Inverse, gap_left
 from cosserat_casadi.control.nearby_inputs import SETTLED, shortest
 from cosserat_casadi.control.sought_inputs import SoughtInputs
 from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
-from cosserat_casadi.equilibrium.contact.contact_state import given_entries, given_inputs
-from cosserat_casadi.equilibrium.contact.pressing_contacts import unknowns_by_inputs
+from cosserat_casadi.equilibrium.contact.contact_search import equations_at
+from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 MOST_TURNS = 20
@@ -58,6 +60,24 @@ class _Linear:
         count = len(lower)
         moved = np.vstack([self.moved, np.sqrt(damping) * np.eye(count)])
         return shortest(moved, np.concatenate([self.errors, np.zeros(count)]), lower, upper)
+
+
+@dataclass(frozen=True)
+class _AtPlaces:
+    """A model as targets ask for it: functions of unknowns and inputs, the places of contact being given."""
+
+    model: Model
+    places: ca.MX
+
+    def __getattr__(self, name: str) -> Any:
+        member = getattr(self.model, name)
+        if name == "lengths" or not self.places.shape[0]:
+            return member
+        # Parameters stand behind the inputs.
+        return {owner: self._at_places(function) for owner, function in member.items()}
+
+    def _at_places(self, function: ca.Function) -> Callable[..., Any]:
+        return lambda x, inputs, *more: function(x, inputs, self.places, *more)
 
 
 @dataclass(frozen=True)
@@ -97,15 +117,21 @@ class ContactProblem(SoughtInputs):
     def _linearised(self, solution: Equilibrium[Any]) -> _Linear | None:
         """Errors of an equilibrium; None where its contacts leave it no derivatives."""
         assert isinstance(solution, Solution), "rods alone touch obstacles"
-        model = solution.model
+        equations, z = equations_at(solution)
+        model = equations.model
         x = ca.MX.sym("x", model.size)
         inputs = ca.MX.sym("inputs", model.inputs.size)
-        errors = weighted_errors(model, self.targets, ca.MX(wanted_poses(self.targets)), x, inputs)
-        derivatives = [ca.jacobian(errors, x), ca.jacobian(errors, inputs)]
-        function = ca.Function("errors", [x, inputs], [errors, *derivatives])
-        values, by_x, by_inputs = (part.full() for part in function(solution.x, solution.inputs))
-        given = given_entries(model)
-        moved = (by_x @ unknowns_by_inputs(solution) + by_inputs[:, given])[:, self.variables.indices] * self.scale
+        places = model.parameters.symbol
+        wanted = ca.MX(wanted_poses(self.targets))
+        errors = weighted_errors(_AtPlaces(model, places), self.targets, wanted, x, inputs)
+        symbols = [x, inputs, places]
+        by_arguments = ca.horzcat(*[ca.jacobian(errors, symbol) for symbol in symbols])
+        function = ca.Function("errors", symbols, [errors, by_arguments])
+        values, by_all = (part.full() for part in function(*equations.arguments(z)))
+        by_variables = np.eye(len(equations.given))[:, self.variables.indices] * self.scale
+        unmoved = np.zeros((0, len(self.scale)))
+        by_z = equations.moved(z, by_variables, unmoved)
+        moved = by_all @ equations.arguments_moved(by_z, by_variables, unmoved)
         return _Linear(values[:, 0], moved) if np.all(np.isfinite(moved)) else None
 
 

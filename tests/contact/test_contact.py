@@ -27,7 +27,6 @@ from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import stability_margin
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution
 from tests.conftest import CASES
@@ -244,7 +243,6 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution) -> None:
     scene = parse_scene(TABLE)
     uses: list[Callable[[], object]] = [
         lambda: stability_margin(table.model),
-        lambda: estimate(scene),
         lambda: make_plan(scene, None, None, None, quick=True),
     ]
     for use in uses:

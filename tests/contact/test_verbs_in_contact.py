@@ -99,7 +99,7 @@ def touching(contact: str, *more: str) -> Scene:
         },
         "estimate": {
             "measurements": [MEASURED],
-            "unknowns": [{"input": "push.force", "per_row": True, "lower": -0.3, "upper": 0.1}],
+            "unknowns": [{"input": "push.force.z", "per_row": True, "prior": {"mean": -0.1, "sigma": 0.05}}],
         },
     }
     push = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.1]}
@@ -161,6 +161,12 @@ def _identified(contact: str, _: Path) -> str:
     return found.message
 
 
+def _estimated(contact: str, _: Path) -> str:
+    found = estimate(build(touching(contact, "estimate").with_unknowns()), DATA)
+    assert found.found.any(), found.outcomes
+    return found.message
+
+
 def _swept(contact: str, _: Path) -> str:
     assert sweep(model(contact), {"push.force.z": [-0.1, -0.11]}, cores=1).converged.all()
     return ""
@@ -195,7 +201,7 @@ VERBS: dict[str, Verb] = {
     "`linearise`": lambda contact, _: linearise(rest(contact)),
     "`inverse`": _inverted,
     "`identify`": _identified,
-    "`estimate`": lambda contact, _: estimate(build(touching(contact, "estimate").with_unknowns()), DATA),
+    "`estimate`": _estimated,
     "`sweep`": _swept,
     "parameters": _with_parameters,
     "`export`": _exported(),

@@ -11,6 +11,7 @@ from cosserat_casadi.control import contact_problem
 from cosserat_casadi.control.contact_problem import ContactProblem
 from cosserat_casadi.control.inverse import inverse_problem
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 
 
@@ -62,8 +63,8 @@ def test_a_target_inside_the_ball_is_missed_by_a_rod_that_does_not_enter_it() ->
 @pytest.mark.slow
 def test_a_search_that_comes_no_nearer_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """With derivatives of the wrong sign no step helps: what is told is the start."""
-    own = contact_problem.unknowns_by_inputs
-    monkeypatch.setattr(contact_problem, "unknowns_by_inputs", lambda solution: -own(solution))
+    own = ContactEquations.arguments_moved
+    monkeypatch.setattr(ContactEquations, "arguments_moved", lambda *given: -own(*given))
     monkeypatch.setattr(contact_problem, "MOST_DAMPING", 1e3)
     scene = over_ball([0.8, 0, -0.4], start=-1.0)
     model = build(scene)

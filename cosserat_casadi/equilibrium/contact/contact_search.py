@@ -306,7 +306,7 @@ def contact_equilibrium(equations: ContactEquations, z: FloatArray, given: Float
     placed = equations.placed(equations.state.at(places.tolist()), given)
     x = x / equations.moved_strains(places)
     outcome = Outcome.CONVERGED
-    norm = relative_norm(placed.residual(x, forces), np.concatenate([x, forces]))
+    norm = relative_norm(equations.residual(z, given), z)
     solution = Solution(placed.model, placed.inputs(forces), x, outcome, outcome.value, norm, iterations=0)
     return ContactEquilibrium(placed, x, forces, solution)
 
@@ -318,6 +318,14 @@ def equilibrium_in(solution: Solution) -> ContactEquilibrium:
     placed = Placed(model, state_in(model.scene), given_inputs(model, solution.inputs), modes)
     forces = solution.inputs[placed.force_entries] / placed.force_units
     return ContactEquilibrium(placed, solution.x, forces, solution)
+
+
+def equations_at(solution: Solution) -> tuple[ContactEquations, FloatArray]:
+    """The equations of the contacts of a solution, and their solution z."""
+    found = equilibrium_in(solution)
+    scene = without_contacts(solution.model.scene)
+    equations = ContactEquations(scene, found.placed.given, Grids(solution.model.discretisation), found.state)
+    return equations, np.concatenate([found.x, found.forces, found.state.places])
 
 
 def pressure_along(touch: Touch, line: FloatArray, modes: int) -> tuple[FloatArray, FloatArray]:

@@ -21,7 +21,6 @@ from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.contact_state import Touch, contact_loads, given_entries
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import solved
 
 
 @dataclass(frozen=True)
@@ -61,23 +60,6 @@ def pressing_contacts(solution: Solution) -> PressingContacts:
         contacts.stiffness(by_x, by_inputs),
         given,
     )
-
-
-def unknowns_by_inputs(solution: Solution) -> FloatArray:
-    """Derivatives of the unknowns with the m inputs of the scene while contacts press, (n, m); NaN where singular."""
-    model = solution.model
-    contacts = pressing_contacts(solution)
-    stiffness = model.jacobian(solution.x, solution.inputs)[0].full() + contacts.stiffness
-    by_inputs = model.input_jacobian(solution.x, solution.inputs).full() + contacts.stiffness_by_inputs
-    # Forces of contact in any unit: each row of the balance is in the energy of its own rod.
-    units = model.discrete.unknowns.units
-    pushed = (contacts.held / units * units.max()).T
-    corner = np.zeros((len(contacts.held), len(contacts.held)))
-    bordered = np.block([[stiffness, pushed], [contacts.held, corner]])
-    moved = solved(bordered, -np.vstack([by_inputs, contacts.held_by_inputs])[:, contacts.given])
-    if moved is None:
-        return np.full((model.size, contacts.given.size), np.nan)
-    return np.asarray(moved[: model.size])
 
 
 def marginal_contact(solution: Solution) -> str:
