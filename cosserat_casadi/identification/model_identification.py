@@ -164,8 +164,8 @@ def check_measured_in_contact(scene: scenes.Scene) -> None:
     Raises:
         SceneError: with every such measurement.
     """
-    over_time = "was measured over time, and a motion that strikes an obstacle exactly has no derivatives there"
-    vibrating = "is of a vibration, which one identification does not follow as exact contacts change"
+    over_time = "was measured over time, and a motion that strikes an exact obstacle has no derivative at the blow"
+    vibrating = "is of a vibration, whose derivatives are not known while exact contacts slide"
     problems = []
     for i, measurement in enumerate(scene.measurements):
         timed = getattr(measurement, "time", None) is not None

@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Identification, Scene, Solution, build, identify, scene_from_dict, solve
+from cosserat_casadi.equilibrium.contact import pressing_contacts
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.fit_problem import Task, _Started
 from cosserat_casadi.identification.fit_unknowns import unknown_layout
@@ -61,7 +62,9 @@ def test_a_modulus_is_found_while_contacts_open_and_close() -> None:
 
 
 @pytest.mark.parametrize("weight", mostly_slow(WEIGHTS, quick=[WEIGHTS[1]]))
-def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(weight: float) -> None:
+def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
+    weight: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     first = started(measured(MODULUS), table([weight], np.zeros((1, len(AT), 3))))
     by_shared, _ = first.misfit.jacobians(first.state)
     for column, change in enumerate((1e-4 * MODULUS, 1e-5)):
@@ -76,6 +79,10 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
         differences = (sides[0] - sides[1]) / (2 * change)
         scale = np.abs(differences).max()
         assert_allclose(by_shared[:, column], differences, rtol=0, atol=2e-6 * scale)
+    # Contacts that press by little are told, for they may open on one side of the answer.
+    assert not first.misfit.marginal(first.state)
+    monkeypatch.setattr(pressing_contacts, "LEAST_TOLERANCE", 1e3)
+    assert len(first.misfit.marginal(first.state)) == len(truth(weight).contacts)
 
 
 def test_what_moves_is_refused_in_exact_contact() -> None:
