@@ -1,6 +1,6 @@
 """Rows of measurements and the inputs that explain them, of rods in exact contact: in Python, row by row.
 
-Each row is a fit of its own numbers, whose equilibrium is followed with its contacts
+Each row is a fit of all its numbers, whose equilibrium is followed with its contacts
 (identification/case_contacts.py), with the derivatives and the prior knowledge of the solver in C.
 """
 
