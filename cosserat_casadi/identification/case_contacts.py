@@ -9,7 +9,7 @@ its derivatives jump: they are those of the contacts on this side.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from cosserat_casadi.equilibrium.contact.contact_search import (
     contact_equilibrium,
     next_states,
 )
-from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
+from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, settled_near, solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in
 from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.equilibrium.contact.pressing_contacts import marginal_contact
@@ -117,7 +117,7 @@ class ContactEquilibria(Equilibria):
             case = None if before is None else self._alike(before, before.z, own, p)
             reason = ""
             if case is None:
-                solution = self._solved(own, p, None)
+                solution = self._solved(own, p)
                 case = self._settled(solution, own, p) if solution.converged else None
                 unsettled = Outcome.CONTACT_UNSETTLED if solution.converged else solution.outcome
                 reason = "" if case is not None else unsettled.value
@@ -168,8 +168,9 @@ class ContactEquilibria(Equilibria):
             same = self._alike(case, start, inputs, p)
             if same is not None:
                 return same
-            solution = self._solved(inputs, p, case.found.solution)
-            return self._settled(solution, inputs, p) if solution.converged else None
+            settling = replace(self._settling(equations), scene=self.model.at(p).scene.baked(), given=inputs)
+            found = settled_near(settling, case.found.solution)
+            return None if found is None else self._settled(found.solution, inputs, p)
         except SceneError:
             # The scene refuses such parameters.
             return None
@@ -184,10 +185,10 @@ class ContactEquilibria(Equilibria):
         is_near = float(np.linalg.norm(moved)) <= MAX_DISTANCE
         return alike if is_near and not passes_through(case.found.solution, alike.found.solution) else None
 
-    def _solved(self, inputs: FloatArray, p: FloatArray, start: Solution | None) -> Solution:
-        """A search for the contacts."""
+    def _solved(self, inputs: FloatArray, p: FloatArray) -> Solution:
+        """A search for the contacts, from the unloaded rods."""
         model = self.model.at(p)
-        return solve_contact(model.scene.baked(), Grids(model.discretisation), model.inputs.unpack(inputs), start=start)
+        return solve_contact(model.scene.baked(), Grids(model.discretisation), model.inputs.unpack(inputs))
 
     def _settled(self, solution: Solution, inputs: FloatArray, p: FloatArray) -> CaseInContact | None:
         """A solution as a case; None where the equations of its contacts do not lead to it."""

@@ -13,7 +13,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import judged
-from cosserat_casadi.equilibrium.contact.contact_search import Settling
+from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium, Settling
 from cosserat_casadi.equilibrium.contact.contact_state import (
     TIP,
     ContactState,
@@ -64,11 +64,9 @@ def solve_contact(
     tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
-        found, holds = settling.run(
-            [(state_in(start.model.scene), start)], admits=lambda shape: not passes_through(start, shape)
-        )
-        if found is not None and holds:
-            return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
+        near = settled_near(settling, start)
+        if near is not None:
+            return judged(near, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
     settling.iterations += cushioned.iterations
     first = first_state(cushioned)
@@ -87,6 +85,14 @@ def solve_contact(
     if not holds:
         return replace(solution, message=solution.message + _why_unsettled(bare, guesses))
     return solution
+
+
+def settled_near(settling: Settling, start: Solution) -> ContactEquilibrium | None:
+    """The equilibrium to which the contacts of a solution lead; None where none holds, or rods would pass through."""
+    found, holds = settling.run(
+        [(state_in(start.model.scene), start)], admits=lambda shape: not passes_through(start, shape)
+    )
+    return found if holds else None
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
