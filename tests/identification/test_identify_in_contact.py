@@ -79,7 +79,7 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
         differences = (sides[0] - sides[1]) / (2 * change)
         scale = np.abs(differences).max()
         assert_allclose(by_shared[:, column], differences, rtol=0, atol=2e-6 * scale)
-    # A contact that presses by little, or a gap that is little, is told: it may open or close on one side of the answer.
+    # A contact that presses by little, or a small gap, is told: it may open or close on one side of the answer.
     assert not first.misfit.marginal(first.state)
     monkeypatch.setattr(pressing_contacts, "LEAST_TOLERANCE", 1e3)
     assert len(first.misfit.marginal(first.state)) == 1
