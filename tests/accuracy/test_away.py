@@ -34,6 +34,7 @@ def six_tendons() -> Scene:
     return scene_from_dict(tables)
 
 
+@pytest.mark.slow
 def test_a_robot_of_six_tendons_is_right_at_random_tensions() -> None:
     """Its own tensions balance; of 20 random sets all are within the tolerance, against finer modes."""
     robot = six_tendons()

@@ -136,6 +136,7 @@ def test_paths_motions_and_fits_that_leave_the_law_of_a_chamber_are_told() -> No
     assert "chamber 'chamber'" in found.message
 
 
+@pytest.mark.slow
 def test_derivatives_and_c_know_the_growth(tmp_path: Path) -> None:
     model = build(with_chamber(**SHRINKING))
     solution = solve(model, {"chamber.pressure": 2e4})

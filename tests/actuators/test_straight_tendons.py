@@ -142,6 +142,7 @@ def test_length_is_the_sum_of_the_distances_of_the_holes() -> None:
     assert_allclose(solution.actuator("c")["length"], distances.sum(), rtol=1e-13, atol=0)
 
 
+@pytest.mark.slow
 def test_digits_of_c(tmp_path: Path) -> None:
     model = build(scene("planar", FEW, offset=[0.05, 0.0], friction=0.3))
     compiled = load(export(model, tmp_path / "straight", "straight"))

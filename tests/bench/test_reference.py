@@ -62,6 +62,7 @@ def test_reference_of_a_held_rod_with_every_load_vs_shooting(kind: str) -> None:
     assert found.pose < 1e-10
 
 
+@pytest.mark.slow
 def test_reference_of_a_bent_rod_vs_shooting() -> None:
     pushed = push(frame="body", moment=[0.1, -0.2, 0.1])
     found = distance_to_shooting(scene(pushed, WEIGHT, FOLLOWER_WIND, HOOK, strain="reissner"))

@@ -45,6 +45,7 @@ def test_stack_and_workspace(library: Library, name: str) -> None:
     assert abs(workspace - said_workspace) <= 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", mostly_slow(["tiny", "robot"], quick=["tiny"]))
 @pytest.mark.parametrize("optimised", mostly_slow(["-Os", "-O2", "-O3"], quick=["-O2"]))
 def test_stack_of_optimised_code(library: Library, name: str, optimised: str) -> None:

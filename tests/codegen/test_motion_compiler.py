@@ -184,6 +184,7 @@ def test_without_a_compiler_the_virtual_machine_runs(monkeypatch: pytest.MonkeyP
         simulate(scene_from_dict(arm()), compiled=True)
 
 
+@pytest.mark.slow
 def test_compiled_motions_are_the_same_to_the_tolerance() -> None:
     tables = arm()
     plain = simulate(scene_from_dict(tables), compiled=False)

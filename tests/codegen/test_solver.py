@@ -19,7 +19,7 @@ ExportRecipe = Callable[[str, Recipe], Exported]
 
 SPREAD = pytest.mark.parametrize(
     ("name", "count", "scale"),
-    [("planar", 120, 4.0), ("spatial", 40, 1.0), ("thick", 30, 1.0), ("pair", 30, 2.0), ("pinned", 10, 2.0)],
+    [("planar", 60, 4.0), ("spatial", 16, 1.0), ("thick", 12, 1.0), ("pair", 20, 2.0), ("pinned", 10, 2.0)],
 )
 """Loads of each library: how many, how far from zero."""
 

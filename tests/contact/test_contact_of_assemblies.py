@@ -466,6 +466,7 @@ def lowered() -> ContactPath:
     return path
 
 
+@pytest.mark.slow
 def test_a_ball_comes_down_on_a_dome(lowered: ContactPath, on_dome: Solution) -> None:
     (touch,) = lowered.events
     assert touch.kind == "touch"

@@ -191,6 +191,7 @@ def test_an_obstacle_on_a_body_that_does_not_move_is_one_of_the_world() -> None:
     assert_allclose(on_body.tip("pushed").position, of_world.tip("pushed").position, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_two_cantilevers_share_a_small_push() -> None:
     """(P − N) L³/3EI of the one less N a³/3EI of the other is the way to the surface, to the square of the slopes."""
     near = (

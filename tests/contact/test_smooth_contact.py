@@ -393,6 +393,7 @@ position = {position}
 """
 
 
+@pytest.mark.slow
 def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
     """One equilibrium, by every way that leads there."""
     model = pressed.model

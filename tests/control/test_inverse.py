@@ -199,6 +199,7 @@ def test_weights_decide_between_targets() -> None:
         assert not found.met
 
 
+@pytest.mark.slow
 def test_the_equilibrium_is_that_of_a_solve() -> None:
     """Inputs found, given to a plain solve, lead to the same tip; the file says what is left."""
     found = inverse(read_scene(ROOT / "examples" / "finger_to_point.toml"))

@@ -67,6 +67,7 @@ def test_forces_are_recovered_for_every_row(tmp_path: Path, accuracy: dict[str, 
         assert (row.solution.error_estimate or 1.0) <= accuracy["tolerance"]
 
 
+@pytest.mark.slow
 def test_a_row_is_found_as_alone(tmp_path: Path) -> None:
     given = wanted()
     rows = [row[:3] for row in tips(given)]
@@ -91,6 +92,7 @@ def test_poses_with_orientations(tmp_path: Path) -> None:
             assert_allclose(row.values[name][:, 0], value, rtol=0, atol=5e-5)
 
 
+@pytest.mark.slow
 def test_models_and_optimisers_are_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     given = wanted()
     rows = [row[:3] for row in tips(given)]

@@ -68,6 +68,7 @@ WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0.0, 1.0, -3.0]}
 G = np.array([0.0, 0.5, -1.5])  # weight per length
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff", "reissner"], quick=["reissner"]))
 def test_two_rods_in_series_vs_one(strain: str) -> None:
     base = {"position": [0.1, 0, 0], "tangent": [1, 0, 1]}

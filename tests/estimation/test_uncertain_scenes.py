@@ -155,6 +155,7 @@ def test_a_stiffness_vs_the_integral_over_what_rows_feel() -> None:
     assert_allclose(found.parameters, np.full((2, 1), best), rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 def test_an_uncertain_offset_of_a_marker_is_found_beside_what_rows_feel() -> None:
     """The marker that reads off to one side, below, is explained where its offset is an unknown."""
     offset = {"parameter": "marker 3.offset.z", "prior": {"mean": 0.0, "sigma": 2 * SIGMA}}

@@ -197,6 +197,7 @@ def test_steady_precession_of_a_heavy_top() -> None:
     assert_allclose(moment + weight, 0.0, rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 def test_heavy_top_of_the_literature() -> None:
     """Brüls, Cardona and Arnold 2012: a fast top on a spherical joint, its centre of mass after 2 s and some 48 turns.
 

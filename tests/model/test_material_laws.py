@@ -252,7 +252,7 @@ POINTS = np.array([[0.0, 0.0], *TABLE])
 MEASURED = PchipInterpolator(*np.concatenate([-POINTS[:0:-1], POINTS]).T).derivative()
 
 
-@pytest.mark.parametrize("law", ["neo_hookean", "table"])
+@pytest.mark.parametrize("law", mostly_slow(["neo_hookean", "table"], quick=["neo_hookean"]))
 def test_cantilever_vs_shooting(law: str) -> None:
     material: dict[str, Any] = {"law": "table", "table": {"bending_y": TABLE}}
     slope_of: Callable[[float], float] = lambda curvature: float(MEASURED(curvature))  # noqa: E731

@@ -176,6 +176,7 @@ def test_energies_balance_and_no_section_is_inside(thrown: Motion) -> None:
     assert distances.min() > 8e-3 - 1e-5 * LENGTH
 
 
+@pytest.mark.slow
 def test_a_floor_takes_no_momentum_along_it() -> None:
     motion = simulate(free_rod(tangent="1, 0, 0.6", along=2.0, duration=0.11, modes=2))
     assert motion.converged, motion.message

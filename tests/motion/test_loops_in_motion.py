@@ -119,7 +119,9 @@ def turned(quaternions: FloatArray, arm: FloatArray) -> FloatArray:
 
 
 @pytest.mark.parametrize(
-    ("method", "order"), [(radau(2), (3, 2, 1)), (radau(3), (5, 3, 2))], ids=["Radau-2", "Radau-3"]
+    ("method", "order"),
+    [(radau(2), (3, 2, 1)), pytest.param(radau(3), (5, 3, 2), marks=pytest.mark.slow)],
+    ids=["Radau-2", "Radau-3"],
 )
 def test_orders_of_positions_velocities_and_multipliers(method: Collocation, order: tuple[int, int, int]) -> None:
     """Of Radau IIA with s stages at index 3: 2 s − 1, s and s − 1 (Hairer, Lubich, Roche)."""

@@ -49,7 +49,11 @@ def moved(tables: dict[str, Any], start: Any = None) -> Motion:
     return simulate(scene_from_dict(tables), start=start, compiled=False)
 
 
-@pytest.mark.parametrize(("split", "suffix"), [(0.0625, ".json"), (0.125, ".npz")], ids=["step", "kink"])
+@pytest.mark.parametrize(
+    ("split", "suffix"),
+    mostly_slow([(0.0625, ".json"), (0.125, ".npz")], quick=[(0.125, ".npz")]),
+    ids=["step", "kink"],
+)
 def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_path: Path) -> None:
     file = tmp_path / f"first{suffix}"
     moved(swing(split)).write(file)
@@ -68,7 +72,7 @@ def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_
     assert 0.8 * whole.error_estimate < second.error_estimate < 1.25 * whole.error_estimate
 
 
-@pytest.mark.parametrize("subject", mostly_slow(["held", "free", "touches"], quick=["held", "touches"]))
+@pytest.mark.parametrize("subject", mostly_slow(["held", "free", "touches"], quick=["held"]))
 def test_what_was_interrupted_takes_the_steps_of_one_motion(subject: str) -> None:
     """Controlled steps: the Jacobian in use, the error and the polynomial of the last step are taken over.
 

@@ -32,6 +32,7 @@ def test_the_first_blow_takes_what_the_closed_form_says() -> None:
     assert np.abs(elastic.energy.imbalance).max() < 1e-3
 
 
+@pytest.mark.slow
 def test_nothing_is_lost_in_elastic_blows() -> None:
     motion = struck(1.0)
     assert motion.events

@@ -229,6 +229,7 @@ def test_free_rod_has_rigid_motions_and_the_frequencies_of_a_clamped_one():
     assert "6 motions meet no resistance" in modes.message
 
 
+@pytest.mark.slow
 def test_line_that_turns_about_itself_without_inertia_is_no_motion():
     stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}
     described = scene(rod("kirchhoff", stiffness, base={"free": True}))

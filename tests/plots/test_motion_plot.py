@@ -218,6 +218,7 @@ def test_of_very_many_curves_those_that_vary_most_are_named() -> None:
     assert {"push_0.force.x", "push_0.force.y", "push_0.force.z"} <= set(names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", mostly_slow(["png", "pdf", "svg"], quick=["svg"]))
 def test_files_are_the_same_every_time(platform: Motion, tmp_path: Path, suffix: str) -> None:
     first = tmp_path / f"a.{suffix}"
