@@ -36,6 +36,9 @@ LONG = {
     'inverse(read_scene("examples/finger_to_point.toml"))': "control/test_inverse.py",
     'compiled_stage(model, "wire_stage"': "codegen/test_stage.py",
     "import rockit": "control/test_rockit.py",
+    "condensing = Condensing(": "control/test_condensing.py",
+    "stage = motion_stage(model, 0.02)  # s": "control/test_motion_stage.py",
+    "write_acados(model": "codegen/test_acados.py",
     "set_uncertainty_values(": "control/test_do_mpc.py",
 }
 """What a block holds that takes a second or more, and the file that has quick tests of it."""

@@ -40,6 +40,9 @@ LONG = (
     "cosserat estimate examples/",
     "cosserat identify examples/wire_from_shapes.toml",
     "cosserat path examples/concentric_tubes.toml",
+    "cosserat path examples/euler_column.toml",
+    "cosserat solve examples/two_section_robot.toml",
+    "cosserat solve examples/magnet_catheter.toml",
     "cosserat simulate examples/seaweed.toml",
     "cosserat simulate examples/snake.toml",
     "cosserat simulate examples/gripper.toml",
@@ -68,6 +71,10 @@ LONG = (
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 
 LONG_PYTHON = {
+    "# Without friction a force stands on the rod": "contact/test_contact.py",
+    "assert contact.start > touch.contact.start  # it has slid": "paths/test_contact_path.py",
+    "by_hand = speed / (": "motion/test_contact_of_free_rods.py",
+    "compliance = robot.tip_jacobian": "tubes/test_loaded_tubes.py",
     "solution = solve(scene)  # modes and nodes chosen": "test_readme.py",
     "environment = ReachEnvironment(": "environments/test_reach.py",
     "examples/robot_leans_on_wall.toml": "contact/test_contact_of_assemblies.py",

@@ -39,8 +39,6 @@ def quiet(*_: object) -> None:
 
 POINTS = [
     Candidate("magnus4", 2, 3),
-    Candidate("permuted", 2, 3),
-    Candidate("dial", tolerance=1e-2),
     Candidate("dial", tolerance=1e-4),
     Candidate("magnus4", 7, 10),
 ]
@@ -70,11 +68,10 @@ def test_every_point_is_measured(measured: tuple[Path, str, list[Measurement]]) 
         assert row.igm_us > 0
         # Times are those of a machine that may be busy: that they are there is all that holds.
         assert min(row.jacobian_us, row.cold_us, row.vm_igm_us, row.vm_cold_us) > 0
-        assert row.igm_operations < row.jacobian_operations or row.method == "permuted"
-    coarse, _, loose, tight, fine = rows
+        assert row.igm_operations < row.jacobian_operations
+    coarse, dial, fine = rows
     assert fine.pose_error < 1e-6 < 1e-5 < coarse.pose_error
-    assert loose.pose_error < 1e-2
-    assert tight.pose_error < 1e-4
+    assert dial.pose_error < 1e-4
 
 
 def test_table_marks_the_front_and_names_the_reference(measured: tuple[Path, str, list[Measurement]]) -> None:

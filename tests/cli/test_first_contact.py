@@ -21,6 +21,7 @@ from cosserat_casadi.cli.main import app, run
 from cosserat_casadi.cli.shipped import examples, pages
 from cosserat_casadi.errors import CosseratError, ExportError, Problem
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 
 
 def cosserat(*arguments: str) -> int:
@@ -30,7 +31,7 @@ def cosserat(*arguments: str) -> int:
 # cosserat new
 
 
-@pytest.mark.parametrize("template", Template)
+@pytest.mark.parametrize("template", mostly_slow(Template, quick=[Template.WIRE, Template.TENDON_ROBOT]))
 def test_template_solves_as_it_stands(template: Template, tmp_path: Path) -> None:
     file = tmp_path / "robot.toml"
     assert cosserat("new", str(file), "--template", template.value) == 0
@@ -43,6 +44,7 @@ def test_template_solves_as_it_stands(template: Template, tmp_path: Path) -> Non
     assert "cosserat docs scene" in text
 
 
+@pytest.mark.slow
 def test_inverse_problem_of_the_tendon_robot_is_solved(tmp_path: Path) -> None:
     file = tmp_path / "robot.toml"
     cosserat("new", str(file), "--template", "tendon-robot")

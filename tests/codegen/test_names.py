@@ -8,6 +8,7 @@ import pytest
 
 from cosserat_casadi import ExportError, build, discretise
 from cosserat_casadi.codegen.export import folder_files
+from cosserat_casadi.codegen.library import comment
 from cosserat_casadi.codegen.names import KEYWORDS, LONGEST, TAKEN, Names, library_names
 from tests.scenes import push, rod, scene
 
@@ -160,10 +161,15 @@ def test_no_symbol_stands_outside_the_name() -> None:
     ],
     ids=ascii,
 )
-def test_titles_cannot_break_the_header(title: str) -> None:
+def test_titles_cannot_break_a_comment(title: str) -> None:
+    written = comment(title)
+    assert not re.search(r"\*/|/\*|\\|\?\?/", f" {written}")
+    assert written.isprintable()
+
+
+def test_the_title_stands_in_the_header_as_a_comment() -> None:
+    title = "*/ #error out /*"
     wanted = scene(push(), title=title, strain="planar")
     header = folder_files(build(wanted, discretise(wanted, 2, 4)), "lib")["lib.h"]
-    first = header.splitlines()[0]
-    assert first.startswith("/* ")
-    assert not re.search(r"\*/|/\*|\\|\?\?/", first[2:])
-    assert first.isprintable()
+    assert header.startswith(f"/* {comment(title)}")
+    assert title not in header

@@ -36,6 +36,7 @@ def test_very_many_numbers_under_sanitizers(motion_library: MotionLibrary, famil
     fuzz(motion_library(family), 3000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", ["planar", pytest.param("fixed joint", marks=pytest.mark.slow)])
 def test_threads_vs_one_thread(motion_library: MotionLibrary, family: str) -> None:
     assert int(run(motion_library(family).program("step_threads.c", *QUICK, "-pthread"))) > 50

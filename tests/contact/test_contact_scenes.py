@@ -45,6 +45,7 @@ def test_large_loads_do_not_push_a_rod_through_a_layer_while_both_grow(seed: int
     assert pressed in {contact.obstacle for contact in solution.contacts}
 
 
+@pytest.mark.slow
 def test_a_path_with_friction_ends_where_that_of_discrete_rods_does() -> None:
     text = COMPOSED["friction"](2)
     scene = parse_scene(text)

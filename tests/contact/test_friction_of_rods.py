@@ -46,6 +46,7 @@ def sliding(push: float = 0.0, friction: float = FRICTION, moving: bool = True) 
     return build(scene, discretise(scene, 1, 4), moving=moving)
 
 
+@cache
 def pressing() -> float:
     """Force between the rods, N."""
     (contact,) = solve(sliding(moving=False)).contacts

@@ -95,6 +95,7 @@ def test_the_error_of_the_steps_is_of_fifth_order(model: Model, path: dict[str, 
     assert rates[-1] > 4.0
 
 
+@pytest.mark.slow
 def test_derivatives_of_a_release_are_those_of_differences(model: Model, path: dict[str, FloatArray]) -> None:
     """The start is an equilibrium that changes with the modulus; the force jumps within the motion."""
     check_derivatives(misfit_of(model, {"path.csv": path}, 0.02), [1e1, 1e-2, 1e-7])

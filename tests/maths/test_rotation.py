@@ -4,11 +4,9 @@ import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths import rotation
-from tests.reference import rotations
 
 AXIS = np.array([2.0, -3.0, 6.0]) / 7.0
 
@@ -31,37 +29,11 @@ VECTORS = {
     "half_turn_about_x": np.array([np.pi, 0.0, 0.0]),
     "beyond_half_turn": 4.5 * AXIS,
 }
-SHORT = [name for name in VECTORS if name not in ("half_turn", "half_turn_about_x", "beyond_half_turn")]
-
-
-def by_name(names=tuple(VECTORS)):
-    return pytest.mark.parametrize("v", [VECTORS[name] for name in names], ids=names)
-
-
-def by_length():
-    """As by_name, with every second case among the slow tests: derivatives of all orders take long."""
-    cases = [
-        pytest.param(v, id=name, marks=pytest.mark.slow if k % 2 else ()) for k, (name, v) in enumerate(VECTORS.items())
-    ]
-    return pytest.mark.parametrize("v", cases)
+BY_NAME = pytest.mark.parametrize("v", VECTORS.values(), ids=VECTORS)
 
 
 def np_hat(v):
     return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
-def np_left_tangent(v):
-    """∫₀¹ exp(s v̂) ds as a block of a larger exponential; analytic, so complex steps pass through."""
-    block = np.zeros((6, 6), dtype=complex)
-    block[:3, :3], block[:3, 3:] = np_hat(v), np.eye(3)
-    return expm(block)[:3, 3:]
-
-
-def np_quaternion_exp(v):
-    """First column of exp(½ (0, v) ⊗), the left multiplication by a pure quaternion."""
-    left = np.zeros((4, 4), dtype=complex)
-    left[0, 1:], left[1:, 0], left[1:, 1:] = -v, v, np_hat(v)
-    return expm(left / 2)[:, 0]
 
 
 def scipy_quaternion(v):
@@ -95,18 +67,16 @@ def test_wrong_number_of_rows_is_refused():
         rotation.directors(ca.DM.ones(3, 1))
 
 
-def test_hat_is_the_cross_product_and_vee_undoes_it():
+def test_hat_is_the_cross_product():
     v, u = normal(2, 3)
     assert_allclose(full(rotation.hat(ca.DM(v))) @ u, np.cross(v, u), rtol=1e-14, atol=1e-15)
-    assert_allclose(full(rotations.vee(rotation.hat(ca.DM(v)))).ravel(), v, rtol=1e-15, atol=1e-16)
-    assert_allclose(full(rotations.vee(rotation.hat(ca.DM(v)) + ca.DM.eye(3))).ravel(), v, rtol=1e-15, atol=1e-16)
+    assert_allclose(rotation.cross_matrix(v) @ u, np.cross(v, u), rtol=1e-14, atol=1e-15)
 
 
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
 def test_structural_zeros_stay_structural(symbol):
     """A rod bent in one plane: quaternions (w, 0, y, 0)."""
     planar = ca.vertcat(symbol.sym("w", 1, 3), symbol(1, 3), symbol.sym("y", 1, 3), symbol(1, 3))
-    vector = ca.vertcat(symbol(1, 3), symbol.sym("k", 1, 3), symbol(1, 3))
     in_plane = ca.vertcat(symbol.sym("a", 1, 3), symbol(1, 3), symbol.sym("b", 1, 3))
 
     def filled_rows(matrix):
@@ -114,8 +84,6 @@ def test_structural_zeros_stay_structural(symbol):
 
     assert filled_rows(rotation.quaternion_product(planar, planar)) == [1, 0, 1, 0]
     assert filled_rows(rotation.quaternion_conjugate(planar)) == [1, 0, 1, 0]
-    assert filled_rows(rotations.quaternion_exp(vector)) == [1, 0, 1, 0]
-    assert filled_rows(rotations.quaternion_log(planar)) == [0, 1, 0]
     assert [filled_rows(d) for d in rotation.directors(planar)] == [[1, 0, 1], [0, 1, 0], [1, 0, 1]]
     assert filled_rows(rotation.rotate(planar, in_plane)) == [1, 0, 1]
     assert filled_rows(rotation.cross(in_plane, in_plane)) == [0, 1, 0]
@@ -176,77 +144,69 @@ def test_rate_matrix_turns_directors_with_the_rate_in_the_world_frame():
     assert_allclose(R_slope, np.cross(R @ k, R.T).T, rtol=1e-13, atol=1e-14)
 
 
-@by_name()
-def test_quaternion_exp_vs_scipy(v):
-    q = full(rotations.quaternion_exp(ca.DM(v))).ravel()
-    expected = scipy_quaternion(v)
-    assert_allclose(q * np.sign(q @ expected), expected, rtol=1e-14, atol=1e-15)
-    assert q @ q == pytest.approx(1.0, rel=2e-15, abs=0)
+# --- rotation vectors ------------------------------------------------------------
 
 
-@by_name()
-def test_quaternion_exp_derivatives(v, check_derivatives):
-    check_derivatives(rotations.quaternion_exp, np_quaternion_exp, v)
+def rotation_vector(q):
+    return full(ca.evalf(rotation.rotation_vector(ca.DM(q)))).ravel()
 
 
-def test_quaternion_exp_works_on_columns():
-    v = np.stack(list(VECTORS.values()), axis=1)
-    columns = np.stack([full(rotations.quaternion_exp(ca.DM(c))).ravel() for c in v.T], axis=1)
-    assert_allclose(full(rotations.quaternion_exp(ca.DM(v))), columns, rtol=1e-15, atol=1e-16)
-    short = np.stack([VECTORS[name] for name in SHORT], axis=1)
-    logs = rotations.quaternion_log(rotations.quaternion_exp(ca.DM(short)))
-    assert_allclose(full(logs), short, rtol=1e-13, atol=1e-22)
+@BY_NAME
+def test_rotation_vector_vs_scipy(v):
+    """The short way round, whatever the sign and the length of the quaternion."""
+    q = scipy_quaternion(v)
+    expected = Rotation.from_rotvec(v).as_rotvec()
+    for factor in (1.0, -1.0, 3.5):
+        found = rotation_vector(factor * q)
+        assert_allclose(found * np.sign(found @ expected), expected, rtol=1e-13, atol=1e-22)
 
 
-@by_name(SHORT)
-@pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
-def test_log_of_exp_is_the_identity_to_second_order(v, symbol, casadi_derivatives):
-    value, jacobian, hessian = casadi_derivatives(
-        lambda x: rotations.quaternion_log(rotations.quaternion_exp(x)), v, symbol
-    )
-    assert_allclose(value, v, rtol=1e-13, atol=1e-22)
-    assert_allclose(jacobian, np.eye(3), rtol=1e-12, atol=1e-12)
-    assert_allclose(hessian, np.zeros((3, 3, 3)), rtol=0, atol=1e-11)
+def complex_step(function, point):
+    """Jacobian of an analytic function, exact to rounding."""
+    steps = np.asarray(point, dtype=complex) + 1e-30j * np.eye(len(point))
+    return np.stack([function(step).imag / 1e-30 for step in steps], axis=1)
 
 
-def np_quaternion_log(q):
+def np_rotation_vector(q):
     """Rotation vector for w ≥ 0 and a vector part that is not zero, analytic."""
     s = np.sqrt(q[1:] @ q[1:])
     return 2 * (np.pi / 2 - np.arctan(q[0] / s)) / s * q[1:]
 
 
-@pytest.mark.parametrize(
-    "q",
-    [
-        np.array([0.0, *AXIS]),
-        np.array([0.0, 1.0, 0.0, 0.0]),
-        np.array([1e-9, *AXIS]),
-        np.array([0.8, *0.6 * AXIS]),
-    ]
-    + [np.array([1.0, *np.tan(0.5 * angle) * AXIS]) for angle in (0.2486, 0.2489, 0.3)],
-)
-def test_quaternion_log_derivatives_up_to_half_turns(q, check_derivatives):
-    check_derivatives(rotations.quaternion_log, np_quaternion_log, q)
+def derivatives_of_vector(q):
+    """First derivatives, 3×4, and second ones, 3×4×4."""
+    symbol = ca.MX.sym("q", 4)
+    jacobian = ca.jacobian(rotation.rotation_vector(symbol), symbol)
+    found = ca.Function("found", [symbol], [jacobian, ca.jacobian(ca.vec(jacobian), symbol)])
+    first, second = (entry.full() for entry in found(q))
+    return first, second.reshape(4, 3, 4).swapaxes(0, 1)
 
 
-@pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
-def test_quaternion_log_at_the_identity_vs_its_series(symbol, casadi_derivatives):
+@pytest.mark.parametrize("angle", [0.05, 0.08, 2.0, np.pi - 1e-7, np.pi])
+def test_derivatives_of_rotation_vector(angle):
+    """On both sides of the switch to the series, and up to the half turn."""
+    q = np.array([max(np.cos(angle / 2), 1e-12), *(np.sin(angle / 2) * AXIS)])
+    first, second = derivatives_of_vector(q)
+    assert_allclose(first, complex_step(np_rotation_vector, q), rtol=1e-9, atol=1e-10)
+    step = 1e-4 * np.sin(angle / 2)
+    for k, direction in enumerate(step * np.eye(4)):
+        if q[0] > direction[0]:
+            there, back = (complex_step(np_rotation_vector, q + sign * direction) for sign in (1, -1))
+            size = np.abs(second).max()
+            assert_allclose(second[:, :, k], (there - back) / (2 * step), rtol=0, atol=1e-5 * size)
+
+
+def test_derivatives_of_rotation_vector_without_a_turn_vs_its_series():
     """2 v/w (1 − |v|²/3w² + …): the first and second derivatives at (1, 0, 0, 0)."""
-    value, jacobian, hessian = casadi_derivatives(rotations.quaternion_log, [1, 0, 0, 0], symbol)
-    second = np.zeros((3, 4, 4))
+    first, second = derivatives_of_vector([1, 0, 0, 0])
+    expected = np.zeros((3, 4, 4))
     for i in range(3):
-        second[i, 0, i + 1] = second[i, i + 1, 0] = -2.0
-    assert_allclose(value, np.zeros(3), rtol=0, atol=0)
-    assert_allclose(jacobian, np.hstack([np.zeros((3, 1)), 2 * np.eye(3)]), rtol=0, atol=1e-15)
-    assert_allclose(hessian, second, rtol=0, atol=1e-14)
+        expected[i, 0, i + 1] = expected[i, i + 1, 0] = -2.0
+    assert_allclose(first, np.hstack([np.zeros((3, 1)), 2 * np.eye(3)]), rtol=0, atol=1e-15)
+    assert_allclose(second, expected, rtol=0, atol=1e-14)
 
 
-def test_quaternion_log_takes_the_short_way_and_ignores_length():
-    q = scipy_quaternion(2.0 * AXIS)
-    for factor in (1.0, -1.0, 3.5, -0.2):
-        assert_allclose(full(rotations.quaternion_log(ca.DM(factor * q))).ravel(), 2.0 * AXIS, rtol=1e-14, atol=1e-15)
-    half_turn = full(rotations.quaternion_log(ca.DM([0, 0, -1, 0]))).ravel()
-    assert_allclose(half_turn, [0, -np.pi, 0], rtol=1e-15, atol=1e-16)
+# --- quaternions of directions and matrices ------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -282,7 +242,7 @@ def test_quaternion_from_tangent_refuses(tangent):
         rotation.quaternion_from_tangent(tangent)
 
 
-@by_name()
+@BY_NAME
 def test_matrix_to_quaternion_undoes_quaternion_to_matrix(v):
     q = rotation.matrix_to_quaternion(Rotation.from_rotvec(v).as_matrix())
     expected = scipy_quaternion(v)
@@ -294,93 +254,6 @@ def test_matrix_to_quaternion_undoes_quaternion_to_matrix(v):
 def test_matrix_to_quaternion_refuses_what_is_no_rotation(matrix):
     with pytest.raises(ValueError, match="rotation matrix"):
         rotation.matrix_to_quaternion(matrix)
-
-
-# --- so(3) ------------------------------------------------------------
-
-
-@by_name()
-def test_rotation_exp_vs_scipy(v):
-    R = full(rotations.rotation_exp(ca.DM(v)))
-    assert_allclose(R, Rotation.from_rotvec(v).as_matrix(), rtol=1e-14, atol=2e-15)
-    assert_allclose(R @ R.T, np.eye(3), rtol=0, atol=2e-15)
-    assert_allclose(R @ full(rotations.rotation_exp(ca.DM(-v))), np.eye(3), rtol=0, atol=2e-15)
-
-
-@by_length()
-def test_rotation_exp_derivatives(v, check_derivatives):
-    check_derivatives(rotations.rotation_exp, lambda x: expm(np_hat(x)), v)
-
-
-@by_length()
-def test_left_tangent_derivatives(v, check_derivatives):
-    check_derivatives(rotations.left_tangent, np_left_tangent, v)
-
-
-@by_length()
-def test_left_tangent_inverse_derivatives(v, check_derivatives):
-    check_derivatives(rotations.left_tangent_inverse, lambda x: np.linalg.inv(np_left_tangent(x)), v)
-
-
-@by_name()
-def test_left_tangent_is_the_rate_of_the_exponential(v):
-    """d exp(v) exp(v)⁻¹ = T(v) dv, by automatic differentiation of the exponential."""
-    x, dx = ca.MX.sym("x", 3), normal(3)
-    rate = rotations.vee(ca.jtimes(rotations.rotation_exp(x), x, dx) @ rotations.rotation_exp(x).T)
-    both = ca.Function("f", [x], [rate, rotations.left_tangent(x) @ dx])(v)
-    assert_allclose(full(both[0]), full(both[1]), rtol=1e-13, atol=1e-14)
-
-
-@by_name(SHORT)
-@pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
-def test_rotation_log_of_exp_is_the_identity_to_second_order(v, symbol, casadi_derivatives):
-    value, jacobian, hessian = casadi_derivatives(
-        lambda x: rotations.rotation_log(rotations.rotation_exp(x)), v, symbol
-    )
-    assert_allclose(value, v, rtol=1e-13, atol=1e-22)
-    assert_allclose(jacobian, np.eye(3), rtol=1e-12, atol=1e-12)
-    assert_allclose(hessian, np.zeros((3, 3, 3)), rtol=0, atol=1e-11)
-
-
-@pytest.mark.parametrize("axis", [*np.eye(3), AXIS, np.array([0, -0.6, 0.8])])
-def test_rotation_log_on_exact_half_turns(axis, casadi_derivatives):
-    half_turn = ca.DM(2 * np.outer(axis, axis) - np.eye(3))
-    log = full(rotations.rotation_log(half_turn)).ravel()
-    assert_allclose(log * np.sign(log @ axis), np.pi * axis, rtol=1e-14, atol=1e-15)
-    flat = half_turn.full().ravel(order="F")
-    for symbol in (ca.SX, ca.MX):
-        casadi_derivatives(lambda x: rotations.rotation_log(ca.reshape(x, 3, 3)), flat, symbol)
-
-
-def intermediate_values(expression, x, point):
-    """The value of every operation in an SX expression."""
-    found, waiting = {}, [entry for row in ca.vertsplit(expression) for entry in ca.horzsplit(row)]
-    while waiting:
-        entry = waiting.pop()
-        if entry.element_hash() not in found:
-            found[entry.element_hash()] = entry
-            waiting.extend(entry.dep(k) for k in range(entry.n_dep()))
-    return ca.Function("all", [x], [ca.vertcat(*found.values())])(point).full()
-
-
-@pytest.mark.parametrize(
-    ("function", "point"),
-    [
-        (rotations.quaternion_exp, np.zeros(3)),
-        (rotations.rotation_exp, np.zeros(3)),
-        (rotations.left_tangent, np.zeros(3)),
-        (rotations.left_tangent_inverse, np.zeros(3)),
-        (rotations.quaternion_log, np.array([1.0, 0, 0, 0])),
-        (rotations.quaternion_log, np.array([0.0, 0, 0, 1])),
-    ],
-)
-def test_the_branch_not_taken_is_finite_too(function, point):
-    """Nothing on the way is infinite or not a number, whatever a consumer does with the branches."""
-    x = ca.SX.sym("x", len(point))
-    value = ca.densify(ca.vec(function(x)))
-    jacobian = ca.densify(ca.vec(ca.jacobian(value, x)))
-    second = ca.densify(ca.vec(ca.jacobian(jacobian, x)))
-    assert np.all(np.isfinite(intermediate_values(ca.vertcat(value, jacobian, second), x, point)))
 
 
 # --- numbers ------------------------------------------------------------

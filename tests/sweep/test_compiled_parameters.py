@@ -56,6 +56,7 @@ def arcs(table: dict[str, np.ndarray]) -> np.ndarray:
     return np.column_stack([(1 - np.cos(angle)) / bending, np.sin(angle) / bending])
 
 
+@pytest.mark.slow
 def test_all_rows_share_one_library_vs_arcs() -> None:
     table = tolerances(1100)
     found = sweep(BENT, table)
