@@ -20,7 +20,10 @@ from .shooting import solve_by_shooting
 
 RODS = Path(__file__).resolve().parents[2].parent / "shared" / "cases" / "rods"
 FILES = {name: RODS / f"steel_{name.lower().replace(' ', '_')}.json" for name in CASES}
-pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed"),
+]
 
 
 def table_of(case: Case) -> dict[str, Any]:
