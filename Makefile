@@ -7,6 +7,7 @@ export OPENBLAS_NUM_THREADS := 1
 # What Python has compiled serves the other processes of a run, and the next run.
 unexport PYTHONDONTWRITEBYTECODE
 STAMP := $(VENV)/.installed
+STAMP_SLOW := $(VENV)/.installed-slow
 
 .PHONY: help demo gallery test test-slow test-arithmetic test-casadi-before fuzz bench dial lint format schema api docs generated clean
 
@@ -29,8 +30,15 @@ help:
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
+	# The pip of earlier versions of Python takes half as long again: it compares all tags of all wheels.
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --upgrade pip
 	# Compiled when it is imported: most modules of these packages never are.
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[test]'
+	@touch $@
+
+# What the site and the long tests need besides.
+$(STAMP_SLOW): $(STAMP)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[test-slow]'
 	@touch $@
 
 demo: $(STAMP)
@@ -47,7 +55,7 @@ lint: $(STAMP)
 test: $(STAMP) lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow"
 
-test-slow: $(STAMP)
+test-slow: $(STAMP_SLOW)
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
 
 # Rounds as other processors, BLAS threads and optimised C do; what this processor cannot run is said and left out.
@@ -90,7 +98,7 @@ api: $(STAMP)
 	$(BIN)/python docs/api_pages.py
 	$(BIN)/python docs/notebook_file.py
 
-docs: $(STAMP)
+docs: $(STAMP_SLOW)
 	$(BIN)/python -m docs.site --output build/site --runs out
 
 # Solves the scenes for their discretisation, then runs the comparison that 'make test' makes.

@@ -12,22 +12,20 @@ import pytest
 from PIL import Image
 
 from cosserat_casadi.cli.command_group import LINES
-from tests.browser import browser
-from tests.conftest import ROOT
-
-pytest.importorskip("material", reason="the site needs the extra docs")
-
-from docs.site.build import SiteError, build_site
 from docs.site.command_reference import command_page
 from docs.site.functions_in_c import functions_page
 from docs.site.gallery import ExampleError, draw_examples, run_example, write_gallery
 from examples.demo import arguments_of
+from tests.browser import browser
+from tests.conftest import ROOT
 
 EXAMPLES = ("planar_strip", "nitinol_wire")
 """Few, because each is solved and drawn."""
 
 SIZES = ({"width": 1400, "height": 900}, {"width": 390, "height": 800})
 """Windows, pixels: a desk's and a telephone's."""
+
+NEEDS_THEME = "the site needs the extra docs, which make test-slow installs"
 
 LIVE = "<!DOCTYPE html><title>strip</title><p id=strip>moves</p>"
 
@@ -43,6 +41,9 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def site(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pytest.importorskip("material", reason=NEEDS_THEME)
+    from docs.site.build import build_site
+
     folder = tmp_path_factory.mktemp("site")
     build_site(folder, runs, EXAMPLES)
     return folder
@@ -204,7 +205,11 @@ def test_every_function_of_a_header_is_on_the_page_of_functions() -> None:
         assert f"nitinol_wire_{name}(" in page or f"`NAME_{name.removesuffix('_wire')}`" in page, name
 
 
+@pytest.mark.slow
 def test_link_that_leads_nowhere_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("material", reason=NEEDS_THEME)
+    from docs.site.build import SiteError, build_site
+
     def stage_with_fault(folder: Path, *_: Any) -> list[Any]:
         (folder / "index.md").write_text("# Start\n\n[Nowhere](index.md#nowhere)\n")
         return [{"Start": "index.md"}]
@@ -214,7 +219,9 @@ def test_link_that_leads_nowhere_is_an_error(tmp_path: Path, monkeypatch: pytest
         build_site(tmp_path / "site", tmp_path)
 
 
+@pytest.mark.slow
 def test_formula_that_cannot_be_read_is_a_warning(caplog: pytest.LogCaptureFixture) -> None:
+    pytest.importorskip("latex2mathml", reason=NEEDS_THEME)
     from docs.site.formulas import mathml
 
     assert "<mfrac>" in mathml(r"\frac{1}{2}", "inline", "theory.md")

@@ -100,7 +100,7 @@ def test_what_is_measured_is_not_measured_again(measured: tuple[Path, str, list[
     folder, _, rows = measured
     plan = make_plan(planar(), folder, "dial", None, quick=False)
     assert [row.name for row in plan.rows] == [row.name for row in rows]
-    assert [candidate.name for candidate in plan.candidates][:2] == ["dial 0.001", "dial 1e-05"]
+    assert [candidate.name for candidate in plan.candidates][:3] == ["dial 0.01", "dial 0.001", "dial 1e-05"]
 
 
 def test_an_interrupted_bench_keeps_its_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

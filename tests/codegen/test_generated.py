@@ -40,6 +40,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.model.discretise import with_discretisation
 from tests.conftest import ROOT, quickest_compiler
+from tests.families import mostly_slow
 
 FOLDER = ROOT / "generated"
 
@@ -281,6 +282,7 @@ def hashed(generated: Path, name: str) -> dict[str, Any]:
 
 
 @pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+@pytest.mark.parametrize("folder", mostly_slow(GENERATED, quick=["planar_strip", "nitinol_wire"]), indirect=True)
 def test_committed_sources_give_the_tip_of_this_version(folder: Path, generated: Path, tmp_path: Path) -> None:
     """Compiled as their README says but for the optimisation, which takes longer than the run.
 

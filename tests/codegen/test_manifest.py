@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.properties import STRAINS
+from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 PIN = {"rod": "rod", "kind": "pinned", "position": [0.3, 0.0, 0.5]}
@@ -40,7 +41,7 @@ MODELS: dict[str, Model] = {
 }
 
 
-@pytest.fixture(scope="module", params=MODELS)
+@pytest.fixture(scope="module", params=mostly_slow(MODELS, quick=["legendre", "cut and held", "some free", "two rods"]))
 def exported(request: pytest.FixtureRequest) -> tuple[Model, dict[str, str], dict[str, Any]]:
     model = MODELS[request.param]
     files = folder_files(model, "lib", 1.234e-7)

@@ -32,7 +32,7 @@ FOREIGN = {"memcpy", "memset", "memmove", "__stack_chk_fail", "__cpu_model"}
 MATHS = {"sqrt", "sin", "cos", "tan", "atan2", "acos", "asin", "exp", "log", "pow", "fabs", "fmin", "fmax", "hypot"}
 
 
-@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["fixed", "robot"]))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["robot"]))
 def test_hand_readable_sources_compile_without_a_warning(library: Library, name: str, tmp_path: Path) -> None:
     made = library(name)
     for stem in (name, f"{name}_demo"):
@@ -46,7 +46,7 @@ LINT = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-co
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
-@pytest.mark.parametrize("name", mostly_slow(KINDS, quick=["fixed", "robot"]))
+@pytest.mark.parametrize("name", mostly_slow(KINDS, quick=["robot"]))
 def test_solver_passes_every_lint_in_both_languages(library: Library, name: str, language: str, single: bool) -> None:
     """As compilers read it: what they warn of while they optimise, the test before sees."""
     made = library(name)

@@ -15,6 +15,7 @@ from cosserat_casadi.control import lifted, stability_margin
 from cosserat_casadi.control.spectrum import Spectrum
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from cosserat_casadi.model.unknowns import BlockKind
+from tests.families import mostly_slow
 from tests.scenes import push, scene
 
 CRITICAL = np.pi**2 / 4
@@ -138,7 +139,7 @@ MODELS = {
 }
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", mostly_slow(MODELS, quick=["column", "held", "cable", "fixed"]))
 def test_margin_vs_the_judgement_of_a_solve(name: str) -> None:
     """Against a generalised eigenproblem of SciPy; the signs are those of the eigenvalues that a solve judges."""
     model = MODELS[name]()
@@ -161,7 +162,7 @@ def test_margin_vs_the_judgement_of_a_solve(name: str) -> None:
     assert (float(margin) > 0) is solution.stable
 
 
-@pytest.mark.parametrize("name", ["held", "cable", "fixed", "spherical"])
+@pytest.mark.parametrize("name", mostly_slow(["held", "cable", "fixed", "spherical"], quick=["held", "cable", "fixed"]))
 def test_spectrum_against_the_identity_is_that_of_a_solve(name: str) -> None:
     """With all units alike: the eigenvalues that a solve reports, over the variations that it admits."""
     model = MODELS[name]()

@@ -6,6 +6,7 @@ import itertools
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.envs.registration import load_env_creator
 from gymnasium.utils.env_checker import check_env
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -71,6 +72,11 @@ def test_gymnasium_finds_no_fault(environment):
     check_env(environment, skip_render_check=True)
 
 
+def test_its_name_is_registered():
+    assert load_env_creator(gymnasium.spec(REACH).entry_point) is ReachEnvironment
+
+
+@pytest.mark.slow
 def test_it_is_made_by_name():
     made = gymnasium.make(REACH, scene=parse_scene(SCENE + BOUNDS), duration=0.1)
     observation, _ = made.reset(seed=1)

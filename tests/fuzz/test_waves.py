@@ -37,7 +37,8 @@ def test_routed_tendons_are_within_the_tolerance(seed: int) -> None:
     assert check(routed_scene(seed))
 
 
-@pytest.mark.parametrize("seed", mostly_slow(RICH, quick=RICH[:1]))
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", RICH)
 def test_rich_curvatures_and_loads_are_within_the_tolerance(seed: int) -> None:
     assert check(rich_scene(seed))
 

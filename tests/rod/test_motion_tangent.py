@@ -98,7 +98,7 @@ def test_derivatives_vs_ad_for_each_transport(name, transport):
 
 
 @pytest.mark.parametrize("straight", [True, False], ids=["straight", "curved"])
-@pytest.mark.parametrize("name", RODS)
+@pytest.mark.parametrize("name", mostly_slow(RODS, quick=[*RODS][1::2]))
 def test_derivatives_vs_ad_without_strain(name, straight):
     """No angle is divided by: also without any rate, where all matrices but M and the stiffness vanish."""
     basis, compared = case(name, straight=straight)
