@@ -470,6 +470,7 @@ def test_export_with_derivatives(wire: Path) -> None:
     assert extra == {"wire_derivatives.c", "wire_derivatives_in_fours.h"}
 
 
+@pytest.mark.slow
 def test_export_with_motions(wire: Path) -> None:
     # In a plane the equations of motion are short.
     few = ("accuracy.modes=2", "accuracy.nodes=5", 'rods[0].strain="planar"')

@@ -31,6 +31,7 @@ from tests.codegen.contact_libraries import (
     pulled_over_bar,
 )
 from tests.codegen.libraries import C99, QUICK, compile_quickly, gcc
+from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
 LINT = (*C99, "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
@@ -173,6 +174,7 @@ def test_inputs_that_are_not_finite(bar: ContactLibrary, bad: float) -> None:
         assert found.state == start.state
 
 
+@pytest.mark.slow
 def test_sources_by_hand_compile_without_a_word(bar: ContactLibrary, table: ContactLibrary, tmp_path: Path) -> None:
     """All but the kernels, which CasADi has written."""
     for library in (bar, table):
@@ -196,22 +198,25 @@ def test_jacobians_are_by_columns(bar: ContactLibrary) -> None:
     assert all(f"bar_k_{number}_jacobian_columns_0" in columns for number in range(len(bar.loaded.arrangements)))
 
 
-def test_errors_in_contact(bar: ContactLibrary, table: ContactLibrary) -> None:
-    """They are those of Python, without contact, at a point, at the tip and along a line, and bound the true ones."""
-    for library, force, kinds in (
-        (bar, 0.2, []),
-        (bar, 8.0, ["point"]),
-        (table, 10.0, ["point"]),
-        (table, 55.0, ["line"]),
-    ):
-        found = library.loaded.solve(down(force))
-        assert [contact.kind for contact in found.contacts] == kinds
-        assert found.error_estimate is not None
-        wanted = solve(library.model, down(force))
-        # Estimates are differences of answers that are solved to 1e-12.
-        np.testing.assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-4, atol=2e-12)
-        assert found.within_tolerance == wanted.within_tolerance
-        assert library.loaded.error_estimate(found) == found.error_estimate
+AT_FORCES = [("bar", 0.2, []), ("bar", 8.0, ["point"]), ("table", 10.0, ["point"]), ("table", 55.0, ["line"])]
+
+
+@pytest.mark.parametrize(("which", "force", "kinds"), mostly_slow(AT_FORCES, quick=AT_FORCES[:2]))
+def test_errors_in_contact(which: str, force: float, kinds: list[str], request: pytest.FixtureRequest) -> None:
+    """They are those of Python, without contact, at a point, at the tip and along a line."""
+    library: ContactLibrary = request.getfixturevalue(which)
+    found = library.loaded.solve(down(force))
+    assert [contact.kind for contact in found.contacts] == kinds
+    assert found.error_estimate is not None
+    wanted = solve(library.model, down(force))
+    # Estimates are differences of answers that are solved to 1e-12.
+    np.testing.assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-4, atol=2e-12)
+    assert found.within_tolerance == wanted.within_tolerance
+    assert library.loaded.error_estimate(found) == found.error_estimate
+
+
+@pytest.mark.slow
+def test_errors_in_contact_bound_the_true_ones(bar: ContactLibrary) -> None:
     fine = solve(build(over_bar(), discretise(over_bar(), 11, 22)), down(8.0))
     answer = bar.loaded.solve(down(8.0))
     true = np.linalg.norm(answer.tips["rod"][:3] - fine.tip().position)

@@ -179,6 +179,7 @@ def test_assemblies_have_no_form_for_lanes() -> None:
     assert lanes.in_lanes(model, model_names("sweep", model)) is None
 
 
+@pytest.mark.slow
 def test_an_assembly_with_batches_is_refused(tmp_path: Path) -> None:
     model = build(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}))
     with pytest.raises(ExportError, match="have no form for several load cases at once"):

@@ -137,6 +137,7 @@ def test_directions_have_coefficients_of_their_own(axis: int, force: int, coeffi
     assert_allclose(ways(path, axis)[-1], force * bears / SPRING, rtol=2e-3, atol=0)
 
 
+@pytest.mark.slow
 def test_a_rod_that_turns_about_its_axis_rubs_at_its_radius() -> None:
     """The moment above the radius times the limit is the spring's."""
     limit, spring = RADIUS * LIMIT, 2e-3

@@ -48,6 +48,7 @@ from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.identification.made_up import WIRE, measured_shapes
 from tests.motions import planar_swing, without_start
 from tests.scenes import push, scene
@@ -243,7 +244,7 @@ def test_a_result_says_what_matters_in_a_few_lines(name: str) -> None:
     assert any("error" in line for line in lines) or name == "SobolIndices"
 
 
-@pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.parametrize("name", mostly_slow(MAKERS, quick=["Solution", "Sweep", "TubePath", "Estimate"]))
 def test_a_notebook_shows_table_and_figure(name: str) -> None:
     result = MAKERS[name]()
     assert isinstance(result.plot(), Figure)

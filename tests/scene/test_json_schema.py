@@ -50,6 +50,7 @@ def test_the_committed_schema_is_the_generated_one():
     assert json_schema.COMMITTED.read_text(encoding="utf-8") == json_schema.schema_text()
 
 
+@pytest.mark.slow
 def test_the_module_writes_the_committed_schema(tmp_path):
     copy = tmp_path / "scene.schema.json"
     program = f"""

@@ -114,6 +114,7 @@ def test_the_committed_page_is_the_generated_one() -> None:
     assert scene_reference.COMMITTED.read_text(encoding="utf-8") == PAGE
 
 
+@pytest.mark.slow
 def test_the_module_writes_the_committed_page(tmp_path: Path) -> None:
     page = tmp_path / "scene.md"
     program = f"""

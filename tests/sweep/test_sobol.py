@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
@@ -20,6 +18,7 @@ from cosserat_casadi.cli.reports.sweep import print_sobol
 from cosserat_casadi.plots.sobol_plot import plot_sobol
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.sobol import estimates
+from tests.commands import cosserat
 from tests.scenes import push, rod, scene
 
 A, B = 7.0, 0.1
@@ -32,12 +31,6 @@ SMALL = scene(
     accuracy={"modes": 4, "nodes": 10, "tolerance": 1e-4},
     title="A rod that bends little",
 )
-
-
-def command(*words: str) -> subprocess.CompletedProcess[str]:
-    """The command line in a process of its own."""
-    code = "from cosserat_casadi.cli.main import main; main()"
-    return subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
 
 
 def ishigami(x: np.ndarray) -> np.ndarray:
@@ -108,8 +101,7 @@ def test_linear_rod_vs_beam_theory(tmp_path: Path) -> None:
     (tmp_path / "grid.toml").write_text(grid)
     (tmp_path / "scene.toml").write_text(scene_text(SMALL))
     words = ["sweep", "scene.toml", "--over", "grid.toml", "--output", "rows.csv", "--sobol", "found.json"]
-    words = [str(tmp_path / word) if "." in word else word for word in words]
-    done = command(*words, "--plot", str(tmp_path / "found.png"))
+    done = cosserat(*words, "--plot", "found.png", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "push.moment.y" in done.stdout
     assert (tmp_path / "found.png").stat().st_size > 1000
@@ -173,7 +165,7 @@ def test_rows_that_were_not_drawn_for_it_are_refused(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("push.force.x\n0.1\n")
     (tmp_path / "scene.toml").write_text(scene_text(SMALL))
     words = ["sweep", "scene.toml", "--over", "rows.csv", "--output", "out.csv", "--sobol", "found.json"]
-    done = command(*[str(tmp_path / word) if "." in word else word for word in words])
+    done = cosserat(*words, cwd=tmp_path)
     assert done.returncode == 2
     assert "for Sobol indices they are drawn" in " ".join(done.stderr.split())
     assert not (tmp_path / "found.json").exists()
