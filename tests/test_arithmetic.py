@@ -15,23 +15,6 @@ from tests.conftest import C_FLAGS, ROOT
 VARIANTS = {variant.name: variant for variant in arithmetic.variants()}
 
 
-def test_every_arithmetic_is_chosen_by_the_environment() -> None:
-    chosen = {name: variant.environment for name, variant in VARIANTS.items()}
-    assert chosen.pop("NumPy's baseline") == {"NPY_DISABLE_CPU_FEATURES": arithmetic.numpy_features()}
-    assert chosen == {
-        "OpenBLAS for Prescott": {"OPENBLAS_CORETYPE": "Prescott"},
-        "OpenBLAS for Haswell": {"OPENBLAS_CORETYPE": "Haswell"},
-        "OpenBLAS for Zen": {"OPENBLAS_CORETYPE": "Zen"},
-        "OpenBLAS for SkylakeX": {"OPENBLAS_CORETYPE": "SkylakeX"},
-        "glibc without FMA": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable"},
-        "1 threads of BLAS": {"OPENBLAS_NUM_THREADS": "1"},
-        "2 threads of BLAS": {"OPENBLAS_NUM_THREADS": "2"},
-        "C by -O0": {C_FLAGS: "-O0"},
-        "C by -O2": {C_FLAGS: "-O2"},
-        "C by -O3 -march=native": {C_FLAGS: "-O3 -march=native"},
-    }
-
-
 def test_the_command_line_is_that_of_the_quick_tests() -> None:
     command = VARIANTS["C by -O2"].command(["-x"])
     assert command == [sys.executable, "-m", "pytest", "-q", "-m", "not slow", "-x", *arithmetic.COMPILED]

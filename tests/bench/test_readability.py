@@ -61,16 +61,6 @@ def test_counts_of_a_packed_function(script: ModuleType, tmp_path: Path) -> None
     assert_allclose(counted.nodes_per_line, [(12 + 8) / 2], rtol=0, atol=1e-12)
 
 
-def test_counts_of_a_plain_function(script: ModuleType, tmp_path: Path) -> None:
-    counted = script.density(checkout(tmp_path, PLAIN))
-    assert (counted.packed, counted.conditional, counted.comments) == (0, 0, 0)
-    assert counted.nodes_per_line[0] < 6.0
-
-
-def test_nothing_to_count(script: ModuleType, tmp_path: Path) -> None:
-    assert script.density(tmp_path).figures["lines"] == "0"
-
-
 def test_two_checkouts_stand_side_by_side(tmp_path: Path) -> None:
     before = checkout(tmp_path / "before", PACKED)
     after = checkout(tmp_path / "after", PLAIN)
@@ -85,10 +75,3 @@ def test_two_checkouts_stand_side_by_side(tmp_path: Path) -> None:
     assert "|  | before | after |" in done.stdout
     assert "| generated/, lines | 3 | 3 |" in done.stdout
     assert "\nroom\n" in done.stdout
-
-
-@pytest.mark.slow
-def test_this_checkout_is_counted() -> None:
-    done = subprocess.run([sys.executable, str(SCRIPT)], capture_output=True, text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "| syntax nodes per body line, median | " in done.stdout

@@ -20,7 +20,7 @@ from typer.main import get_command
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.main import app
 from cosserat_casadi.cli.terminal import HANDLER, prepare_streams
-from tests.commands import WIRE, cosserat
+from tests.commands import WIRE
 from tests.families import mostly_slow
 
 SCENE = (
@@ -281,6 +281,7 @@ def test_full_disk(folder: Path, command: str) -> None:
     assert [name for name in new_files(folder) if name != "out"] == []
 
 
+@pytest.mark.slow
 def test_full_disk_behind_standard_output(folder: Path) -> None:
     with (folder / "shown.json").open("wb") as shown:
         command = [*PROGRAM, "solve", "wire.toml", "--json"]
@@ -360,13 +361,14 @@ def test_a_reader_that_has_seen_enough(folder: Path) -> None:
     assert "Exception ignored" not in said
 
 
-@pytest.mark.parametrize("command", mostly_slow(WRITERS, quick=["solve"]))
+@pytest.mark.slow
+@pytest.mark.parametrize("command", WRITERS)
 def test_folder_that_takes_nothing(folder: Path, command: str) -> None:
     """/proc takes no file, even from a user who may write anywhere."""
     arguments = [f"/proc/{word}" if word.startswith("out") else word for word in COMMANDS[command]]
-    done = cosserat(*arguments, cwd=folder)
-    assert done.returncode in (REFUSED, NOT_WRITTEN)
-    assert "/proc" in done.stderr
+    code, _, said = ended(start(arguments, folder))
+    assert code in (REFUSED, NOT_WRITTEN)
+    assert "/proc" in said
     assert new_files(folder) == []
 
 

@@ -311,7 +311,7 @@ ELSEWHERE = {
 LONG = [path for path in HELD if "[[obstacles]]" in path.read_text() or path.stem in ELSEWHERE]
 # Half of the others are solved every time; the models of all of them are built, by the tests of inverse dynamics.
 LONG += [path for path in HELD if path not in LONG][1::2]
-LONG += [path for path in HELD if path.stem in ("pendulum_chain", "branching_rod")]
+LONG += [path for path in HELD if path.stem in ("pendulum_chain", "branching_rod", "needle_in_tissue", "loaded_tubes")]
 
 
 @pytest.mark.parametrize(

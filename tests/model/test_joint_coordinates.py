@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Model, SceneError, build, export, load, modes_of, scene_from_dict, simulate, solve
+from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, LENGTH, link, scene
 
 ALONG = {"tangent": [1, 0, 0]}
@@ -70,7 +71,7 @@ def test_spring_at_a_slide_under_a_force() -> None:
     assert_allclose(pulled.tip().position, [LENGTH + state["displacement"], 0, 0], rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("angle", [0.7, 20.0])
+@pytest.mark.parametrize("angle", mostly_slow([0.7, 20.0], quick=[20.0]))
 def test_driven_angle_is_a_clamp_at_that_angle(angle: float) -> None:
     half = (np.pi / 2 + angle) / 2
     clamped = solve(built([], [link("a", base={"quaternion": [np.cos(half), 0, np.sin(half), 0]})]))

@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 
 from cosserat_casadi import SceneError, build, export, load, modes_of, scene_from_dict, simulate, solve
 from cosserat_casadi.maths.typing import FloatArray
+from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, WEIGHT, link, scene
 
 MASSES, ARMS, INERTIAS = np.array([0.7, 0.4]), np.array([0.3, 0.2]), np.array([0.01, 0.004])
@@ -145,7 +146,7 @@ def test_double_pendulum_swings_as_scipy_says() -> None:
     assert_allclose(motion.body("lower").position, elbow(motion.times), rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("modulus", [2e10, 2e14])
+@pytest.mark.parametrize("modulus", mostly_slow([2e10, 2e14], quick=[2e14]))
 def test_how_stiff_a_link_is_does_not_matter(modulus: float) -> None:
     """A rod that only twists, beside one of 2 MPa: its own stiffness would hide what the other bears."""
     stiff = link("a", modulus, strain=["torsion"], base={"tangent": [1, 0, 0]})
@@ -159,7 +160,7 @@ def test_how_stiff_a_link_is_does_not_matter(modulus: float) -> None:
     assert_allclose(solution.tip("b").position, [0.534588785, 0, -0.638986714], rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize("angle", [0.3, 2.5, -9.0])
+@pytest.mark.parametrize("angle", mostly_slow([0.3, 2.5, -9.0], quick=[2.5, -9.0]))
 def test_slider_crank(angle: float) -> None:
     """Its place in closed form; the moment of its drive by virtual work. The loop is closed in the plane alone."""
     model = build(scene_from_dict(slider_crank()))

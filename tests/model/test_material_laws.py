@@ -270,6 +270,7 @@ def test_cantilever_vs_shooting(law: str) -> None:
     assert solution.within_tolerance
 
 
+@pytest.mark.slow
 def test_more_modes_converge_as_for_linear_rods() -> None:
     """Six modes are a hundred times nearer than three."""
     strip = rod(LAWS["neo_hookean"], RECTANGLE, "planar")

@@ -635,7 +635,7 @@ MOVED = (
 
 
 @pytest.mark.parametrize("rotation", mostly_slow(["magnus6", "permuted"], quick=["magnus6"]))
-@pytest.mark.parametrize("case", MOVED)
+@pytest.mark.parametrize("case", mostly_slow(MOVED, quick=MOVED[1:3]))
 def test_equations_of_moved_elements_are_those_of_a_scene_of_its_own(case: str, rotation: str) -> None:
     """Strains are counted per nominal length of their element: a scene of its own has them times its width."""
     given, values = CASES[case]

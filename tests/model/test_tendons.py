@@ -102,7 +102,7 @@ def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
 TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("tendon")]
 
 
-@pytest.mark.parametrize("path", TENDON_ROBOTS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", mostly_slow(TENDON_ROBOTS, quick=TENDON_ROBOTS[::2]), ids=lambda path: path.stem)
 def test_reference_cases_of_tendon_robots(path: Path) -> None:
     case = json.loads(path.with_suffix(".json").read_text())
     scene = read_scene(path)
