@@ -12,6 +12,7 @@ from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import push, rod, scene
 
 
+@pytest.mark.slow
 def test_a_discretisation_holds_at_every_case() -> None:
     """Against a much finer solution of each case; neither case's own choice serves the other."""
     wanted = scene(push(force=[0.4, 0.0, 0.0]), accuracy={"tolerance": 1e-5})

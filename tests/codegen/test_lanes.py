@@ -232,7 +232,9 @@ def test_exported_batches_take_parameters(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "flags", [("-fopenmp",), ("-DLANES=0",), ("-DSTRIP_SINGLE",)], ids=["threads", "none", "float"]
+    "flags",
+    [pytest.param(("-fopenmp",), marks=pytest.mark.slow), ("-DLANES=0",), ("-DSTRIP_SINGLE",)],
+    ids=["threads", "none", "float"],
 )
 def test_batches_of_other_builds_are_those(flags: tuple[str, ...], tmp_path: Path) -> None:
     """On four threads, without vectors, and in float, without a word from the compiler."""

@@ -122,6 +122,7 @@ def test_text_of_a_scene_is_read_or_refused(swaps: list[tuple[str, str]]) -> Non
     assert isinstance(scene, Scene)
 
 
+@pytest.mark.slow
 @settings(max_examples=6, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(
     st.floats(1e-6, 1e6),

@@ -65,7 +65,6 @@ def test_frequencies_vs_masses_on_a_beam_without_mass() -> None:
     assert_allclose(frequencies[:count], expected, rtol=1e-9, atol=0)
 
 
-@pytest.mark.slow
 def test_numbers_of_disks_as_parameters() -> None:
     """Mass, radius and a place of a row: what a scene with these numbers has."""
     names = ["spacers.mass", "spacers.radius", "spacers.at[0]"]
