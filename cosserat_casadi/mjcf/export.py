@@ -50,7 +50,10 @@ STIFF = 1e3
 """Stiffness of a drive, or of a cable of given length, over that of the rod that it moves."""
 
 LEAST = 1e-9
-"""Least mass and inertia of a body over those of the whole scene: MuJoCo moves nothing that has none."""
+"""Least mass, over that of all rods; least moments of inertia, over the mass and the square of the longest rod."""
+
+LEAST_MOVED = 2e-15
+"""Least mass and moments of inertia of what moves, kg and kg m²: MuJoCo refuses half of that."""
 
 STEP = 1e-3
 """Time step, s: the integrator ``discrete`` is implicit in springs, whose frequencies any longer step would exceed."""
@@ -169,6 +172,7 @@ class _Robot:
     carriers: dict[tuple[str, float], _Carrier] = field(default_factory=dict)
     bodies: dict[str, _Carrier] = field(default_factory=dict)
     used: set[int] = field(default_factory=set)
+    light: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.root = ET.Element("mujoco", model=self.scene.title or "scene")
@@ -334,8 +338,10 @@ class _Robot:
             ET.SubElement(element, tag, attributes)
         moments, axes = np.linalg.eigh(inertia.moments)
         axes[:, 2] *= np.sign(np.linalg.det(axes))
-        # What has no inertia about an axis gets a little: MuJoCo moves nothing that has none.
-        moments = np.maximum(moments, LEAST * max(moments[2], inertia.mass * self.size**2 * LEAST))
+        least = max(LEAST * inertia.mass * self.size**2, LEAST_MOVED)
+        if joints and moments[0] < least:
+            self.light.setdefault(name.split("/")[0], least)
+        moments = np.maximum(moments, max(least, LEAST * moments[2]))
         # Of thin links the largest is the sum of the others, but for rounding, and may not be more.
         moments[1] = max(moments[1], (1 + 1e-9) * moments[2] - moments[0])
         place = _place(NumericPose(inertia.centre, matrix_to_quaternion(axes)))
@@ -393,7 +399,7 @@ class _Robot:
         joints: Sequence[MjcfJoint],
         in_carrier: NumericPose | None = None,
     ) -> None:
-        mass = max(body.mass, LEAST * self.mass)
+        mass = max(body.mass, LEAST * self.mass, LEAST_MOVED)
         inertia = Inertia(mass, np.array(body.centre_of_mass), body.inertia_matrix)
         put = self._element(carrier, frame, body.name, inertia, joints, in_carrier)
         if not self.weighs_body(body.name):
@@ -674,6 +680,8 @@ class _Robot:
                 self._leave_out(rod.name, "stress that relaxes is missing")
             if properties.mass_damping is not None:
                 self._leave_out(rod.name, "damping in proportion to mass is missing")
+        for name, least in self.light.items():
+            self._leave_out(name, f"has moments of inertia of {least:.1e} kg m² at least: MuJoCo moves nothing without")
         if scene.velocities:
             self._leave_out("velocities", "the model begins at rest")
         for name in dict.fromkeys(motion.input for motion in scene.motions):

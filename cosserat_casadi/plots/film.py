@@ -151,7 +151,7 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
             poses = section_poses(model, actuator.rod, X, x, inputs)
             yield _tube(actuator.name, _colour(actuator_colour(index)), outline, poses)
     bodies = {body.name: body_poses(model, body.name, x, inputs) for body in scene.bodies}
-    for body in scene.bodies:
+    for body in scene.listed_bodies:
         yield _body(body.name, body_corners(scene, body), body.radius, 3 * THIN * size, _single(bodies[body.name]))
     for obstacle in scene.obstacles:
         near = points.mean(axis=0)

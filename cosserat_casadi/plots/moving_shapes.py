@@ -77,7 +77,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
         elif name not in carrying:
             # The tips of rods that carry a body go where the body goes, whose own path says it once.
             followed[name] = lines[:, -1]
-    for body in model.scene.bodies:
+    for body in model.scene.listed_bodies:
         poses = body_poses(model, body.name, x, inputs)
         world_R_body = rotations(poses.quaternion)
         corners = body_corners(model.scene, body)

@@ -97,8 +97,8 @@ def motion_result(motion: Motion) -> dict[str, Any]:
         "rods": {name: _rod_entry(motion, name) for name in model.discrete.rods},
     }
     # A reader of rods alone need not know of tables that the scene does not have.
-    if scene.bodies:
-        data["bodies"] = {body.name: _pose_entry(motion.body(body.name)) for body in scene.bodies}
+    if scene.listed_bodies:
+        data["bodies"] = {body.name: _pose_entry(motion.body(body.name)) for body in scene.listed_bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
     if model.joint:
@@ -135,7 +135,7 @@ def motion_arrays(motion: Motion) -> NamedArrays:
         _add_pose(arrays, f"{name}.tip", entry["tip"])
         arrays.coordinates[f"{name}.X"] = entry["X"]
         arrays.add(f"{name}.position", ("time", f"{name}.X", "axis"), entry["position"], "m")
-    for body in model.scene.bodies:
+    for body in model.scene.listed_bodies:
         _add_pose(arrays, body.name, _pose_entry(motion.body(body.name)))
     numbers = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in model.scene.actuators}
     numbers |= {name: _joint_entry(motion, name) for name in model.joint}
@@ -246,7 +246,7 @@ def _columns(motion: Motion) -> Iterator[Column]:
         positions = motion.section(name, X).position
         for index, abscissa in enumerate(X.tolist()):
             yield from _vector_columns(f"{name}.X={abscissa:g}", positions[:, index], POSITION_COLUMNS)
-    for body in model.scene.bodies:
+    for body in model.scene.listed_bodies:
         yield from _pose_columns(body.name, motion.body(body.name))
     for actuator in model.scene.actuators:
         for quantity, values in _actuator_entry(motion, actuator.name).items():

@@ -47,8 +47,8 @@ def solution_result(solution: Solution) -> dict[str, Any]:
         "rods": {name: _rod_entry(solution, name) for name in model.discrete.rods},
     }
     # A reader of rods alone need not know of tables that the scene does not have.
-    if scene.bodies:
-        data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.bodies}
+    if scene.listed_bodies:
+        data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.listed_bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: solution.actuator(actuator.name) for actuator in scene.actuators}
     if solution.model.joint:

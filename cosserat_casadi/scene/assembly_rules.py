@@ -114,9 +114,10 @@ def links_of(joint: Table) -> tuple[str | None, str | None]:
 
 
 def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
-    """A tip has a support and a joint, or a section has two joints; disks that go along with it hold nothing."""
+    """A tip has a support and a joint, or a section has two joints; bodies that ride on it hold nothing."""
     holders: dict[tuple[str, float], str] = {}
-    disks = {name for name, (_, body) in scene.named("bodies").items() if "thickness" in body}
+    # As the model decides: what bears an obstacle, or has a velocity, floats.
+    floating = [table.get("body") for key in ("obstacles", "velocities") for _, table in scene.tables(key)]
     of_bodies = [name for _, joint in scene.tables("joints") for name in links_of(joint)]
     for i, support in scene.tables("supports"):
         name = support.get("rod")
@@ -129,7 +130,7 @@ def sections_held_twice(scene: SceneTables) -> Iterator[Fault]:
         if not isinstance(name, str) or not isinstance(at, int | float):
             continue
         body, _ = links_of(joint)
-        if joint.get("kind") == "fixed" and body in disks and of_bodies.count(body) == 1:
+        if joint.get("kind") == "fixed" and at != 0 and body not in floating and of_bodies.count(body) == 1:
             continue
         section = (name, float(at))
         if section in holders:

@@ -199,6 +199,7 @@ mass = 0.1
         description="with radius: thickness of a disk in place of the ball, square to its z axis, for contact at "
         "rest with obstacles without a width, m",
     )
+    listed: bool = Field(True, description="false keeps the body out of results: of disks and joints written as bodies")
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -333,7 +334,7 @@ class JointRecord(Oriented, Entry):
                 if key in given:
                     problem = "stands in a joint at X = 0 without body"
                     yield Fault((key,), problem, "give it to the base of the rod, which says where the joint is")
-        elif "position" not in given:
+        elif "position" not in given and ("carries" not in given or sound(CarriedBody, given["carries"]) is not None):
             yield Fault(("position",), "missing", "name a body, or say where in the world the joint is, m")
 
     @classmethod

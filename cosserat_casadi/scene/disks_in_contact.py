@@ -6,6 +6,7 @@ from typing import Any
 
 from cosserat_casadi.scene.disk_record import Disks, tables_of
 from cosserat_casadi.scene.faults import Table
+from cosserat_casadi.scene.joint_ends import add_unlisted_body
 from cosserat_casadi.scene.obstacle_records import OBSTACLES
 from cosserat_casadi.scene.records import sound
 
@@ -39,9 +40,9 @@ def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
     """Put bodies in the sections of a row of disks; their names."""
     names = []
     for number, at in enumerate(row.places):
-        body = f"{row.name}_{number}"
+        size = {"radius": row.radius, "thickness": row.thickness}
+        body = add_unlisted_body(tables, f"{row.name}_{number}", **size)
         names.append(body)
-        tables.setdefault("bodies", []).append({"name": body, "radius": row.radius, "thickness": row.thickness})
         tables.setdefault("joints", []).append({"kind": "fixed", "body": body, "rod": row.rod, "at": at})
     return names
 

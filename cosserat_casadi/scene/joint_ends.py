@@ -11,6 +11,9 @@ from cosserat_casadi.scene.orientations import ORIENTATION_KEYS
 PLACE = ("position", *ORIENTATION_KEYS)
 """Keys of an end in a body or in the world that say where the joint is."""
 
+ORIGIN = {"position": [0.0, 0.0, 0.0]}
+"""Place of an end in a body or in the world that does not say it."""
+
 KEYS = {"rod", "at", "body", "world", *PLACE}
 """Keys of an end: one with another is left for its record to refuse."""
 
@@ -77,7 +80,7 @@ def _at_place(tables: Tables, joint: Tables, section: Table, other: Table) -> bo
         joint["body"] = other["body"]
     elif _at(section) == 0:
         return _put_base(tables, section["rod"], place)
-    joint.update(place)
+    joint.update({**ORIGIN, **place})
     return True
 
 
@@ -86,7 +89,7 @@ def _between_bodies(joint: Tables, ends: list[Table]) -> bool:
     first, second = ends if "world" not in ends[1] else ends[::-1]
     if "body" in first:
         joint["body"] = first["body"]
-    joint.update({key: first[key] for key in PLACE if key in first})
+    joint.update({**ORIGIN, **{key: first[key] for key in PLACE if key in first}})
     joint["carries"] = {key: value for key, value in second.items() if key in ("body", *PLACE)}
     return True
 
@@ -99,10 +102,18 @@ def _between_rods(tables: Tables, joint: Tables, sections: list[Table], index: i
     if _at(second) == 0:
         place = {key: joint.pop(key) for key in PLACE if key in joint}
         return _put_base(tables, second["rod"], {"rod": first["rod"], "at": _at(first), **place})
-    joint["body"] = joint.get("name", f"joint_{index}")
-    tables.setdefault("bodies", []).append({"name": joint["body"]})
+    joint["body"] = add_unlisted_body(tables, joint.get("name", f"joint_{index}"))
     tables["joints"].append({"kind": "fixed", "body": joint["body"], "rod": first["rod"], "at": _at(first)})
     return True
+
+
+def add_unlisted_body(tables: Tables, name: Any, **contents: Any) -> Any:
+    """Add a body without mass under a name that no other body has, like the wanted one; the name."""
+    taken = [body.get("name") for _, body in SceneTables(tables).tables("bodies")]
+    while name in taken:
+        name = f"at_{name}"
+    tables.setdefault("bodies", []).append({"name": name, "listed": False, **contents})
+    return name
 
 
 def _put_base(tables: Tables, name: Any, place: Tables) -> bool:

@@ -212,6 +212,11 @@ inputs = ["push.force", "cable.tension"]
         return {joint.rod: index for index, joint in enumerate(self.joints) if joint.rod and joint.at_base}
 
     @property
+    def listed_bodies(self) -> list[Body]:
+        """Bodies that results list: those that stand for no disk and no joint."""
+        return [body for body in self.bodies if body.listed]
+
+    @property
     def jointed_bases(self) -> set[str]:
         """Names of the rods whose bases joints hold, be it to bodies: they float."""
         return {joint.rod for joint in self.joints if joint.rod and joint.holds_base}

@@ -126,6 +126,17 @@ def test_a_disk_that_touches_exactly_where_a_joint_is() -> None:
     assert_allclose(held.tip().position, alone.tip().position, rtol=0, atol=1e-9)
 
 
+def test_bodies_that_stand_for_disks_are_none_of_the_users() -> None:
+    """A body of the scene may have their names; results list that one alone."""
+    bodies = [{"name": "d_1", "mass": 0.01}]
+    joints = [{"kind": "fixed", "body": "d_1", "rod": "a", "at": 0.7}]
+    tables = finger().model_dump(exclude_unset=True, by_alias=True)
+    del tables["obstacles"][0]["width"], tables["obstacles"][0]["stiffness"]
+    scene = scene_from_dict({**tables, "bodies": bodies, "joints": joints, "loads": []})
+    assert [body.name for body in scene.bodies] == ["d_1", "d_0", "at_d_1"]
+    assert list(solve(build(scene)).to_dict()["bodies"]) == ["d_1"]
+
+
 def test_a_disk_that_stands_on_its_face_in_exact_contact() -> None:
     """A rod that is bent to the floor presses on it within the face, not by the rim: its arm is shorter."""
     tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)

@@ -11,6 +11,9 @@ from tests.mjcf.moved_chains import FINGER, ROD, SCENES, WEIGHT
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'cosserat-casadi[mujoco]'")
 
+import mujoco
+
+from cosserat_casadi.mjcf.export import mjcf_of
 from tests.mjcf.chains import Chain, settled
 
 
@@ -32,6 +35,36 @@ def test_shape_and_frequencies_have_the_second_order(case: str) -> None:
     assert of_frequency[1] < 1e-2, of_frequency
     for errors in (of_tip, of_frequency):
         assert 3.3 < errors[0] / errors[1] < 8.0, (of_tip, of_frequency)
+
+
+def test_a_point_mass_on_a_hinge_swings_with_its_period() -> None:
+    """MuJoCo moves nothing without inertia: what it gets for that, the least of what is told, changes no period."""
+    text = (
+        FINGER
+        + WEIGHT.replace("[1.0, 2.0, -9.81]", "[0.0, 0.0, -9.81]")
+        + """
+[[bodies]]
+name = "bob"
+mass = 0.5
+centre_of_mass = [0.0, 0.0, -0.4]
+[[joints]]
+name = "pivot"
+kind = "revolute"
+between = [{ world = true, position = [1.0, 0.0, 0.0] }, { body = "bob" }]
+axis = [0, 1, 0]
+"""
+    )
+    scene = parse_scene(text)
+    rate = np.sqrt(9.81 / 0.4)
+    chain = Chain(scene, 2)
+    assert_allclose(chain.frequencies(1), rate / (2 * np.pi), rtol=1e-8, atol=0)
+    chain.data.joint("pivot").qpos[0] = 1e-3
+    duration = 0.5
+    chain.model.opt.timestep = 1e-4
+    for _ in range(5000):
+        mujoco.mj_step(chain.model, chain.data)
+    assert_allclose(chain.data.joint("pivot").qpos[0], 1e-3 * np.cos(rate * duration), rtol=0, atol=2e-6)
+    assert [told for told in mjcf_of(scene, 2).left_out if told.startswith("bob: has moments of inertia")]
 
 
 def test_held_tips_and_cables_of_given_length_are_led_there() -> None:

@@ -87,6 +87,32 @@ def test_digits_of_c(tmp_path: Path) -> None:
     assert_allclose(compiled.solve().x, solve(model).x, rtol=0, atol=1e-10)
 
 
+def test_two_bodies_on_one_section_vs_one_that_has_both() -> None:
+    """At rest and in modes; a pin holds a tip on which a body rides."""
+    masses, centres = np.array([0.3, 0.2]), np.array([[0.1, 0.0, 0.05], [-0.05, 0.1, 0.0]])
+    moments = [np.diag([0.01, 0.02, 0.03]), np.diag([0.02, 0.01, 0.01])]
+    centre = masses @ centres / masses.sum()
+    arms = centres - centre
+    together = sum(
+        own + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        for mass, arm, own in zip(masses, arms, moments, strict=True)
+    )
+    pairs = [
+        {"name": name, "mass": mass, "centre_of_mass": point.tolist(), "inertia": own.tolist()}
+        for name, mass, point, own in zip("xy", masses.tolist(), centres, moments, strict=True)
+    ]
+    one = {"name": "x", "mass": 0.5, "centre_of_mass": centre.tolist(), "inertia": np.array(together).tolist()}
+    pin = {"rod": "a", "kind": "pinned", "position": [0.1, 0.0, 0.95]}
+    found = []
+    for bodies in (pairs, [one]):
+        joints = [{"kind": "fixed", "body": body["name"], "rod": "a"} for body in bodies]
+        found.append(solve(build(scene(bodies=bodies, joints=joints, supports=[pin], loads=[WEIGHT]))))
+    assert found[0].converged
+    assert_allclose(found[0].x, found[1].x, rtol=0, atol=1e-10)
+    frequencies = [modes_of(solution, count=8).angular_frequencies for solution in found]
+    assert_allclose(*frequencies, rtol=1e-9, atol=0)
+
+
 def test_figure_shows_the_rims() -> None:
     """Of the first disk: all points of both faces as far from its centre as a corner is, square to the tangent."""
     solution = solve(build(scene(ROW, loads=[WEIGHT])))

@@ -65,7 +65,7 @@ REFUSED = {
     "unknown_rod": (HELD + joint("x"), "joints[1].rod", "no rod is named 'x'"),
     "twice": (HELD + joint(), "joints[1].rod", "joints[0] holds the tip of 'a' already"),
     "supported": (
-        HELD + '[[supports]]\nrod = "a"\nkind = "pinned"\nposition = [0, 0, 0.1]\n',
+        HELD.replace("fixed", "spherical") + '[[supports]]\nrod = "a"\nkind = "pinned"\nposition = [0, 0, 0.1]\n',
         "joints[0].rod",
         "supports[0] holds the tip of 'a' already",
     ),
@@ -98,6 +98,23 @@ REFUSED = {
         "no body is named 'b'",
     ),
 }
+
+
+@pytest.mark.parametrize("carries", ['"plate"', "{ position = [0, 0, 1] }"])
+def test_a_faulty_carried_body_is_told_alone(carries: str) -> None:
+    told = refusals(rod("a") + PLATE + f'[[joints]]\nkind = "fixed"\ncarries = {carries}\n')
+    assert [where for where, _ in told if where.startswith("joints")] in (
+        ["joints[0].carries"],
+        ["joints[0].carries.body"],
+    )
+
+
+def test_an_end_in_the_world_is_at_its_origin_by_default() -> None:
+    ends = "between = [{ world = true }, { %s }]"
+    for end in ('body = "plate"', 'rod = "a"'):
+        text = "schema = 1\n" + rod("a") + '[[joints]]\nkind = "spherical"\n' + ends % end
+        scene = parse_scene(text + ("\n" + PLATE if "plate" in end else ""))
+        assert scene.joints[0].position == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("case", REFUSED)

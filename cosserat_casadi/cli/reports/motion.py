@@ -44,9 +44,9 @@ def _end_table(motion: Motion) -> Table:
     for name in motion.model.discrete.rods:
         position = motion.tip(name).position[-1]
         table.add_row(escape(name), "tip position, m", *digits(position))
-    for name in motion.model.body:
-        position = motion.body(name).position[-1]
-        table.add_row(escape(name), "body position, m", *digits(position))
+    for body in motion.model.scene.listed_bodies:
+        position = motion.body(body.name).position[-1]
+        table.add_row(escape(body.name), "body position, m", *digits(position))
     return table
 
 

@@ -115,9 +115,9 @@ def _rod_table(solution: Solution) -> Table:
         table.add_row("", "tip tangent", *digits(tip.rotation[:, 2]))
         table.add_row("", "clamp force, N", *digits(base_wrench.force))
         table.add_row("", "clamp moment, N m", *digits(base_wrench.moment), end_section=True)
-    for name in solution.model.body:
-        pose = solution.body(name)
-        table.add_row(escape(name), "body position, m", *digits(pose.position))
+    for body in solution.model.scene.listed_bodies:
+        pose = solution.body(body.name)
+        table.add_row(escape(body.name), "body position, m", *digits(pose.position))
         table.add_row("", "body z axis", *digits(pose.rotation[:, 2]), end_section=True)
     return table
 
