@@ -26,10 +26,14 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     yield from _too_thin(model)
-    disks = dict.fromkeys(body.name for body, _ in body_pairs(model.scene) if body.thickness is not None)
-    if disks:
-        what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(disks)}"
-        yield Problem("obstacles", what, f"{remedy}; or take bodies with a radius alone, which are balls")
+    # Bodies that stand for rows of disks are rows again where the contact is smooth.
+    disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]
+    for of_bodies in (True, False):
+        named = dict.fromkeys(disk.name for disk in disks if disk.listed == of_bodies)
+        if named:
+            what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(named)}"
+            balls = "leave their thickness out, which makes them balls; or take [[disks]] and obstacles with a width, m"
+            yield Problem("obstacles", what, balls if of_bodies else remedy)
     moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
     if moving:
         what = (

@@ -15,7 +15,8 @@ from cosserat_casadi import Scene, SceneError, build, discretise, export, follow
 from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.loads.contact_layer import ContactLayer, push_on_disk
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene import Sphere
+from cosserat_casadi.motion.contact_checks import untouchable
+from cosserat_casadi.scene import Simulation, Sphere
 from tests.contact.test_friction import DURATION, GRAVITY, SLIP, slid
 
 LENGTH = 0.3
@@ -249,3 +250,14 @@ def test_refusals(changes: dict[str, Any], where: str, problem: str) -> None:
     with pytest.raises(SceneError) as refused:
         finger(**changes)
     assert (where, problem) in [(one.where, one.problem) for one in refused.value.problems]
+
+
+@pytest.mark.parametrize(("listed", "remedy"), [(False, "width"), (True, "balls")])
+def test_a_motion_of_disks_in_exact_contact_names_a_remedy(listed: bool, remedy: str) -> None:
+    """A row becomes smooth with a width; a body that is a disk would be refused beside one."""
+    tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
+    bodies = [{**body, "listed": listed} for body in tables["bodies"]]
+    model = build(scene_from_dict({**tables, "bodies": bodies}))
+    (problem,) = untouchable(model, Simulation(duration=1.0))
+    assert problem.problem.endswith("as they roll: d_0, d_1")
+    assert remedy in problem.remedy.split(";")[0]
