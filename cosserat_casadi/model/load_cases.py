@@ -8,7 +8,7 @@ has no column keeps the scene's values.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -150,32 +150,51 @@ def read_range(text: str) -> AskedRange:
     return AskedRange(name.strip(), low, high, int(values) if colon else None)
 
 
+def read_ranges(texts: Sequence[str], fault: Callable[[str, AskedRange], Problem | None]) -> dict[str, AskedRange]:
+    """The ranges that texts ask for, by column.
+
+    Args:
+        texts: of the ranges.
+        fault: of a text and its range: why that is refused, None where it is not.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    problems: list[Problem] = []
+    ranges: dict[str, AskedRange] = {}
+    for text in texts:
+        try:
+            asked = read_range(text)
+        except SceneError as error:
+            problems.extend(error.problems)
+            continue
+        problem = fault(text, asked)
+        if problem is None and asked.column in ranges:
+            problem = Problem("--range", f"{asked.column!r} has two ranges", "give one of them")
+        if problem is not None:
+            problems.append(problem)
+        ranges.setdefault(asked.column, asked)
+    if problems:
+        raise SceneError(*problems)
+    return ranges
+
+
 def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
     """Lower and upper end by column of ``column=low:high``.
 
     Raises:
         SceneError: with every fault.
     """
-    problems: list[Problem] = []
-    ends: dict[str, tuple[float, float]] = {}
-    for text in ranges:
-        try:
-            asked = read_range(text)
-        except SceneError as error:
-            problems.extend(error.problems)
-            continue
+
+    def fault(text: str, asked: AskedRange) -> Problem | None:
         if asked.column not in layout.columns:
-            problems.append(no_column("--range", asked.column, layout.columns))
-        elif asked.count is not None:
+            return no_column("--range", asked.column, layout.columns)
+        if asked.count is not None:
             problem = f"{text!r} counts values, and modes are chosen for a whole range"
-            problems.append(Problem("--range", problem, f"write {asked.column}={asked.low:g}:{asked.high:g}"))
-        elif asked.column in ends:
-            problems.append(Problem("--range", f"{asked.column!r} has two ranges", "give one of them"))
-        else:
-            ends[asked.column] = (asked.low, asked.high)
-    if problems:
-        raise SceneError(*problems)
-    return ends
+            return Problem("--range", problem, f"write {asked.column}={asked.low:g}:{asked.high:g}")
+        return None
+
+    return {column: (asked.low, asked.high) for column, asked in read_ranges(ranges, fault).items()}
 
 
 def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import read_range
+from cosserat_casadi.model.load_cases import AskedRange, read_ranges
 from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
 from cosserat_casadi.sweeps.grid_file import grid, paired_draws, read_tables, too_many_rows
 from cosserat_casadi.sweeps.scratch import BLOCK, MEMORY, Scratch
@@ -86,23 +86,14 @@ def range_table(ranges: Sequence[str], scratch: Scratch = MEMORY) -> Table:
     Raises:
         SceneError: with every fault.
     """
-    problems: list[Problem] = []
-    tables: dict[str, Any] = {}
-    for text in ranges:
-        try:
-            asked = read_range(text)
-        except SceneError as error:
-            problems.extend(error.problems)
-            continue
-        if asked.count is None:
-            problem = f"{text!r} does not say how many values"
-            problems.append(Problem("--range", problem, f"write {text}:21 for 21 of them"))
-        elif asked.column in tables:
-            problems.append(Problem("--range", f"{asked.column!r} has two ranges", "give one of them"))
-        else:
-            tables[asked.column] = {"from": asked.low, "to": asked.high, "count": asked.count}
-    if problems:
-        raise SceneError(*problems)
+
+    def fault(text: str, asked: AskedRange) -> Problem | None:
+        if asked.count is not None:
+            return None
+        return Problem("--range", f"{text!r} does not say how many values", f"write {text}:21 for 21 of them")
+
+    asked = read_ranges(ranges, fault)
+    tables = {column: {"from": one.low, "to": one.high, "count": one.count} for column, one in asked.items()}
     columns, values = grid(tables, "--range", scratch)
     return Table(columns, values, "--range", scratch=scratch)
 

@@ -160,7 +160,7 @@ def test_work_of_a_drive() -> None:
     motion = simulate(scene_from_dict(tables))
     assert motion.converged, motion.message
     assert_allclose(motion.joint("hinge").conjugate[-1], 1.0, rtol=0, atol=1e-9)
-    assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-5)
+    assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=2e-5)
     assert abs(motion.energy.work[-1]) > 0.1 * np.abs(motion.energy.potential).max()
 
 
