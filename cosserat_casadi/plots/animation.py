@@ -25,7 +25,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import BODIES, FAILURE, OBSTACLES, PLAIN_TEXT, actuator_colour, rod_colour, rod_style
+from cosserat_casadi.plots.colours import FAILURE, OBSTACLES, PLAIN_TEXT, actuator_colour, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces, surface_lines
@@ -357,7 +357,7 @@ class _Film:
             trail = canvas.line(path[:1], color="0.55", linewidth=1.2)
             lines.append(_Moving(trail, path))
         for name, outlines in shapes.outlines.items():
-            body = canvas.line(outlines[0], color=BODIES, linewidth=2.0, label=name)
+            body = canvas.line(outlines[0], linewidth=2.0, label=name, **shapes.outline_style(name))
             lines.append(_Moving(body, outlines))
         for index, (name, course) in enumerate(shapes.courses.items()):
             cable = canvas.line(course[0], color=actuator_colour(index), linewidth=1.2, label=name)

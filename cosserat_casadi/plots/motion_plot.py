@@ -17,7 +17,7 @@ from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
+from cosserat_casadi.plots.colours import CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
 from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
@@ -127,7 +127,9 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
             canvas.line(lines[row], linewidth=2.5, label=label, **style)
         for name, outlines in shapes.outlines.items():
             label = name if last else None
-            canvas.line(outlines[row], color=_faded(BODIES, share), linewidth=1.8, label=label)
+            style = shapes.outline_style(name)
+            style["color"] = _faded(style["color"], share)
+            canvas.line(outlines[row], linewidth=1.8, label=label, **style)
     for name, lines in shapes.rods.items():
         if motion.model.discrete.unloaded.floating_base(name) is None:
             canvas.markers(lines[-1, :1], **CLAMP)

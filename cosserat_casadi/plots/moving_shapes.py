@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.plots.canvas import FLAT
+from cosserat_casadi.plots.colours import BODIES, disk_colour
 from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import body_corners, disk_rim
 
@@ -28,6 +30,7 @@ class MovingShapes:
         times: shape (T,), s.
         rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
         outlines: closed outlines of bodies, and rims of disks, by what a legend calls them, shape (T, k, 3), m.
+        colours: of the outlines, by the same words.
         courses: courses of cables and chambers by actuator, shape (T, k, 3), m.
         followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
     """
@@ -35,6 +38,7 @@ class MovingShapes:
     times: FloatArray
     rods: dict[str, FloatArray]
     outlines: dict[str, FloatArray]
+    colours: dict[str, str]
     courses: dict[str, FloatArray]
     followed: dict[str, FloatArray]
 
@@ -49,6 +53,13 @@ class MovingShapes:
         """Largest extent of the whole motion, m."""
         extents = np.ptp(self.points, axis=0)
         return float(extents.max())
+
+    def outline_style(self, name: str) -> dict[str, Any]:
+        """Colour of an outline; that of a body without extent is a dot."""
+        style: dict[str, Any] = {"color": self.colours[name]}
+        if np.ptp(self.outlines[name][0], axis=0).max() <= FLAT * self.size:
+            style |= {"marker": "o", "markersize": 7}
+        return style
 
     @property
     def view(self) -> View:
@@ -67,6 +78,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
     """
     rods = {name: section_poses(model, name, SECTIONS, x, inputs).position for name in model.discrete.rods}
     outlines = {}
+    colours = {}
     followed = {}
     carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
     held = {support.rod for support in model.scene.supports}
@@ -82,6 +94,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
         world_R_body = rotations(poses.quaternion)
         corners = body_corners(model.scene, body)
         closed = np.concatenate([corners, corners[:1]])
+        colours[body.name] = BODIES
         outlines[body.name] = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, closed)
         followed[body.name] = poses.position
     for number, row in enumerate(model.scene.disks):
@@ -91,6 +104,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
             rim = np.einsum("tij,kj->tki", world_R_section, disk_rim(row))
             # A legend leaves out what begins with an underscore: it names a row once.
             name = f"_{number}_{disk}" if disk else row.name or "disks"
+            colours[name] = disk_colour(number)
             outlines[name] = sections.position[:, disk, None, :] + rim
     courses = {}
     for actuator in model.scene.actuators:
@@ -101,4 +115,4 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
             courses[actuator.name] = sections.position + np.einsum(
                 "tkij,jk->tki", across, known(offset_at(actuator, X)[0])
             )
-    return MovingShapes(times, rods, outlines, courses, followed)
+    return MovingShapes(times, rods, outlines, colours, courses, followed)

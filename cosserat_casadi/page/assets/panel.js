@@ -251,7 +251,7 @@ class Panel {
   showReadings() {
     const { position } = this.pose(this.point);
     const [factor, unit] = this.lengths;
-    const numbers = [...position].map((value) => (factor * value).toFixed(2)).join(", ");
+    const numbers = [...position].map((value) => (factor * value).toFixed(2).replace(/^-(0\.00)$/, "$1")).join(", ");
     const contacts = (this.state.contacts || []).map(({ words }) => words);
     const readings = [`${nameOf(this.facts.poses[this.point])} at (${numbers}) ${unit}`, ...contacts];
     document.getElementById("readings").replaceChildren(...readings.flatMap((words) => [words, document.createElement("br")]));
