@@ -213,7 +213,7 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def listed_bodies(self) -> list[Body]:
-        """Bodies that results list: those that stand for no disk and no joint."""
+        """Bodies that results list: bodies that stand for a disk or a joint are none."""
         return [body for body in self.bodies if body.listed]
 
     @property
