@@ -165,9 +165,9 @@ def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
 # Spin-up
 
 
-@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 1e-6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 2e-5 / 16, marks=pytest.mark.slow)])
 def test_spin_up_vs_independent_galerkin_method(spacing: float, atol: float) -> None:
-    """The base turns by a spline: the closer its knots, the nearer it comes to the angle of the reference."""
+    """The base turns by a cubic spline: knots twice as close bring it nearer to the angle of the reference by 2⁴."""
     time, lag = transients.SPIN_LAG
     found = in_turning_frame(transients.spin_up(spacing, duration=7.0, times=[3.0, 6.0, time]))
     assert_allclose(found[:2], transients.SPIN_TIP[:2], rtol=0, atol=atol)
