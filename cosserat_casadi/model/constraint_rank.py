@@ -83,8 +83,20 @@ def _at_a_random_shape(probe: DiscreteScene) -> System:
     """The equations at a shape that has nothing special, at the scene's inputs."""
     x = np.zeros(probe.size)
     strains = probe.unknowns.count(BlockKind.STRAIN)
-    x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains)
+    x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains) * _own_units(probe)
     return System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
+
+
+def _own_units(probe: DiscreteScene) -> FloatArray:
+    """Coordinates of all strains that bend each rod as one unit bends a rod alone, shape (strains,).
+
+    Beside a rod that is softer by far a unit bends a rod so little that it seems to be rigid.
+    """
+    parts = []
+    for rod in probe.rods.values():
+        lengths = [rod.length if component < 3 else 1.0 for component in rod.admitted]
+        parts.append(np.full(rod.size, 1.0 / np.max(np.multiply(rod.scales, lengths))))
+    return np.concatenate(parts)
 
 
 def _constraint_rows(system: System) -> FloatArray:
@@ -93,7 +105,9 @@ def _constraint_rows(system: System) -> FloatArray:
     jacobian = ca.evalf(SceneEquations(system).assembly.constraint_jacobian).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
-    return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))
+    rows = np.delete(jacobian[first:last], slice(first, last), axis=1)
+    rows[:, :first] *= _own_units(system.discrete)
+    return np.asarray(rows)
 
 
 def _rank(rows: FloatArray) -> int:

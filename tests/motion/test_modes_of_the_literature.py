@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Modes, modes_of, scene_from_dict
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.constraint_rank import check_constraints
 from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity
 
@@ -78,13 +79,21 @@ def stout(**changes: Any) -> Table:
     return {**STOUT, "rotary_inertia": STOUT["rotary_inertia"].tolist(), "length": SPAN, **changes}
 
 
-@pytest.mark.slow
-def test_stout_beam_on_two_pins() -> None:
-    """Bending with shear in both planes: Timoshenko's closed formula, and the digits of 256 elements of Exudyn."""
+def stout_on_two_pins() -> Table:
     bending = YOUNG * SECOND_MOMENT
     shear = SHEAR_FACTOR * SHEAR * AREA
     stiffness = {"bending_x": bending, "bending_y": bending, "shear_x": shear, "shear_y": shear}
-    found = frequencies(on_two_pins(**stout(strain=list(stiffness), stiffness=stiffness)), 6)
+    return on_two_pins(**stout(strain=list(stiffness), stiffness=stiffness))
+
+
+def test_a_beam_stiffer_than_its_hinges_by_far_is_not_taken_for_rigid() -> None:
+    check_constraints(scene_from_dict(stout_on_two_pins()))
+
+
+@pytest.mark.slow
+def test_stout_beam_on_two_pins() -> None:
+    """Bending with shear in both planes: Timoshenko's closed formula, and the digits of 256 elements of Exudyn."""
+    found = frequencies(stout_on_two_pins(), 6)
     assert_allclose(found, np.repeat([95.63398088, 332.23451364, 635.69628837], 2), rtol=1e-9, atol=0)
     assert_allclose(found[::2], [95.635645, 332.254, 635.769], rtol=2e-4, atol=0)
 

@@ -41,6 +41,8 @@ def _print_equilibrium(console: Console, solution: Solution, work: str, written:
     console.print(_rod_table(solution))
     if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
+    if solution.model.joint:
+        console.print(_joint_table(solution))
     if solution.model.scene.has_contact:
         console.print(_contact_table(solution))
     print_plain(console, _merit_sentence(solution, work))
@@ -151,6 +153,17 @@ def _actuator_table(solution: Solution) -> Table:
         state = solution.actuator(actuator.name)
         cells = [f"{quantity} {value:.6g} {units[quantity]}" for quantity, value in state.items()]
         table.add_row(escape(actuator.name), *cells)
+    return table
+
+
+def _joint_table(solution: Solution) -> Table:
+    """What acts along joints, where they are, and what their stops push with, a part of the first."""
+    table = table_of("joint", "effort", "at", "of stops")
+    for name in solution.model.joint:
+        state = solution.joint(name)
+        units = {"moment": "N m", "angle": "rad", "displacement": "m", "force": "N"}
+        units["stop"] = units["moment" if "moment" in state else "force"]
+        table.add_row(escape(name), *(f"{quantity} {value:.6g} {units[quantity]}" for quantity, value in state.items()))
     return table
 
 
