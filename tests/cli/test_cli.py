@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -769,3 +770,13 @@ def test_check_says_which_ranges_are_asked_for(wire: Path) -> None:
     assert done.returncode == 0, done.stderr
     (line,) = [line for line in done.stdout.splitlines() if "push.force.x=-0.25:0.5" in line]
     assert "asked for" in line
+
+
+def test_a_solve_prints_what_acts_along_joints(tmp_path: Path) -> None:
+    hinge = '[[joints]]\nname = "hinge"\nkind = "revolute"\nrod = "wire"\nat = 0\naxis = [0, 1, 0]\nstiffness = 0.5\n'
+    (tmp_path / "wire.toml").write_text("schema = 1\n[accuracy]\nmodes = 4\nnodes = 8\n" + WIRE + hinge)
+    done = cosserat("solve", "wire.toml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    ((moment, angle),) = re.findall(r"hinge │ moment (\S+) N m │ angle (\S+) rad", done.stdout)
+    assert float(moment) == pytest.approx(-0.5 * float(angle), rel=1e-4)
+    assert float(angle) > 0.01
