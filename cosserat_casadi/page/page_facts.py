@@ -56,7 +56,7 @@ def page_facts(solution: Solution, model: Model | None = None, asked: Given | No
     return {
         **facts_of_every_page(model, sliders(model, asked), points),
         "layout": drawn_layout(model),
-        "poses": [*({"rod": rod} for rod in model.discrete.rods), *({"body": body.name} for body in scene.bodies)],
+        "poses": [*({"rod": rod} for rod in model.discrete.rods), *map(_body_choice, scene.bodies)],
         "rods": {rod.name: _rod(scene, rod, i) for i, rod in enumerate(scene.rods)},
         "unloaded": [rounded(line[::STILL]) for line in shapes.unloaded.values()],
         "actuators": {actuator.name: _actuator(actuator, i) for i, actuator in enumerate(scene.actuators)},
@@ -91,6 +91,11 @@ def facts_of_every_page(model: SystemFunctions, of_inputs: Sequence[Slider], poi
         "least": rounded(points.min(axis=0)),
         "most": rounded(points.max(axis=0)),
     }
+
+
+def _body_choice(body: scenes.Body) -> dict[str, Any]:
+    """A body as one of the things whose pose is shown, which a user may choose where results list it."""
+    return {"body": body.name} if body.listed else {"body": body.name, "unlisted": True}
 
 
 def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:

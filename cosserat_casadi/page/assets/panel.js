@@ -12,7 +12,7 @@ class Panel {
     this.state = null;
     this.eigenvalues = null;
     // What a robot with a platform moves is the platform.
-    this.point = Math.max(facts.poses.findIndex((pose) => pose.body), 0);
+    this.point = Math.max(facts.poses.findIndex((pose) => pose.body && !pose.unlisted), 0);
     this.rows = [];
     this.waiting = [];
     // Told of every equilibrium that is shown.
@@ -98,7 +98,9 @@ class Panel {
       const label = element("label", field);
       label.append("of ");
       const choice = element("select", label);
-      this.facts.poses.forEach((pose, i) => choice.add(new Option(nameOf(pose), i, false, i === this.point)));
+      this.facts.poses.forEach((pose, i) => {
+        if (!pose.unlisted) choice.add(new Option(nameOf(pose), i, false, i === this.point));
+      });
       choice.onchange = () => {
         this.point = Number(choice.value);
         this.showReadings();
