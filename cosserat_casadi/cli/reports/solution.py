@@ -157,7 +157,7 @@ def _actuator_table(solution: Solution) -> Table:
 
 
 def _joint_table(solution: Solution) -> Table:
-    """What acts along joints, where they are, and what their stops push with, a part of the first."""
+    """Efforts along joints, their angles or displacements, and the pushes of their stops, parts of the efforts."""
     table = table_of("joint", "effort", "at", "of stops")
     for name in solution.model.joint:
         state = solution.joint(name)
