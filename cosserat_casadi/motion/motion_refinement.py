@@ -87,6 +87,9 @@ TOLD_AFTER = 3
 UNKNOWN_ORDER = 1.7
 """Power of the modes with which errors fall, before two distances tell; waves of a sudden load have 2.3."""
 
+HOPED = 4.0
+"""Least power with which a search gives up: that of short waves is below 1 until modes see them, and then 3 to 5."""
+
 SLOWEST = 0.25
 """Smallest such power: below it nothing converges."""
 
@@ -202,12 +205,16 @@ class _Search:
         """
         if len(self.levels) < 2:
             return float("inf")
-        return max(self.last.distance * self.left_over_distance, self.last.unseen)
+        return self.foreseen(self.last.modes, self.order)
 
-    @property
-    def left_over_distance(self) -> float:
+    def foreseen(self, modes: int, order: float) -> float:
+        """Error of the paths on so many modes, if it falls with a power of their number."""
+        left_now = max(self.last.distance * self.left_over_distance(order), self.last.unseen)
+        return float(left_now * (modes / self.last.modes) ** -order)
+
+    def left_over_distance(self, order: float) -> float:
         """Error of the paths that the modes of the last level leave, over their distance from the level before."""
-        left: float = (self.last.modes / self.levels[-2].modes) ** -self.order
+        left: float = (self.last.modes / self.levels[-2].modes) ** -order
         return SAFETY * left / (1.0 - left)
 
     def climb(self, ladder: Sequence[int]) -> int | None:
@@ -222,12 +229,11 @@ class _Search:
             return None
         if len(self.levels) < 3:
             return rung + 1
-        errors = [self.space_error * (modes / self.last.modes) ** -self.order for modes in ladder]
-        if errors[last] > self.tolerance:
+        if self.foreseen(ladder[last], max(self.order, HOPED)) > self.tolerance:
             return None
         # Not further than is foreseen well, and never to stay.
         for higher in range(rung + 1, min(rung + MOST_RUNGS, last)):
-            if errors[higher] <= SPACE_SHARE * self.tolerance:
+            if self.foreseen(ladder[higher], self.order) <= SPACE_SHARE * self.tolerance:
                 return higher
         return min(rung + MOST_RUNGS, last)
 
@@ -361,7 +367,7 @@ def _with_tolerance(search: _Search) -> Motion:
     finest = replace(search.last, history=timed.history)
     companions = [timed.companion]
     if len(search.levels) > 1:
-        companions.append(Companion(search.levels[-2].history, search.left_over_distance))
+        companions.append(Companion(search.levels[-2].history, search.left_over_distance(search.order)))
     return _judged(search, finest, search.space_error + timed.error, companions)
 
 

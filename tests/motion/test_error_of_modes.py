@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from numpy.testing import assert_allclose
 
+from cosserat_casadi.accuracy.levels import VERIFIED_MODES
 from cosserat_casadi.motion.motion_refinement import FASTEST, SAFETY, SLOWEST, ResolvedMotion, _Search
 from cosserat_casadi.scene.simulation import Simulation
 
 
-def search(modes: tuple[int, ...], order: float) -> _Search:
+def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3) -> _Search:
     """A search whose errors are modes^−order."""
     anything: Any = None
-    found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance=1e-3)
+    found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance)
     before = float("inf")
     for number in modes:
         error = float(number) ** -order
@@ -32,3 +34,13 @@ def test_errors_by_a_power_are_told_with_the_factor_of_safety(modes: tuple[int, 
 def test_orders_beyond_belief_are_bounded() -> None:
     assert search((6, 9, 12), 20.0).order == FASTEST
     assert search((6, 9, 12), 0.01).order == SLOWEST
+
+
+def test_waves_that_modes_do_not_see_yet_end_no_search() -> None:
+    """Errors of short waves hardly fall at first, and then with the fourth power: a search goes on if that would do."""
+    stagnant = search((9, 12, 16), 0.7, tolerance=0.01)
+    assert stagnant.foreseen(VERIFIED_MODES[-1], stagnant.order) > 0.09
+    rung = VERIFIED_MODES.index(16)
+    stagnant.levels[-1] = replace(stagnant.last, rung=rung)
+    assert stagnant.climb(VERIFIED_MODES) == rung + 3
+    assert replace(stagnant, tolerance=1e-4).climb(VERIFIED_MODES) is None
