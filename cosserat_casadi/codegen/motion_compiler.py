@@ -25,6 +25,7 @@ from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.going_on import StartOfMotion
+from cosserat_casadi.motion.history import functions_of_flight
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.repeated_call import RepeatedCall
@@ -217,7 +218,7 @@ def _residual(model: Model) -> list[ca.Function]:
     for number, tip in enumerate(model.tip.values()):
         at = tip.mx_in()
         tips.append(ca.Function(f"{TIP}{number}", at, tip.call(at), tip.name_in(), tip.name_out()))
-    return [residual, *tips]
+    return [residual, *tips, *functions_of_flight(model)]
 
 
 def _jacobians(model: Model) -> list[ca.Function]:

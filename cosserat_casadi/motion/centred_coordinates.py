@@ -14,7 +14,6 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -25,7 +24,7 @@ from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import flies_alone
 from cosserat_casadi.motion.one_sided import OneSided
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import RepeatedCall, repeated
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations, Residual
 from cosserat_casadi.rod.rod_motion import StrainRates
 
@@ -51,9 +50,11 @@ class CentredCoordinates:
 
     Args:
         model: of one rod that flies free, see :func:`can_be_centred`.
+        library: shared object that has the functions of :attr:`repeated`; None where there is none.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, library: str | None = None) -> None:
+        self._library = library
         ((_, entries),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
         self._model = model
         self._pose = np.arange(entries.start, entries.stop)
@@ -61,10 +62,15 @@ class CentredCoordinates:
         self._strains = np.delete(np.arange(model.size), self._pose)
         functions = _Functions(model)
         self._functions = functions
-        self._base = RepeatedCall(functions.base.expand())
+        self._base = repeated(functions.base, library)
         self._position = functions.position.expand()
         self._derivatives = functions.derivatives
         self._centred = RepeatedCall(functions.centred)
+
+    @property
+    def repeated(self) -> list[ca.Function]:
+        """The functions that every step calls."""
+        return [self._functions.base, self._composed([])]
 
     def to_model(self, instant: Instant) -> Instant:
         """A state in the unknowns of the model, from one in these coordinates."""
@@ -152,15 +158,15 @@ class CentredCoordinates:
     @cached_property
     def _dynamics(self) -> RepeatedCall:
         """(y, v, a, inputs, inputs_rate, inputs_acceleration) ↦ residual of the model."""
-        return self._composed([])
+        return repeated(self._composed([]), self._library)
 
     @cached_property
     def _pushed(self) -> RepeatedCall:
         """The same less the derivative of a weighted sum of positions, whose weights are the last argument."""
         # All obstacles face the same points.
-        return self._composed([facings(self._model)[0].points.push])
+        return repeated(self._composed([facings(self._model)[0].points.push]), None)
 
-    def _composed(self, pushes: list[ca.Function]) -> RepeatedCall:
+    def _composed(self, pushes: list[ca.Function]) -> ca.Function:
         dynamics = self._model.inverse_dynamics
         *_, value, rate, acceleration = dynamics.mx_in()
         y = [ca.MX.sym(word, self._size) for word in ("y", "v", "a")]
@@ -174,11 +180,7 @@ class CentredCoordinates:
             weights = ca.MX.sym("weights", push.size1_in(2))
             rows -= push(x, value, weights)
             arguments.append(weights)
-        function = ca.Function("centred_dynamics", arguments, [ca.densify(rows)])
-        # As scalars it takes half to nine tenths of the time.
-        if not chooses(dynamics):
-            function = function.expand()
-        return RepeatedCall(function)
+        return ca.Function("centred_dynamics", arguments, [ca.densify(rows)])
 
     def _with_base(self, own: ca.MX, base: ca.MX) -> ca.MX:
         """Unknowns of the model, or their rates, from those of the steps and those of the base."""
@@ -226,7 +228,7 @@ class _Functions:
     def base(self) -> ca.Function:
         """(y, v, a) ↦ unknowns of the base, their rates and accelerations beneath each other, 21×1."""
         orders = self._kernels.base(*self._states)
-        return ca.Function("base", self._symbols, [ca.densify(ca.vertcat(*orders))])
+        return ca.Function("centred_base", self._symbols, [ca.densify(ca.vertcat(*orders))])
 
     @cached_property
     def position(self) -> ca.Function:

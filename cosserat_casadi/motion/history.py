@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
@@ -22,7 +23,7 @@ from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
 from cosserat_casadi.motion.kernel_residual import KernelResidual
-from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
+from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free, functions_of_momentum
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.repeated_call import RepeatedCall
@@ -340,13 +341,25 @@ class FreeFlight:
         return of_steps, lambda instant: guards(self.to_model(instant))
 
 
-def free_flight(model: Model, p: FloatArray | None = None) -> FreeFlight:
-    """The coordinates of steps and the keeper of momentum of a model; arguments as of :func:`integrated`."""
+def free_flight(model: Model, p: FloatArray | None = None, library: str | None = None) -> FreeFlight:
+    """The coordinates of steps and the keeper of momentum of a model.
+
+    Args:
+        model: the model.
+        p: as of :func:`integrated`.
+        library: shared object that has :func:`functions_of_flight`; None where there is none.
+    """
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
-    coordinates = CentredCoordinates(model) if p is None and can_be_centred(model) else None
+    coordinates = CentredCoordinates(model, library) if p is None and can_be_centred(model) else None
     to_model = None if coordinates is None else coordinates.to_model
-    keeper = MomentumKeeper(model, to_model) if flies_free(model) else None
+    keeper = MomentumKeeper(model, to_model, library) if flies_free(model) else None
     return FreeFlight(coordinates, keeper)
+
+
+def functions_of_flight(model: Model) -> list[ca.Function]:
+    """The functions that every step of what flies free calls; none where something is held."""
+    functions = CentredCoordinates(model).repeated if can_be_centred(model) else []
+    return [*functions, *functions_of_momentum(model)] if flies_free(model) else functions
 
 
 def integrated(

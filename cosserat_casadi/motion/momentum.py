@@ -20,7 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import repeated
 from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
@@ -78,9 +78,12 @@ class MomentumKeeper:
         model: of what flies free, see :func:`flies_free`.
         to_model: a state in the unknowns of the model, from one in those of the steps; None where they are the same.
             In both a frame moves with what flies free, and its pose has the same entries.
+        library: shared object that has the functions of :func:`functions_of_momentum`; None where there is none.
     """
 
-    def __init__(self, model: Model, to_model: Callable[[Instant], Instant] | None = None) -> None:
+    def __init__(
+        self, model: Model, to_model: Callable[[Instant], Instant] | None = None, library: str | None = None
+    ) -> None:
         self._to_model = to_model or (lambda instant: instant)
         damped = any(rod.properties.mass_damping is not None for rod in model.discrete.rods.values())
         self._loaded = damped or bool(model.scene.loads)
@@ -93,11 +96,8 @@ class MomentumKeeper:
                 model.discrete.unknowns.of_kind(BlockKind.POSE), model.discrete.frames.values(), strict=True
             )
         ]
-        # As scalars they take a third to half of the time.
-        momentum, rate = (function.expand() for function in _functions(model))
-        self._rate = RepeatedCall(rate)
-        self._momentum = RepeatedCall(momentum)
-        self._momenta = RepeatedCall(momentum.map(len(OF_A_BODY)))
+        calls = [repeated(function, library) for function in functions_of_momentum(model)]
+        self._momentum, self._rate, self._momenta = calls
 
     def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
@@ -167,12 +167,19 @@ class MomentumKeeper:
         return np.block([[mass * np.eye(3), of_turns[:3]], [of_turns[:3].T, of_turns[3:]]])
 
 
-def _functions(model: Model) -> tuple[ca.Function, ca.Function]:
-    """Momentum (x, v, inputs, rate), and its rate along a motion (x, v, a, inputs, rate, acceleration), 6×1 each."""
+def functions_of_momentum(model: Model) -> list[ca.Function]:
+    """Momentum, its rate, momenta: momentum of (x, v, inputs, rate), 6×1, at one state, and at four side by side.
+
+    The rate is that along a motion, of (x, v, a, inputs, rate, acceleration), 6×1.
+    """
     x, v, a = (ca.MX.sym(name, model.size) for name in ("x", "v", "a"))
     inputs, rate, acceleration = (ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration"))
     momentum = ca.Function(
-        "momentum", [x, v, inputs, rate], [ca.densify(ca.vertcat(*model.momentum(x, v, inputs, rate)))]
+        "momentum",
+        [x, v, inputs, rate],
+        [ca.densify(ca.vertcat(*model.momentum(x, v, inputs, rate)))],
+        ["x", "v", "inputs", "rate"],
+        ["momentum"],
     )
     # One symbol for all that changes: one sweep for its direction, where each of four would cost as much.
     state = ca.MX.sym("state", 2 * model.size + 2 * model.inputs.size)
@@ -180,4 +187,8 @@ def _functions(model: Model) -> tuple[ca.Function, ca.Function]:
     parts = ca.vertsplit(state, np.cumsum([0, *sizes]).tolist())
     along = ca.jtimes(momentum(*parts), state, ca.vertcat(v, a, rate, acceleration))
     along = ca.graph_substitute(along, [state], [ca.vertcat(x, v, inputs, rate)])
-    return momentum, ca.Function("momentum_rate", [x, v, a, inputs, rate, acceleration], [ca.densify(along)])
+    momentum_rate = ca.Function("momentum_rate", [x, v, a, inputs, rate, acceleration], [ca.densify(along)])
+    states = [ca.MX.sym(name, len(OF_A_BODY) * size) for name, size in zip(momentum.name_in(), sizes, strict=True)]
+    columns = [ca.reshape(state, -1, len(OF_A_BODY)) for state in states]
+    together = ca.horzcat(*[momentum(*one) for one in zip(*[ca.horzsplit(c) for c in columns], strict=True)])
+    return [momentum, momentum_rate, ca.Function("momenta", states, [ca.densify(together)])]

@@ -168,8 +168,9 @@ class Simulator:
         return moving_inputs(self.model)
 
     @cached_property
-    def _flight(self) -> FreeFlight:
-        return free_flight(self.model)
+    def _flights(self) -> dict[str | None, FreeFlight]:
+        """Coordinates and momentum of what flies free, by the shared object that has their functions."""
+        return {}
 
     @cached_property
     def displacements(self) -> FloatArray:
@@ -298,6 +299,9 @@ class Simulator:
         pieces = self.moving.pieces(self.simulation.duration)
         rates = np.zeros(self.model.size) if self.start.v is None else self.start.v
         kernels = None if self.source is None else self.source.kernels(self.model)
+        library = None if kernels is None else kernels.library
+        if library not in self._flights:
+            self._flights[library] = free_flight(self.model, library=library)
         history = integrated(
             self.model,
             pieces,
@@ -309,7 +313,7 @@ class Simulator:
             phases=self.start.phases,
             kernels=kernels,
             resume=self.start.resume,
-            flight=self._flight,
+            flight=self._flights[library],
             stops=self.watch.guards,
         )
         if self.source is not None:

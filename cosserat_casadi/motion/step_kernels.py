@@ -32,6 +32,12 @@ class StepKernels:
     jacobians: Callable[..., list[FloatArray]]
     stepper: Stepper | None = None
 
+    @property
+    def library(self) -> str | None:
+        """The shared object that has the residual; None where CasADi's virtual machine runs it."""
+        call = self.residual
+        return call.code.path if isinstance(call, RepeatedCall) and call.code is not None else None
+
 
 class KernelSource(Protocol):
     """Chooses the kernels for the motions of one simulation."""

@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -15,7 +16,10 @@ from cosserat_casadi import ExportError, Model, build, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight
+from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.step_kernels import interpreted
 from cosserat_casadi.motion.trajectory import StepStatistics
 from tests.codegen.test_load import needs_compiler
@@ -83,6 +87,28 @@ def test_machine_code_gives_the_same_numbers(family: str) -> None:
     for found, matrix in zip(compiled.jacobians(*at), plain.jacobians(*at), strict=True):
         assert found.shape == (model.size, model.size)
         assert_allclose(found, matrix, rtol=0, atol=1e-13 * np.abs(matrix).max())
+
+
+def test_what_flies_free_takes_its_steps_in_machine_code() -> None:
+    """The residual in centred coordinates, the state of the base and momenta: every step calls them."""
+    flown = arm()
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}
+    flown["rods"][0].update(base=base, rotary_inertia=[1e-4, 1e-4, 2e-4])
+    model = moving(flown)
+    library = MotionCompiler(always=True).kernels(model).library
+    plain, compiled = free_flight(model), free_flight(model, library=library)
+    assert library is not None
+    for function in functions_of_flight(model):
+        random = np.random.default_rng(5)
+        at = [0.3 * random.standard_normal(function.numel_in(i)) for i in range(function.n_in())]
+        found = ca.external(function.name(), library)
+        expected = function.call(at)[0].full()
+        assert_allclose(found.call(at)[0].full(), expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    equations = equations_of(model, moving_inputs(model).pieces(0.2)[0])
+    for flight, machine_code in ((plain, False), (compiled, True)):
+        residual = flight.in_steps(equations, None)[0].residual
+        assert isinstance(residual, KernelResidual)
+        assert (residual.call.code is not None) == machine_code
 
 
 def test_results_of_a_call_are_kept_by_the_next_one() -> None:
