@@ -9,6 +9,7 @@ from __future__ import annotations
 import subprocess
 import tempfile
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,9 +73,14 @@ class Compiled:
 
 def compiled(function: ca.Function) -> Compiled:
     """A function called ``timed``, compiled and run."""
+    return compiled_sources(external_sources([function], "timed", "int"))
+
+
+def compiled_sources(sources: Mapping[str, str]) -> Compiled:
+    """Source and header of such a function, by file name, compiled and run."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for file, text in {**external_sources([function], "timed", "int"), "timer.c": TIMER}.items():
+        for file, text in {**sources, "timer.c": TIMER}.items():
             (folder / file).write_text(text)
         begin = time.perf_counter()
         for source in ("timed.c", "timer.c"):

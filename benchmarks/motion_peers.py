@@ -1,8 +1,9 @@
 """A second of motion of a soft cantilever, let go from straight under its weight: this package beside others.
 
 Largest error of the tip over the length at eleven times, against digits of a chain of rigid slices, and processor time.
-All in one run, with an empty cache of compiled code; other work on the machine lengthens wall time, and processor time
-less. `--write` puts the table into docs/accuracy.md and draws docs/figures/motion_peers.png.
+All in one run, with an empty cache of compiled code; contestants take turns, for other work on the machine lengthens
+processor time too. `--write` puts the table into docs/accuracy.md and draws docs/figures/motion_peers.png. `--only`
+names packages that are run alone, ours with the first of ours: their rows replace those of the page.
 """
 
 from __future__ import annotations
@@ -10,8 +11,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -21,7 +21,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 from doc_tables import put, table
-from motion_rivals import INTERVAL, LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
+from motion_rivals import INTERVAL, LENGTH, LIMITS, REPEATS, TIMES, Paths, Rival, Run, prepared, rivals
 from rich.progress import Progress
 
 from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate
@@ -42,8 +42,11 @@ OURS = "cosserat, Python"
 COMPILED = "cosserat, Python, compiled"
 ON_CHOSEN = "cosserat, one motion on the modes chosen"
 IN_C = "cosserat, the same in exported C"
-C_STEPS = {1e-2: 1e-2, 1e-3: 4e-3, 1e-4: 1e-3, 1e-5: 5e-4}
+C_STEPS = {1e-2: 1e-2, 1e-3: 4e-3, 1e-4: 1e-3}
 """Size of the steps in C on the modes of a tolerance, s: shorter ones hardly make the error smaller."""
+
+HERE = (OURS, COMPILED, ON_CHOSEN, IN_C)
+"""Our contestants."""
 
 HEADINGS = ("package", "", "tip error / L", "processor, s", "with first call, s")
 ROWS_OF_OTHERS = 22
@@ -55,7 +58,7 @@ def released(tolerance: float, strain: str = "reissner") -> Scene:
     return read_scene(REFERENCE / "release_planar.toml", settings)
 
 
-def ours() -> Iterator[Rival]:
+def ours(packages: Collection[str]) -> Iterator[Rival]:
     """Ours at each tolerance: with all that chooses and estimates, and the last motion once more by itself.
 
     By default equations are compiled where that pays; from the second time on the models are built. With ``compiled``
@@ -63,25 +66,32 @@ def ours() -> Iterator[Rival]:
     """
     for tolerance in TOLERANCES:
         motions = list[Motion]()
-        rival = timed(OURS, f"tolerance {tolerance:.0e}", partial(chosen, tolerance, None, motions))
+        rival = prepared(OURS, f"tolerance {tolerance:.0e}", partial(chosen, tolerance, None, motions))
         motion = motions[-1]
         words = f"tolerance {tolerance:.0e}, estimate {motion.error_estimate:.0e}"
         if not motion.converged:
             yield Rival(OURS, f"{words}: {motion.outcome.name.lower()}")
             continue
-        yield replace(rival, setting=words)
-        yield timed(COMPILED, words, partial(chosen, tolerance, True, motions))
-        yield timed(
-            ON_CHOSEN, f"tolerance {tolerance:.0e}: {motion.model.size} unknowns", partial(again, motion, tolerance)
-        )
-        step = C_STEPS[tolerance]
-        yield timed(IN_C, f"{motion.model.size} unknowns, {1e3 * step:g} ms", partial(in_c, motion.model, step))
+        rival.setting = words
+        yield rival
+        unknowns = f"{motion.model.size} unknowns"
+        if COMPILED in packages:
+            yield prepared(COMPILED, words, partial(chosen, tolerance, True, motions))
+        if ON_CHOSEN in packages:
+            yield prepared(ON_CHOSEN, f"tolerance {tolerance:.0e}: {unknowns}", partial(again, motion, tolerance))
+        if IN_C in packages and tolerance in C_STEPS:
+            step = C_STEPS[tolerance]
+            yield prepared(IN_C, f"{unknowns}, {1e3 * step:g} ms", partial(in_c, motion.model, step))
 
 
 def chosen(tolerance: float, compiled: bool | None, motions: list[Motion]) -> Run:
     """The motion with all that chooses and estimates; it is appended to the motions."""
 
+    folder = Path(os.environ[VARIABLE]).with_name("compiled" if compiled else "default")
+
     def run() -> Paths:
+        # What one of both has compiled is nothing to the other.
+        os.environ[VARIABLE] = str(folder)
         motions.append(simulate(released(tolerance), compiled=compiled))
         return np.asarray(motions[-1].tip("rod").position)
 
@@ -151,8 +161,19 @@ def cells(row: Rival, true: Paths) -> list[str]:
     return [row.package, row.setting, f"{error(row.tip, true):.1e}", f"{row.seconds:.2g}", f"{row.first:.2g}"]
 
 
+def merged(lines: list[list[str]], only: Collection[str]) -> list[list[str]]:
+    """Rows of the table on the page, of which those of some packages are replaced by new ones."""
+    on_page = DOCS.joinpath("accuracy.md").read_text().split(BEGIN)[1].split(END)[0].splitlines()
+    old = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in on_page if line.startswith("| ")][2:]
+    both = [line for line in old if line[0] not in only] + lines
+    return [line for package in (*HERE, *LIMITS) for line in both if line[0] == package]
+
+
 def without_shear(rows: Sequence[Rival], true: Paths) -> str:
     """What the equations of a cable without shear and extension leave out, and its errors against those equations."""
+    if not any(row.package == "MuJoCo" and row.tip is not None for row in rows):
+        kept = [line for line in DOCS.joinpath("accuracy.md").read_text().splitlines() if "MuJoCo's equations:" in line]
+        return kept[0].removeprefix("* ")
     stiff = simulate(released(1e-4, "kirchhoff")).tip("rod").position
     own = [f"{error(row.tip, stiff):.1e}" for row in rows if row.package == "MuJoCo" and row.tip is not None]
     return (
@@ -174,12 +195,12 @@ STYLES = {
 """Colour and marker of every contestant."""
 
 
-def drawn(rows: Sequence[Rival], true: Paths) -> Any:
+def drawn(lines: Sequence[Sequence[str]]) -> Any:
     """Error against processor time."""
     figure = figure_class()(figsize=(7.2, 4.8), layout="constrained")
     axes = figure.subplots()
     for package, (colour, marker) in STYLES.items():
-        points = [(row.seconds, error(row.tip, true)) for row in rows if row.package == package and row.tip is not None]
+        points = [(float(line[3]), float(line[2])) for line in lines if line[0] == package and line[2] != "–"]
         if not points:
             continue
         times, errors = zip(*sorted(points), strict=True)
@@ -191,21 +212,33 @@ def drawn(rows: Sequence[Rival], true: Paths) -> Any:
     return figure
 
 
-def main(write: Annotated[bool, typer.Option("--write", help="Put table and figure into docs.")] = False) -> None:
+def main(
+    write: Annotated[bool, typer.Option("--write", help="Put table and figure into docs.")] = False,
+    only: Annotated[
+        list[str] | None, typer.Option(help="A package of the table to run alone; may be repeated.")
+    ] = None,
+) -> None:
     """Print the table."""
     true = true_tips()
+    names = only or [*HERE, *LIMITS]
     with TemporaryDirectory() as cache, Progress(transient=True) as bar:
-        os.environ[VARIABLE] = cache
-        contestants = chain(ours(), rivals())
-        rows = list(bar.track(contestants, total=4 * len(TOLERANCES) + ROWS_OF_OTHERS, description="moving"))
+        os.environ[VARIABLE] = f"{cache}/default"
+        contestants = chain(ours(names) if OURS in names else (), rivals(names))
+        rows = list(bar.track(contestants, total=4 * len(TOLERANCES) + ROWS_OF_OTHERS, description="preparing"))
+        for _ in bar.track(range(REPEATS), description="moving"):
+            for row in rows:
+                row.again()
     limits = [f"{package}: {words}" for package, words in LIMITS.items()]
     remarks = "\n".join(f"* {words}" for words in [*limits, without_shear(rows, true)])
-    text = f"{table(HEADINGS, [cells(row, true) for row in rows])}\n\n{remarks}"
+    lines = [cells(row, true) for row in rows]
+    if only:
+        lines = merged(lines, only)
+    text = f"{table(HEADINGS, lines)}\n\n{remarks}"
     print(text)
     if write:
         picture = f"![Error of the tip against processor time]({FIGURE})"
         put(DOCS / "accuracy.md", BEGIN, END, f"{text}\n\n{picture}")
-        write_figure(drawn(rows, true), DOCS / FIGURE, dpi=110)
+        write_figure(drawn(lines), DOCS / FIGURE, dpi=110)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,6 @@ from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
@@ -71,12 +70,6 @@ TOLD_ERROR = 0.28
 
 TOLD_ERROR_OF_DAMPED = 0.12
 """The same of rods that are all damped."""
-
-CLEAR = 0.3
-"""Share of the error allowed to steps that they may use where two sets of modes of a free rod are told apart.
-
-Its waves would blur their distance.
-"""
 
 FINE = 2e-4
 """Tolerance below which the search begins on the second rung: the first one would not do."""
@@ -422,24 +415,19 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
     if not search.levels:
         damped = all(rod.damping is not None for rod in search.scene.rods)
         foreseen = TOLD_ERROR_OF_DAMPED if damped else TOLD_ERROR
-        search.step_tolerance = (_of_steps(search, simulator.model) / foreseen) ** (1.0 / SLOPE)
+        search.step_tolerance = (TIME_SHARE * search.tolerance / foreseen) ** (1.0 / SLOPE)
         if any(obstacle.is_smooth for obstacle in search.scene.obstacles):
             # Steps that happen to end where a rod meets an obstacle err less than their like.
             search.step_tolerance = min(search.step_tolerance, search.tolerance / TIGHTER)
     elif len(search.levels) == TOLD_AFTER and not given:
         told = told_by_coarser(search.last, search.step_tolerance)
-        wanted = _of_steps(search, simulator.model)
+        wanted = TIME_SHARE * search.tolerance
         if told.error > wanted:
             search.step_tolerance /= factor_for(told.error, wanted)
     if np.isfinite(search.step_tolerance):
         return simulator.controlled(search.step_tolerance)
     # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
     return simulator.stepped(search.last.history.statistics.largest_step)
-
-
-def _of_steps(search: _Search, model: Model) -> float:
-    """Error of the paths that steps may leave while sets of modes are told apart."""
-    return TIME_SHARE * search.tolerance * (CLEAR if flies_free(model) else 1.0)
 
 
 def _step_tolerance(search: _Search, timed: TimedHistory) -> float:

@@ -22,29 +22,38 @@ SLOWER = {"flying"}
 FINE = {"planar_release", "release_planar", "release_damped"}
 """Cases whose references are not chains of 64 slices in space: those differ by 2e-5 from motions on 12 to 28 modes."""
 
+DIGITS_OF_ITS_OWN = {"flying": Path(__file__).parents[2] / "benchmarks" / "reference" / "kicked_rod.json"}
+"""Files of digits that replace those of cases: 64 slices leave 5e-4 of the length, ten times what the case says."""
+
 UNDERSTATED = {"release_damped": 2.0}
 """Factors on uncertainties that are too small: a Galerkin method in the strains by scipy's Radau is as far off."""
 
 
 def reference(path: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(path.with_suffix(".json").read_text())
-    return found
+    """Times, positions of the tip and their uncertainty, m."""
+    own = DIGITS_OF_ITS_OWN.get(path.stem)
+    if own is not None:
+        digits: dict[str, Any] = json.loads(own.read_text())
+        return digits
+    case = json.loads(path.with_suffix(".json").read_text())
+    uncertainty = UNDERSTATED.get(path.stem, 1.0) * case["uncertainty"]
+    return {**case["expected"], "uncertainty": uncertainty}
 
 
 def simulated(path: Path, tolerance: float) -> Motion:
     """The motion at the times of the reference."""
-    times = json.dumps(reference(path)["expected"]["times"])
+    times = json.dumps(reference(path)["times"])
     return simulate(read_scene(path, (f"simulation.tolerance={tolerance}", f"simulation.times={times}")))
 
 
 def check_path(path: Path, tolerance: float) -> None:
     """The tip's path is within the tolerance, and the error is not larger than was estimated."""
-    case = reference(path)
+    expected = reference(path)
     motion = simulated(path, tolerance)
     assert motion.converged, motion.message
     length = motion.model.scene.rods[0].length
-    uncertainty = UNDERSTATED.get(path.stem, 1.0) * case["uncertainty"] / length
-    distances = np.linalg.norm(motion.tip().position - np.array(case["expected"]["tip"]), axis=1)
+    uncertainty = expected["uncertainty"] / length
+    distances = np.linalg.norm(motion.tip().position - np.array(expected["tip"]), axis=1)
     error = distances.max() / length
     assert error <= max(tolerance, uncertainty)
     assert error <= motion.error_estimate + uncertainty
