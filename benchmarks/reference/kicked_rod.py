@@ -56,12 +56,12 @@ def cross(u: Array, v: Array) -> Array:
 
 def turned(R: Array, vectors: Array) -> Array:
     """R v."""
-    return np.einsum("ijn,jn->in", R, vectors)
+    return np.asarray(np.einsum("ijn,jn->in", R, vectors))
 
 
 def seen(R: Array, vectors: Array) -> Array:
     """Rᵀ v."""
-    return np.einsum("jin,jn->in", R, vectors)
+    return np.asarray(np.einsum("jin,jn->in", R, vectors))
 
 
 def kick(time: float) -> tuple[Array, Array]:
