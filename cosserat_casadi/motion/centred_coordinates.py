@@ -50,7 +50,7 @@ class CentredCoordinates:
 
     Args:
         model: of one rod that flies free, see :func:`can_be_centred`.
-        library: shared object that has the functions of :attr:`repeated`; None where there is none.
+        library: shared object that has the functions of :attr:`repeated`; None without one.
     """
 
     def __init__(self, model: Model, library: str | None = None) -> None:

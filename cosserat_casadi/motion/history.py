@@ -347,7 +347,7 @@ def free_flight(model: Model, p: FloatArray | None = None, library: str | None =
     Args:
         model: the model.
         p: as of :func:`integrated`.
-        library: shared object that has :func:`functions_of_flight`; None where there is none.
+        library: shared object that has :func:`functions_of_flight`; None without one.
     """
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
     coordinates = CentredCoordinates(model, library) if p is None and can_be_centred(model) else None

@@ -78,7 +78,7 @@ class MomentumKeeper:
         model: of what flies free, see :func:`flies_free`.
         to_model: a state in the unknowns of the model, from one in those of the steps; None where they are the same.
             In both a frame moves with what flies free, and its pose has the same entries.
-        library: shared object that has the functions of :func:`functions_of_momentum`; None where there is none.
+        library: shared object that has the functions of :func:`functions_of_momentum`; None without one.
     """
 
     def __init__(
