@@ -154,13 +154,13 @@ def test_work_of_a_drive() -> None:
     tables = scene(
         [link("a", modulus=RIGID, base=ALONG)],
         [{**HINGE, "angle": 0.0}],
-        simulation={"duration": 0.25, "frames": 3, "tolerance": 1e-4},
+        simulation={"duration": 0.25, "frames": 3, "tolerance": 1e-5},
         motions=[move],
     )
     motion = simulate(scene_from_dict(tables))
     assert motion.converged, motion.message
     assert_allclose(motion.joint("hinge").conjugate[-1], 1.0, rtol=0, atol=1e-9)
-    assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=2e-5)
+    assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-6)
     assert abs(motion.energy.work[-1]) > 0.1 * np.abs(motion.energy.potential).max()
 
 
