@@ -234,6 +234,25 @@ def test_where_other_contacts_hold_on_richer_modes_the_error_is_not_known(tmp_pa
     assert found.within_tolerance is False
 
 
+@pytest.mark.slow
+def test_a_point_that_stands_for_a_line_has_its_error(tmp_path: Path) -> None:
+    """A drum that the rod lies on under 26 N, of which the library knows contact at a point."""
+    obstacle = {"name": "drum", "kind": "capsule", "from": [0.4, -1, -0.824], "to": [0.4, 1, -0.824], "radius": 0.8}
+    of_drum = {"rods": [FLAT], "loads": [PUSH], "obstacles": [obstacle]}
+    drum, exact = (scene(**of_drum, accuracy={"tolerance": own}) for own in (1e-3, 1e-7))
+    library = exported_contact(drum, tmp_path / "drum", np.zeros((0, 3)), 4, 8)
+    found = library.loaded.solve(down(26.0))
+    assert [contact.kind for contact in found.contacts] == ["point"]
+    wanted = solve(build(exact, discretise(exact, 7)), down(26.0))
+    assert [contact.kind for contact in wanted.contacts] == ["line"]
+    off = np.linalg.norm(found.tips["rod"][:3] - wanted.tip().position)
+    (own,), (line,) = found.contacts, wanted.contacts
+    assert off > 1e-4
+    assert found.error_estimate is not None
+    assert found.within_tolerance is False
+    assert max(abs(own.start - line.start), abs(own.end - line.end), off) < found.error_estimate < 0.4
+
+
 def test_an_error_is_of_a_solution(bar: ContactLibrary) -> None:
     """A state that is none has none; a turn makes no estimate, and its solution has one on request."""
     found = bar.loaded.start()

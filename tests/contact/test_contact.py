@@ -25,8 +25,13 @@ from cosserat_casadi import (
 from cosserat_casadi.bench.plan import make_plan
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import stability_margin
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_search import Settling
+from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
+from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.errors import SceneError
+from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution
 from tests.conftest import CASES
@@ -136,6 +141,16 @@ def check_forces_sum(solution: Solution, loads: np.ndarray) -> None:
 @pytest.fixture(scope="module")
 def table() -> Solution:
     return solved(TABLE, modes=9)
+
+
+DRUM = """
+[[obstacles]]
+name = "drum"
+kind = "capsule"
+from = [0.5, -1.0, -1.03]
+to = [0.5, 1.0, -1.03]
+radius = 1.0
+"""
 
 
 @pytest.fixture(scope="module")
@@ -617,3 +632,24 @@ def test_second_variation_of_a_point_that_slides() -> None:
             corners = energy(one + two) - energy(one - two) - energy(two - one) + energy(-one - two)
             hessian[i, j] = hessian[j, i] = corners / (4 * step**2)
     assert_allclose(bar.smallest_eigenvalue, np.linalg.eigvalsh(hessian)[0], rtol=1e-5, atol=0)
+
+
+def test_points_that_stand_for_a_line_have_its_error() -> None:
+    """A rod that is pressed on a drum harder than before lies down: a point holds to the tolerance, and is far off."""
+    loose = parse_scene((ROD + PUSH + DRUM).replace("1e-6", "1e-3"))
+    model = build(loose, discretise(loose, 5))
+    less = solve(model, {"push.force": [0, 0, -3.0]})
+    inputs = model.inputs.pack({"push.force": [0, 0, -6.0]})
+    settling = Settling(without_contacts(loose), inputs, Grids(model.discretisation), NewtonSettings(), 1e-3)
+    held, holds = settling.run([(state_in(less.model.scene), less)], admits=lambda _: True)
+    assert held is not None and holds
+    assert [touch.kind for touch in held.state.touches] == ["point"]
+    exact = solve(build(parse_scene((ROD + PUSH + DRUM).replace("1e-6", "1e-7")), model.discretisation), inputs)
+    true = pose_distance(held.solution, exact, DENSE)
+    places = [abs(held.state.places[0] - contact.start) for contact in exact.contacts]
+    assert true < held.unmet() and max(places) < held.unmet() < 3 * max(places)
+    # Contacts that hold more closely are looked for from there.
+    answer = solve(model, inputs, start=less)
+    assert [contact.kind for contact in answer.contacts] == ["line"]
+    assert answer.error_estimate is not None
+    assert pose_distance(answer, exact, DENSE) < answer.error_estimate < 1e-3

@@ -87,6 +87,9 @@ typedef struct {
   kernel tips;     /* position and quaternion of every tip and body */
   kernel tip_rate; /* its rate, likewise */
   kernel contacts; /* forces of the contacts in world axes, and at their ends */
+#if CONTACT_ESTIMATES_ERRORS
+  kernel watched; /* positions over lengths, quaternions, and lengths of cables over those of their rods */
+#endif
 #if CONTACT_ACTUATORS
   kernel actuators; /* efforts, and what they work on */
 #endif

@@ -1,6 +1,8 @@
-/* The error of an answer: its distance to that of the same contacts on modes and intervals added.
+/* The error of an answer: its distance to that of the same contacts on modes and intervals added, and what it enters.
 
    cosserat_casadi/equilibrium/contact/contact_answer_error.py does the same in Python. */
+
+enum { WATCHED = POSE_SIZE * CONTACT_WATCHED_POSES + CONTACT_WATCHED_CABLES };
 
 /* Forces of contacts on the richer modes: those at the ends stay, and those along lines have coefficients more. */
 static void widen_forces(const arrangement *from, const real *old, const arrangement *to, real *z) {
@@ -22,22 +24,50 @@ static real turn_between(const real *a, const real *b) {
   return 4 * asin(smaller(sqrt(smaller(minus, plus)) / 2, 1));
 }
 
-/* The largest difference of the poses of tips and bodies: positions over the length, orientations in rad. */
-static real tip_distance(const arrangement *at, const real *z, const arrangement *richer, const real *fine,
-                         const real *inputs, workspace *work) {
-  real poses[POSE_SIZE * CONTACT_POSES];
+/* The largest difference of watched poses and cables: positions and lengths over those of rods, orientations in rad. */
+static real watched_distance(const arrangement *at, const real *z, const arrangement *richer, const real *fine,
+                             const real *inputs, workspace *work) {
+  real one[WATCHED];
+  real other[WATCHED];
   real largest = 0;
-  call(at->tips, z, inputs, poses, 0, work);
-  call(richer->tips, fine, inputs, work->poses, 0, work);
-  for (int r = 0; r < POSES; r++) {
-    const real *one = poses + POSE_SIZE * r;
-    const real *other = work->poses + POSE_SIZE * r;
+  call(at->watched, z, inputs, one, 0, work);
+  call(richer->watched, fine, inputs, other, 0, work);
+  for (int k = 0; k < CONTACT_WATCHED_POSES; k++) {
+    const int turned = 3 * CONTACT_WATCHED_POSES + 4 * k;
     real way[3];
-    for (int i = 0; i < 3; i++) way[i] = one[i] - other[i];
-    largest = larger(largest, norm_of(way, 3) / POSED_LENGTH[r]);
-    largest = larger(largest, turn_between(one + 3, other + 3));
+    for (int i = 0; i < 3; i++) way[i] = one[3 * k + i] - other[3 * k + i];
+    largest = larger(largest, larger(norm_of(way, 3), turn_between(one + turned, other + turned)));
   }
+  for (int i = WATCHED - CONTACT_WATCHED_CABLES; i < WATCHED; i++) largest = larger(largest, fabs(one[i] - other[i]));
   return largest;
+}
+
+/* How far poses, places and forces may be off because contacts hold up to a tolerance alone; the nodes stand in the
+   workspace. Depth and angle of what is inside an obstacle beside its lines, how far it reaches beyond points there, and
+   what pulls. */
+static real unmet(const arrangement *at, const real *z, workspace *work) {
+  penetration found[MOST_FAULTS];
+  const real largest = largest_force(at, z);
+  const int count = find_penetrations(at, z, SHALLOW, found, work);
+  real off = 0;
+  for (int k = 0; k < at->touches; k++) off = larger(off, largest * pull_of(at, z, k, largest));
+  for (int i = 0; i < count; i++) {
+    real first = 1, last = 0;
+    int along = 0;
+    int lines = 0;
+    for (int k = 0; k < at->touches; k++) {
+      const touch own = touch_at(at, z, k);
+      if (own.rod != found[i].rod || own.obstacle != found[i].obstacle) continue;
+      first = smaller(first, own.start);
+      last = larger(last, own.end);
+      lines |= own.is_line;
+      along |= own.is_line && own.start < found[i].deepest && found[i].deepest < own.end;
+    }
+    if (along) continue;
+    off = larger(off, larger(found[i].depth, found[i].angle));
+    if (first <= last && !lines) off = larger(off, larger(first - found[i].start, found[i].end - last));
+  }
+  return off;
 }
 
 /* The largest difference of places and forces of contacts; forces count relative to the largest, or to EI/l2. */
@@ -80,8 +110,8 @@ static real estimated_error(int number, const real *z, const real *inputs, works
   if (newton(richer, inputs, fine, MAX_ITERATIONS, work, &info).status != CONTACT_CONVERGED) return 1;
   call(richer->nodes, fine, inputs, work->nodes, index, work);
   if (find_faults(richer, fine, changes, &depth_of_lines, work) > 0) return 1;
-  const real of_tips = tip_distance(at, z, richer, fine, inputs, work);
-  const real distance = larger(of_tips, contact_distance(at, z, richer, fine, inputs, work));
+  const real of_poses = larger(unmet(richer, fine, work), watched_distance(at, z, richer, fine, inputs, work));
+  const real distance = larger(of_poses, contact_distance(at, z, richer, fine, inputs, work));
   return isfinite(distance) ? ERROR_SAFETY * distance + ERROR_FLOOR : 1;
 }
 

@@ -11,6 +11,7 @@ typedef struct {
   real end;
   real deepest;
   real depth;
+  real angle; /* largest one between the rod and the obstacle, rad */
   int touch; /* number of the contact that it is at; -1 of none */
 } penetration;
 
@@ -120,10 +121,11 @@ static real step_along(const arrangement *at, const real *z, const pair_entry *p
 }
 
 /* Adds a section to the stretches that are inside obstacles; joins it to the last one where the rod has not left. */
-static int add_inside(penetration *found, int count, int joins, const pair_entry *pair, real X, real depth) {
+static int add_inside(penetration *found, int count, int joins, const pair_entry *pair, real X, real depth, real angle) {
   if (joins) {
     penetration *own = found + count - 1;
     own->end = X;
+    own->angle = larger(own->angle, angle);
     if (depth > own->depth) {
       own->depth = depth;
       own->deepest = X;
@@ -131,31 +133,34 @@ static int add_inside(penetration *found, int count, int joins, const pair_entry
     return count;
   }
   if (count == MOST_FAULTS) return count;
-  const penetration begun = {pair->rod, pair->obstacle, X, X, X, depth, -1};
+  const penetration begun = {pair->rod, pair->obstacle, X, X, X, depth, angle, -1};
   found[count] = begun;
   return count + 1;
 }
 
-/* Finds the stretches of one rod that are inside one obstacle, behind those found before. Returns the number of all. */
-static int find_inside(const arrangement *at, const real *z, const pair_entry *pair, penetration *found, int count,
-                       workspace *work) {
+/* Finds the stretches of one rod that are deeper inside one obstacle than is admitted, behind those found before. Returns
+   the number of all. */
+static int find_inside(const arrangement *at, const real *z, const pair_entry *pair, real admitted, penetration *found,
+                       int count, workspace *work) {
   real X = 0, before = 0, before_last = 0;
   real gap_before = HUGE_VAL, gap_before_last = HUGE_VAL;
   int is_inside = 0;
   for (;;) {
     const real gap = gap_of_section(at, z, pair, X, work);
     /* Between the last three sections the rod may enter for less than a step. */
-    if (gap_before <= gap && gap_before <= gap_before_last && gap_before >= -ACCEPTED &&
+    if (gap_before <= gap && gap_before <= gap_before_last && gap_before >= -admitted &&
         gap_before < FASTEST * (X - before_last) && !is_on_line(at, z, pair, before)) {
       const real lowest = lowest_between(at, z, pair, before_last, X, work);
       const real least = gap_of_section(at, z, pair, lowest, work);
-      if (least < -ACCEPTED) count = add_inside(found, count, 0, pair, lowest, -least);
+      if (least < -admitted) count = add_inside(found, count, 0, pair, lowest, -least, 0);
     }
-    if (gap < -ACCEPTED) {
-      count = add_inside(found, count, is_inside, pair, X, -gap);
+    const real angle = X > 0 ? fabs(gap - gap_before) / (X - before) : 0;
+    if (is_inside) found[count - 1].angle = larger(found[count - 1].angle, angle);
+    if (gap < -admitted) {
+      count = add_inside(found, count, is_inside, pair, X, -gap, angle);
       if (count == MOST_FAULTS) return count;
     }
-    is_inside = gap < -ACCEPTED;
+    is_inside = gap < -admitted;
     if (X == 1) return count;
     before_last = before;
     gap_before_last = gap_before;
@@ -165,10 +170,11 @@ static int find_inside(const arrangement *at, const real *z, const pair_entry *p
   }
 }
 
-/* Finds the stretches that are inside obstacles; the nodes stand in the workspace. Returns their number. */
-static int find_penetrations(const arrangement *at, const real *z, penetration *found, workspace *work) {
+/* Finds the stretches that are deeper inside obstacles than is admitted; the nodes stand in the workspace. Returns their
+   number. */
+static int find_penetrations(const arrangement *at, const real *z, real admitted, penetration *found, workspace *work) {
   int count = 0;
-  for (int p = 0; p < PAIRS; p++) count = find_inside(at, z, PAIR + p, found, count, work);
+  for (int p = 0; p < PAIRS; p++) count = find_inside(at, z, PAIR + p, admitted, found, count, work);
   return count;
 }
 

@@ -163,7 +163,7 @@ static int find_faults(const arrangement *at, const real *z, change *changes, re
     changes[count].options = 0;
     instead_of_pulling(touch_at(at, z, k), changes + count++);
   }
-  const int inside = join_at_contacts(at, z, found, find_penetrations(at, z, found, work));
+  const int inside = join_at_contacts(at, z, found, find_penetrations(at, z, ACCEPTED, found, work));
   for (int i = 0; i < inside && count < MOST_FAULTS; i++) {
     const int number = found[i].touch;
     touch beside;

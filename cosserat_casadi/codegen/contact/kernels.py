@@ -26,6 +26,7 @@ from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.model_functions import resolution_index
 from cosserat_casadi.model.strain_margins import strain_margins
 from cosserat_casadi.model.system import System
+from cosserat_casadi.model.watched import watched
 
 WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
 """Kernels of every arrangement, in the order of the table in C."""
@@ -33,7 +34,10 @@ WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts"
 ACTUATORS = "actuators"
 """Kernel more of a scene that has such."""
 
-RICHER_WORDS = ("residual", "jacobian", "nodes", "tips", "contacts")
+WATCHED = "watched"
+"""Kernel more where errors are estimated: the poses and lengths whose errors they are."""
+
+RICHER_WORDS = ("residual", "jacobian", "nodes", "contacts", WATCHED)
 """The same on the modes and intervals that an estimate of errors adds."""
 
 
@@ -66,6 +70,7 @@ class ArrangementKernels:
             "tips": lambda: self._kernel("tips", [self._tips()]),
             "tip_rate": lambda: self._rate_kernel("tip_rate", self._tips()),
             "contacts": lambda: self._kernel("contacts", [self._resultants(), self._point_forces()]),
+            WATCHED: lambda: self._kernel(WATCHED, [watched(self._written.system).column]),
             ACTUATORS: lambda: self._kernel(ACTUATORS, self._actuators()),
         }
         return [kernels[word]() for word in self.words]
@@ -218,7 +223,8 @@ class ArrangementKernels:
 
 def words_of(chosen: Chosen) -> tuple[str, ...]:
     """Kernels of every arrangement of a library, in the order of the table in C."""
-    return (*WORDS, ACTUATORS) if chosen.scene.actuators else WORDS
+    words = (*WORDS, WATCHED) if chosen.richer else WORDS
+    return (*words, ACTUATORS) if chosen.scene.actuators else words
 
 
 def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:

@@ -17,6 +17,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.model.watched import watched_cables, watched_sections
 from cosserat_casadi.rod.strain import DiscreteRod
 
 POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshev.chebyshev_polynomials}
@@ -99,7 +100,6 @@ class Tables:
             *(self._modes(level) for level in self._levels),
             self._rod_table(),
             self._pair_table(),
-            *([_reals("POSED_LENGTH", self._posed_lengths)] if self.chosen.richer else []),
             *(
                 self._arrangement(level, number, own)
                 for level in self._levels
@@ -177,11 +177,11 @@ class Tables:
         return _table("rod_entry", "ROD", "RODS", entries)
 
     @property
-    def _posed_lengths(self) -> FloatArray:
-        """Lengths that errors of the poses of tips, then of bodies, are relative to, m."""
+    def watched_counts(self) -> tuple[int, int]:
+        """Numbers of the poses and of the cables whose errors are estimated."""
         discrete = self.chosen.equations[0].nominal.model.discrete
-        of_rods = [discrete.rods[name].properties.length for name in self.rods]
-        return np.array([*of_rods, *(discrete.body_frame(body).length for body in discrete.bodies)])
+        sections = sum(len(watched_sections(self.chosen.scene, name)) for name in self.rods)
+        return sections + len(discrete.bodies), len(watched_cables(discrete))
 
     def _pair_table(self) -> str:
         entries = []

@@ -1,4 +1,4 @@
-"""The error of an answer in exact contact, from its distance to one with modes and intervals added."""
+"""The error of an answer in exact contact: its distance to one with modes and intervals added, and what it enters."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_notes
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, without_contacts
 from cosserat_casadi.equilibrium.metrics import SAFETY, with_estimate
 from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.required_modes import signal_modes
@@ -44,8 +46,8 @@ def estimated_in_contact(solution: Solution, newton: NewtonSettings | None = Non
 
 
 def beside_finer(solution: Solution, finer: Solution) -> Solution:
-    """A solution with the error that a finer one gives it, which is not known where other contacts come out."""
-    if finer.converged and same_contacts(solution, finer):
+    """A solution with the error that a finer one gives it, which is not known where others touch there."""
+    if finer.converged and _extents(solution).keys() == _extents(finer).keys():
         return with_contact_error(solution, finer)
     return replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN)
 
@@ -73,18 +75,27 @@ def same_contacts(first: Solution, second: Solution) -> bool:
 def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
     """A solution with its distance to a finer one: that of poses, of places of contact, or of forces, the largest.
 
-    Forces count relative to EI/ℓ² or to the largest one, whichever is more.
+    Forces count relative to EI/ℓ² or to the largest one, whichever is more. Of contacts that are not alike the whole
+    force is compared, and where they begin and end. What contacts of the finer one leave unmet counts too: in the same
+    contacts neither tells of those that should be there.
     """
     judged = with_estimate(coarse, fine)
     discrete = coarse.model.discrete
     units = [discrete.contact_unit(contact.owner, of_body=contact.of_body) for contact in coarse.contacts]
     largest = max([0.0, *units, *(float(np.linalg.norm(contact.force)) for contact in fine.contacts)])
-    distances = [0.0]
-    for first, second in zip(coarse.contacts, fine.contacts, strict=True):
-        distances += [abs(first.start - second.start), abs(first.end - second.end)]
-        forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
-        distances.append(float(np.abs(forces).max()) / largest)
-        distances += [distance / largest for distance in _between_sections(first, second)]
+    distances = [equilibrium_in(fine).unmet()]
+    if same_contacts(coarse, fine):
+        for first, second in zip(coarse.contacts, fine.contacts, strict=True):
+            distances += [abs(first.start - second.start), abs(first.end - second.end)]
+            forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
+            distances.append(float(np.abs(forces).max()) / largest)
+            distances += [distance / largest for distance in _between_sections(first, second)]
+    else:
+        others = _extents(fine)
+        for owner, (start, end, force) in _extents(coarse).items():
+            start_of_other, end_of_other, other_force = others[owner]
+            distances += [abs(start - start_of_other), abs(end - end_of_other)]
+            distances.append(float(np.abs(force - other_force).max()) / largest)
     contact_error = SAFETY * max(distances)
     assert judged.error_estimate is not None
     assert judged.shape_error_estimate is not None
@@ -93,6 +104,16 @@ def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
         error_estimate=max(judged.error_estimate, contact_error),
         shape_error_estimate=max(judged.shape_error_estimate, contact_error),
     )
+
+
+def _extents(solution: Solution) -> dict[tuple[str, str, bool], tuple[float, float, FloatArray]]:
+    """First and last abscissa at which each rod, or body, touches each obstacle, and the whole force, N."""
+    extents: dict[tuple[str, str, bool], tuple[float, float, FloatArray]] = {}
+    for touch in solution.contacts:
+        owner = touch.owner, touch.obstacle, touch.of_body
+        start, end, force = extents.get(owner, (touch.start, touch.end, np.zeros(3)))
+        extents[owner] = min(start, touch.start), max(end, touch.end), force + touch.force
+    return extents
 
 
 def _between_sections(first: Contact, second: Contact) -> list[float]:

@@ -59,6 +59,9 @@ OPENING = 0.3
 ALIKE = 0.05
 """Places of contact that differ by less make the same attempt."""
 
+SHALLOW = 1e-12
+"""Depth, relative to the length, that is rounding beside a point of contact."""
+
 SAMPLES = np.linspace(0.0, 1.0, 41)
 """Places along a stretch at which its force per length is looked at."""
 
@@ -147,10 +150,13 @@ class ContactEquilibrium:
         for rod, obstacle in pairs(self.placed.model.scene):
             X = np.union1d(DENSE, self._beside_contacts(rod))
             gaps = gap_along(self.solution, rod, obstacle, X)
+            slopes = np.abs(np.gradient(gaps, X))
             for stretch in runs(gaps < -tolerance):
                 inside = X[stretch]
                 deepest = int(np.argmin(gaps[stretch]))
-                yield Penetrated(rod, obstacle.name, inside[0], inside[-1], inside[deepest], -gaps[stretch][deepest])
+                places = inside[0], inside[-1], inside[deepest]
+                angle = float(slopes[stretch].max())
+                yield Penetrated(rod, obstacle.name, *places, -gaps[stretch][deepest], angle)
         for body, obstacle in body_pairs(self.placed.model.scene):
             gap = body_gap(self.solution, body, obstacle)
             if gap < -tolerance:
@@ -167,6 +173,24 @@ class ContactEquilibrium:
         """How deep any rod is inside an obstacle, relative to its length."""
         return max((penetrated.depth for penetrated in self.penetrations(0.0)), default=0.0)
 
+    def unmet(self) -> float:
+        """How far poses, places and forces may be off because contacts hold up to a tolerance alone.
+
+        A stretch inside an obstacle, where points stand for a line of contact, has the error of its depth and of the
+        angle at which it enters, which turns all that is beyond it; points beside it would be a line that begins and
+        ends where it does. What pulls should not be there. Along lines the rod is as deep as its modes leave it.
+        """
+        off = [0.0, *(pull * self.largest_force for _, pull in self.pulls())]
+        for penetrated in self.penetrations(SHALLOW):
+            touches = [touch for touch in self.state.touches if penetrated.concerns(touch)]
+            if any(penetrated.is_along(touch) for touch in touches):
+                continue
+            off += [penetrated.depth, penetrated.angle]
+            if touches and not any(touch.is_line for touch in touches):
+                off.append(min(touch.start for touch in touches) - penetrated.start)
+                off.append(penetrated.end - max(touch.end for touch in touches))
+        return max(off)
+
 
 @dataclass(frozen=True)
 class Penetrated:
@@ -179,6 +203,7 @@ class Penetrated:
         end: of its last one.
         deepest: of the one that is deepest inside.
         depth: there, relative to the length of the rod.
+        angle: largest one between the rod and the obstacle, rad; 0 of a body.
         of_body: whether it is a body.
     """
 
@@ -188,6 +213,7 @@ class Penetrated:
     end: float
     deepest: float
     depth: float
+    angle: float = 0.0
     of_body: bool = False
 
     def joined(self, other: Penetrated) -> Penetrated:
@@ -195,11 +221,17 @@ class Penetrated:
         deeper = self if self.depth >= other.depth else other
         return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
 
+    def concerns(self, touch: Touch) -> bool:
+        """Whether a contact is of the same rod, or body, with the same obstacle."""
+        return (touch.owner, touch.obstacle, touch.of_body) == (self.owner, self.obstacle, self.of_body)
+
     def is_at(self, touch: Touch) -> bool:
         """Whether it begins or ends at a contact."""
-        if (touch.owner, touch.obstacle, touch.of_body) != (self.owner, self.obstacle, self.of_body):
-            return False
-        return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
+        return bool(self.concerns(touch) and touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
+
+    def is_along(self, touch: Touch) -> bool:
+        """Whether it is inside a line of contact: it is the error of polynomials then."""
+        return bool(touch.is_line and touch.start < self.deepest < touch.end)
 
 
 @dataclass
@@ -371,8 +403,8 @@ def next_states(found: ContactEquilibrium, tolerance: float) -> Iterator[Contact
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
     changes = [Replacement(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
     for penetrated, touch in _by_touch(found, tolerance):
-        # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
-        if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
+        # No change of the state mends what is inside a line.
+        if touch is not None and penetrated.is_along(touch):
             continue
         if touch not in pulling:
             changes.append(Replacement(touch, tuple(_instead_of_entering(penetrated, touch))))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, product
 from math import inf
@@ -72,7 +72,7 @@ def solve_contact(
     first = first_state(cushioned)
     # Where thin bars cut through their cushions before the loads are full, the contacts there may hold all the same.
     guesses = _guesses(cushioned, first) if cushioned.converged else [(first, cushioned)]
-    found, holds = settling.run(guesses, admits=lambda shape: not passes_through(cushioned, shape, deepest=inf))
+    found, holds = _held(settling, guesses, admits=lambda shape: not passes_through(cushioned, shape, deepest=inf))
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
     if found is None:
@@ -89,10 +89,29 @@ def solve_contact(
 
 def settled_near(settling: Settling, start: Solution) -> ContactEquilibrium | None:
     """The equilibrium to which the contacts of a solution lead; None where none holds, or rods would pass through."""
-    found, holds = settling.run(
-        [(state_in(start.model.scene), start)], admits=lambda shape: not passes_through(start, shape)
+    found, holds = _held(
+        settling, [(state_in(start.model.scene), start)], admits=lambda shape: not passes_through(start, shape)
     )
     return found if holds else None
+
+
+def _held(
+    settling: Settling,
+    guesses: Sequence[tuple[ContactState, Solution]],
+    admits: Callable[[Solution], bool],
+) -> tuple[ContactEquilibrium | None, bool]:
+    """Contacts that hold to the tolerance, as :meth:`Settling.run` finds them.
+
+    Where points that enter an obstacle by less than the tolerance stand for a line the places of contact are further
+    off: the depth is as the square of that distance. Then contacts are looked for from there that hold more closely.
+    """
+    found, holds = settling.run(guesses, admits)
+    if found is None or not holds or found.unmet() <= settling.tolerance:
+        return found, holds
+    closer = replace(settling, tolerance=max(settling.tolerance**2, LEAST_TOLERANCE))
+    closest, holds_closer = closer.run([(found.state, found.solution)], admits)
+    settling.iterations = closer.iterations
+    return (closest if holds_closer else found), True
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
