@@ -143,31 +143,18 @@ def with_notes(solution: Answer) -> Answer:
     return replace(solution, message=solution.message + _tolerance_note(solution) + _friction_note(solution))
 
 
-FRICTION_OF_OBSTACLES = (
+FRICTION_OF_CONTACT = (
     " Friction acts in motion and on paths: one equilibrium would be held in many shapes, and this one has none."
 )
-"""A sentence on an equilibrium of rods that rub on obstacles."""
-
-FRICTION_OF_RODS = " Friction between rods acts in motion alone, and is left out."
-"""A sentence on equilibria of rods that rub on each other."""
+"""A sentence on an equilibrium of rods that rub on obstacles, or on each other."""
 
 FRICTION_OF_JOINTS = " Friction of joints acts in motion alone, and is left out."
 """A sentence on equilibria of scenes with joints that rub."""
 
 
-def left_out_friction(scene: Scene, *, touching: bool) -> str:
-    """Sentences on friction that acts in motion alone; empty where there is none.
-
-    Args:
-        scene: the scene.
-        touching: whether rods touch each other.
-    """
-    words = ""
-    if touching and any(contact.friction for contact in scene.rod_contacts):
-        words += FRICTION_OF_RODS
-    if any(joint.rubs for joint in scene.joints):
-        words += FRICTION_OF_JOINTS
-    return words
+def left_out_friction(scene: Scene) -> str:
+    """A sentence on friction of joints, which acts in motion alone; empty where there is none."""
+    return FRICTION_OF_JOINTS if any(joint.rubs for joint in scene.joints) else ""
 
 
 def _friction_note(solution: Equilibrium[Any]) -> str:
@@ -175,9 +162,8 @@ def _friction_note(solution: Equilibrium[Any]) -> str:
     if not solution.converged or not isinstance(solution, Solution):
         return ""
     scene = solution.model.scene
-    touching = bool(solution.contacts)
-    of_obstacles = touching and scene.rubs and solution.model.inputs.memory is None
-    return (FRICTION_OF_OBSTACLES if of_obstacles else "") + left_out_friction(scene, touching=touching)
+    of_contact = solution.contacts and scene.rubs and solution.model.inputs.memory is None
+    return (FRICTION_OF_CONTACT if of_contact else "") + left_out_friction(scene)
 
 
 def _tolerance_note(solution: Equilibrium[Any]) -> str:

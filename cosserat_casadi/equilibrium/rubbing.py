@@ -1,4 +1,4 @@
-"""Stretches of rods that rub on obstacles, and whether they stick or slip."""
+"""Stretches of rods that rub on obstacles, or on each other along paths, and whether they stick or slip."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ SLIPS = 1.0 - 1e-6
 
 @dataclass(frozen=True)
 class RubbingStretch:
-    """A stretch of a rod that an obstacle with friction presses, and that sticks or slips as a whole.
+    """A stretch of a rod that an obstacle or a rod with friction presses, and that sticks or slips as a whole.
 
     Attributes:
-        obstacle: name of the obstacle.
+        obstacle: name of the obstacle, or of the other rod.
         rod: name of the rod.
         start: abscissa X at which the stretch begins.
         end: abscissa at which it ends.
@@ -82,13 +82,30 @@ def _nodes(model: Model) -> Iterator[tuple[Any, slice]]:
 
 
 def _stretches(model: Model, slip: FloatArray) -> Iterator[RubbingStretch]:
+    end = 0
     for load, span in _nodes(model):
-        own = slip[span]
         nodes = known(model.at().discrete.rods[load.rod].grid.nodes)
         # Nodes stand for the rod to the middle between them and their neighbours.
         ends = np.concatenate([[0.0], (nodes[1:] + nodes[:-1]) / 2, [1.0]])
-        for slips in (False, True):
-            for part in runs((own >= 0.0) & ((own >= SLIPS) == slips)):
-                yield RubbingStretch(
-                    load.obstacle.name, load.rod, float(ends[part.start]), float(ends[part.stop]), slips
-                )
+        yield from _alike(load.obstacle.name, load.rod, ends, slip[span])
+        end = span.stop
+    for pair in model.discrete.pairs if end < len(slip) else ():
+        if pair.friction > 0.0:
+            sections = pair.sections[0]
+            ends = np.arange(sections + 1) / sections
+            yield from _alike(pair.rods[1], pair.rods[0], ends, slip[end : end + sections])
+            end += sections
+
+
+def _alike(obstacle: str, rod: str, ends: FloatArray, slip: FloatArray) -> Iterator[RubbingStretch]:
+    """Stretches of neighbours that stick, then of those that slip.
+
+    Args:
+        obstacle: what presses.
+        rod: name of the rod.
+        ends: abscissae between which the neighbours lie, shape (k + 1,).
+        slip: of each, shape (k,).
+    """
+    for slips in (False, True):
+        for part in runs((slip >= 0.0) & ((slip >= SLIPS) == slips)):
+            yield RubbingStretch(obstacle, rod, float(ends[part.start]), float(ends[part.stop]), slips)

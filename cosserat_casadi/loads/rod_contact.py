@@ -15,6 +15,10 @@ Everything is a function of squared distances: value, gradient and second deriva
 rods are parallel, cross, or coincide. Sections stand for as much rod as lies between them, and their sum converges as
 the third derivative of u is bounded: half as far apart, the ripple along a rod falls by 2⁴.
 
+Friction is Coulomb's, of each pair by its own force. In motion it is regularised by the slip speed. Along a path a pair
+that sticks is held by a spring of the stiffness μ F/s, which slips where it is dragged by the way s: s is the same
+however hard F the sections press. What is pressed harder while it sticks gives back energy, μ F s/2 at most.
+
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
 the bounding balls of two panels meet is mapped over all pairs of panels, inside one that is only called where those of
 both rods meet. So rods that are apart cost the sums over their sections, and others one comparison, and one sum, for
@@ -38,7 +42,10 @@ DATA = 3
 """Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
 
 MOTION = 6
-"""Numbers of the motion of a section, which stand behind its data: velocity, m/s, and angular velocity, rad/s."""
+"""Numbers of the motion of a section, which stand behind its data: velocity, m/s, and angular velocity, rad/s.
+
+Along a path displacement, m, and rotation since its last point, the axis times the sine of the angle.
+"""
 
 STILL = ca.DM(MOTION, 0)
 """Motion of sections at rest."""
@@ -47,8 +54,11 @@ LAW = 5
 """Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
 
 It is so far at least. Of two rods every pair counts; of one and itself each pair once. The coefficient of friction and
-the slip speed, m/s, follow.
+the slip speed, m/s, follow; along a path the way at which sections slip, m.
 """
+
+NO_WAY = 1e-9
+"""Way, relative to that at which sections slip, or distance, relative to that of touching, that has no direction."""
 
 FAR = -1.0
 """Depth, in widths, of sections that do not meet."""
@@ -111,21 +121,34 @@ def pair_kernels() -> PairKernels:
     )
 
 
-@cache
-def friction_kernel() -> ca.Function:
-    """(position, data and motion, position, data and motion, law) ↦ [force; moment] on the first, on the second, 12×1.
+@dataclass(frozen=True)
+class PairInMotion:
+    """Two sections that touch, and how they move past each other.
 
-    Coulomb's law of :mod:`cosserat_casadi.loads.contact_layer` with the relative velocity of the points of both
-    sections that touch. They are one point on the line of the centres, so that neither a sum nor a moment remains.
+    Attributes:
+        arguments: symbols (position, data and motion, position, data and motion, law).
+        arms: from the centre of each to the point that touches, 3×1, m.
+        pressing: force between them, 1×1, N.
+        sliding: relative velocity, or way, of their points that touch, along the surface, 3×1, m/s or m.
     """
+
+    arguments: list[ca.SX]
+    arms: list[ca.SX]
+    pressing: ca.SX
+    sliding: ca.SX
+
+
+def _pair_in_motion() -> PairInMotion:
+    """Two sections in symbols."""
     places = [ca.SX.sym(name, 3) for name in ("first", "second")]
     data = [ca.SX.sym(name, DATA + MOTION) for name in ("first_data", "second_data")]
     law = ca.SX.sym("law", LAW)
-    width, stiffness, nearest, friction, slip_speed = ca.vertsplit(law)
+    width, stiffness, nearest, _, _ = ca.vertsplit(law)
     (length, radius, along), (other_length, other_radius, other_along) = (ca.vertsplit(own[:DATA]) for own in data)
     touching = radius + other_radius
     apart = places[0] - places[1]
-    square = ca.sumsqr(apart)
+    # A section that is paired with itself is at no distance, and does not count.
+    square = ca.fmax(ca.sumsqr(apart), (NO_WAY * touching) ** 2)
     inside = ca.fmax((touching + width) ** 2 - square, 0.0)
     meets = other_along - along >= nearest
     # Minus the derivative of the energy with the distance d, over d.
@@ -134,9 +157,35 @@ def friction_kernel() -> ca.Function:
     speeds = [own[DATA : DATA + 3] + ca.cross(own[DATA + 3 :], arm) for own, arm in zip(data, arms, strict=True)]
     velocity = speeds[0] - speeds[1]
     sliding = velocity - apart * (ca.dot(apart, velocity) / square)
-    force = -friction * by_distance * ca.sqrt(square) / ca.sqrt(ca.sumsqr(sliding) + slip_speed**2) * sliding
-    loads = ca.vertcat(force, ca.cross(arms[0], force), -force, -ca.cross(arms[1], force))
-    return ca.Function("contact_friction", [places[0], data[0], places[1], data[1], law], ca.cse([loads]))
+    arguments = [places[0], data[0], places[1], data[1], law]
+    return PairInMotion(arguments, arms, by_distance * ca.sqrt(square), sliding)
+
+
+@cache
+def friction_kernel(along_path: bool) -> ca.Function:
+    """(position, data and motion, position, data and motion, law) ↦ [force; moment] on the first, on the second, 12×1.
+
+    Coulomb's law of :mod:`cosserat_casadi.loads.contact_layer` with the relative velocity of the points of both
+    sections that touch. They are one point on the line of the centres, so that neither a sum nor a moment remains.
+    Along a path the way of these points stands for it, and sections slip where it is as long as the law says.
+    """
+    pair = _pair_in_motion()
+    *_, friction, slip = ca.vertsplit(pair.arguments[LAW_ARGUMENT])
+    if along_path:
+        length = ca.fmax(ca.sqrt(ca.sumsqr(pair.sliding) + (NO_WAY * slip) ** 2), slip)
+    else:
+        length = ca.sqrt(ca.sumsqr(pair.sliding) + slip**2)
+    force = -friction * pair.pressing / length * pair.sliding
+    loads = ca.vertcat(force, ca.cross(pair.arms[0], force), -force, -ca.cross(pair.arms[1], force))
+    return ca.Function("contact_friction", pair.arguments, ca.cse([loads]))
+
+
+@cache
+def way_kernel() -> ca.Function:
+    """The same ↦ way of the points that touch times the force between them, and that force, 4×1, N m and N."""
+    pair = _pair_in_motion()
+    weighted = ca.vertcat(pair.pressing * pair.sliding, pair.pressing)
+    return ca.Function("contact_way", pair.arguments, ca.cse([weighted]))
 
 
 def _panels(data: int = DATA) -> list[ca.MX]:
@@ -193,21 +242,29 @@ def panel_gradient() -> ca.Function:
 
 
 @cache
-def panel_friction() -> ca.Function:
+def panel_way() -> ca.Function:
+    """The same with motions behind the data ↦ sums of :func:`way_kernel` for the sections of the first, 4×PANEL."""
+    arguments = _panels(DATA + MOTION)
+    return ca.Function("way", arguments, [_over_second(_by_pair(way_kernel(), arguments))])
+
+
+@cache
+def panel_friction(along_path: bool) -> ca.Function:
     """The same with motions behind the data ↦ [force; moment] of friction on the sections of both, 6×PANEL each."""
     arguments = _panels(DATA + MOTION)
-    first, second = ca.vertsplit(_by_pair(friction_kernel(), arguments), 6)
+    first, second = ca.vertsplit(_by_pair(friction_kernel(along_path), arguments), 6)
     results = [_over_second(first), _over_first(second)]
     # Directions are multiplied with one Jacobian, which is put together from those of the pairs.
-    options = {"custom_jacobian": _friction_jacobian(arguments, results), "jac_penalty": 0.0, "never_inline": True}
+    jacobian = _friction_jacobian(arguments, results, along_path)
+    options = {"custom_jacobian": jacobian, "jac_penalty": 0.0, "never_inline": True}
     friction = ca.Function("friction_of_panels", arguments, results, options)
     symbols = _panels(DATA + MOTION)
     return ca.Function("friction", symbols, friction.call(symbols))
 
 
-def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix]) -> ca.Function:
+def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix], along_path: bool) -> ca.Function:
     """Derivatives of friction on both panels with positions, data and law, which is constant."""
-    kernel = friction_kernel()
+    kernel = friction_kernel(along_path)
     symbols = kernel.sx_in()
     (loads,) = kernel.call(symbols)
     parts = ca.vertsplit(loads, 6)
@@ -280,7 +337,7 @@ class SectionsInContact:
     Attributes:
         positions: world axes, 3×S, m, with S a multiple of PANEL.
         data: DATA×S.
-        motion: MOTION×S, world axes; without columns at rest.
+        motion: MOTION×S, world axes; without columns at rest but along a path with friction.
     """
 
     positions: Matrix
@@ -323,11 +380,13 @@ class SectionPairs:
         first: sections.
         second: those of the other rod; the same where a rod touches itself.
         law: LAW×1.
+        along_path: whether their motion is that since the last point of a path.
     """
 
     first: SectionsInContact
     second: SectionsInContact
     law: Matrix
+    along_path: bool = False
 
     @cached_property
     def energy(self) -> Matrix:
@@ -350,9 +409,20 @@ class SectionPairs:
     @cached_property
     def friction(self) -> tuple[Matrix, Matrix]:
         """[Force; moment] of friction on the sections of both, 6×S each, N and N m, of sections in motion."""
-        moving = [replace(own, data=ca.vertcat(own.data, own.motion)) for own in (self.first, self.second)]
-        first, second = replace(self, first=moving[0], second=moving[1])._over_pairs(panel_friction())
+        first, second = self._moving._over_pairs(panel_friction(self.along_path))
         return self._of_first(first), self._of_second(second)
+
+    @cached_property
+    def way(self) -> Matrix:
+        """Of the sections of the first: way past the second times the force between them, and that force, 4×S."""
+        (weighted,) = self._moving._over_pairs(panel_way())
+        return self._of_first(weighted)
+
+    @property
+    def _moving(self) -> SectionPairs:
+        """The same pairs with motions behind the data."""
+        first, second = (replace(own, data=ca.vertcat(own.data, own.motion)) for own in (self.first, self.second))
+        return replace(self, first=first, second=second)
 
     def stiffness(self, first: Matrix, second: Matrix) -> tuple[Matrix, Matrix, Matrix]:
         """Second derivatives of the energy with coordinates: of the first twice, second and first, of the second twice.

@@ -58,7 +58,7 @@ class ContactPair:
         sections: number of sections of each rod.
         thickness: distance of the centres of sections that touch, where it is least, m.
         length: of the first rod, m.
-        friction: coefficient of friction in motion.
+        friction: coefficient of friction.
         slip_speed: speed below which sticking sections creep, m/s.
     """
 
@@ -77,6 +77,14 @@ class ContactPair:
     def itself(self) -> bool:
         """Whether a rod touches itself."""
         return self.rods[0] == self.rods[1]
+
+    @property
+    def slip_way(self) -> float:
+        """How far sections are dragged along a path where they slip, m.
+
+        Up to there a surface as deep as the layer where sections touch, w/3, is as stiff along as it is across.
+        """
+        return self.friction * self.width / 3
 
     @property
     def lookup(self) -> tuple[FloatArray, FloatArray]:

@@ -29,6 +29,7 @@ from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import HISTORY, Input, InputLayout
+from cosserat_casadi.model.pair_memory import history_size
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.registry import EFFECTS, remembering
 from cosserat_casadi.model.required_modes import signal_modes
@@ -215,13 +216,18 @@ class DiscreteScene:
 
     @cached_property
     def with_memory(self) -> DiscreteScene:
-        """The same scene, in which loads that remember sections have an input for it."""
+        """The same scene, in which loads and pairs of rods that remember sections have an input for it."""
         entries = list(self.layout.entries)
         for load in remembering(self.loads):
             numbers = EFFECTS[load.kind].remembers(load)
             default = np.zeros((numbers, self.rods[load.rod].grid.size))
             declared = InputField("1", numbers, nonlinear=True, nodal=True)
             entries.append(Input(load.name, HISTORY, declared, default, "none", False, np.inf))
+        for pair in self.pairs:
+            if pair.friction > 0.0:
+                numbers = history_size(pair, self.remembered)
+                declared = InputField("1", numbers, nonlinear=True, nodal=True)
+                entries.append(Input(pair.name, HISTORY, declared, np.zeros((numbers, 1)), "none", False, np.inf))
         return replace(self, layout=InputLayout(tuple(entries)))
 
     @cached_property

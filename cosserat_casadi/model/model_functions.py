@@ -175,11 +175,13 @@ class ModelFunctions:
     def memory(self, written: Expressions) -> list[Matrix] | None:
         """(x, inputs) ↦ inputs ``history`` at the next point of a path, stacked, slip and friction at nodes.
 
-        Of each load that remembers, side by side, 1×… and 3×…; None of a model without memory.
+        Of each load that remembers, then of the sections of the first rod of each pair, there N for N/m, side by side,
+        1×… and 3×…; None of a model without memory.
         """
         if written.discrete.layout.memory is None:
             return None
         loads = rubbing_at_nodes(written.system)
+        loads += [terms.rubbing for terms in written.system.pairs if terms.rubs]
         histories = [ca.vec(load.history) for load in loads]
         return [
             ca.vertcat(*histories),

@@ -17,12 +17,16 @@ from typing import TYPE_CHECKING
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.loads.load import Rubbing
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.rod_contact import PANEL, STILL, SectionPairs, SectionsInContact
-from cosserat_casadi.maths.numbers import as_matrix, repeated
+from cosserat_casadi.maths.numbers import as_matrix, known, repeated
+from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.contact_pairs import ContactPair
 from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.inputs import HISTORY
+from cosserat_casadi.model.pair_memory import PairHistory
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.wrenches import LineWrench
 
@@ -39,11 +43,13 @@ class ContactSide:
         rod: name of the rod.
         count: number of sections that stand for a part of the rod. Sections at the tip that stand for none fill the
             last panel; with them there are S.
+        history: what friction remembers of a last point of a path; None without.
     """
 
     system: System
     rod: str
     count: int
+    history: PairHistory | None = None
 
     @property
     def discrete(self) -> DiscreteRod:
@@ -64,15 +70,15 @@ class ContactSide:
     def interpolation(self) -> ca.DM:
         """Matrix from values at the nodes to values at the sections, S×M; of each section those of its element."""
         # Sections stay where they are in their elements: none is moved into another.
-        matrix = replace(self.discrete.grid, ends=None).interpolation_matrix(self._coordinates)
+        matrix = replace(self.discrete.grid, ends=None).interpolation_matrix(self.coordinates)
         return ca.sparsify(ca.DM(matrix))
 
     @cached_property
     def sections(self) -> SectionsInContact:
         """The sections at their places, each for an equal part of the rod between element ends."""
         rod = self.discrete
-        elements = replace(rod.grid, ends=None).element_of(self._coordinates)
-        X = rod.grid.on_rod(self._coordinates, elements)
+        elements = replace(rod.grid, ends=None).element_of(self.coordinates)
+        X = rod.grid.on_rod(self.coordinates, elements)
         rates = rod.grid.rates_in(elements)
         ratio = self.system.shapes[self.rod].ratio
         lengths = as_matrix(np.where(np.arange(self.columns) < self.count, rod.properties.length / self.count, 0.0))
@@ -84,16 +90,39 @@ class ContactSide:
         along = rod.properties.length * as_matrix(X)
         data = ca.horzcat(lengths, radii, along).T
         origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.columns)
-        return SectionsInContact(origin + self._arms, data, self._velocities)
+        return SectionsInContact(origin + self._arms, data, self._motions)
 
     @property
-    def _velocities(self) -> Matrix:
-        """Velocities and angular velocities of the sections, world axes, 6×S; without columns at rest."""
+    def _motions(self) -> Matrix:
+        """Motions of the sections as friction sees them, world axes, MOTION×S; without columns where nothing rubs."""
         motion = self.system.motions.get(self.rod)
-        if motion is None:
+        if motion is not None:
+            nodal = ca.vertcat(*[self._rotation @ rate for rate in (motion.velocity, motion.angular_velocity)])
+        elif self.history is not None:
+            nodal = self._moved_since(self.history.poses[self.rod])
+        else:
             return STILL
-        nodal = [self._rotation @ rate for rate in (motion.velocity, motion.angular_velocity)]
-        return ca.densify(ca.vertcat(*nodal) @ self.interpolation.T)
+        return ca.densify(nodal @ self.interpolation.T)
+
+    def _moved_since(self, before: Matrix) -> Matrix:
+        """Displacements and rotations of the nodes since they had other poses, MOTION×M."""
+        own, remembered = self.discrete.grid, self.system.discrete.remembered[self.rod]
+        if own is not remembered:
+            before = before @ ca.DM(remembered.interpolation_matrix(known(own.nodes)).T)
+        position, *directors = ca.vertsplit(before, 3)
+        here, *turned = ca.vertsplit(self.poses, 3)
+        # R R₀ᵀ has the sum of d₀ × d over the directors, over 2, for its axis times the sine of the angle.
+        rotation = sum(cross(old, new) for old, new in zip(directors, turned, strict=True)) / 2
+        return ca.vertcat(here - position, rotation)
+
+    @property
+    def poses(self) -> Matrix:
+        """Positions and rotation matrices of the nodes, world axes, POSE×M."""
+        shape = self.system.shapes[self.rod]
+        origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.discrete.grid.size)
+        return ca.vertcat(
+            origin + self._rotation @ shape.position, *[self._rotation @ director for director in shape.directors]
+        )
 
     def wrench(self, force: Matrix, moment: Matrix | None = None) -> LineWrench:
         """Load on the nodes that does the work of forces and moments on the sections, per length, base axes.
@@ -138,7 +167,7 @@ class ContactSide:
         return ca.vertcat(*[ca.vertcat(own, *turn, *shift) for own, turn, shift in parts])
 
     @property
-    def _coordinates(self) -> FloatArray:
+    def coordinates(self) -> FloatArray:
         """Places of the sections in the coordinate of the grid, shape (S,)."""
         return np.minimum((np.arange(self.columns) + 0.5) / self.count, 1.0)
 
@@ -174,13 +203,17 @@ class PairTerms:
     def sides(self) -> tuple[ContactSide, ...]:
         """The sections of both rods; of a rod that touches itself once."""
         names = dict(zip(self.pair.rods, self.pair.sections, strict=True))
-        return tuple(ContactSide(self.system, name, count) for name, count in names.items())
+        return tuple(ContactSide(self.system, name, count, self.history) for name, count in names.items())
 
     @cached_property
     def section_pairs(self) -> SectionPairs:
         """All pairs of sections."""
-        sections = [side.sections for side in self.sides]
-        return SectionPairs(sections[0], sections[-1], self.pair.law)
+        first, second = (self.sides[place].sections for place in (0, -1))
+        if self.history is None or not self.rubs:
+            return SectionPairs(first, second, self.pair.law)
+        dragged = ca.vertcat(self.history.drag_at(self.sides[0].coordinates), ca.DM(3, self.sides[0].columns))
+        law = ca.vertcat(self.pair.law[:3], self.pair.friction * self.history.is_known, self.pair.slip_way)
+        return SectionPairs(replace(first, motion=first.motion + dragged), second, law, along_path=True)
 
     @cached_property
     def energy(self) -> Matrix:
@@ -192,12 +225,37 @@ class PairTerms:
         pushes = zip(self.sides, self._gradients, strict=True)
         loads = [side.wrench(-self._factor * gradient) for side, gradient in pushes if side.rod == rod]
         rubs = zip(self.sides, self.frictions, strict=False)
-        return loads + [side.wrench(friction[:3, :], friction[3:, :]) for side, friction in rubs if side.rod == rod]
+        frictions = [(side, self._factor * friction) for side, friction in rubs if side.rod == rod]
+        return loads + [side.wrench(friction[:3, :], friction[3:, :]) for side, friction in frictions]
 
     @property
     def rubs(self) -> bool:
-        """Whether there is friction: in motion alone."""
-        return self.pair.friction > 0.0 and bool(self.system.motions)
+        """Whether there is friction: in motion, or along a path."""
+        return self.pair.friction > 0.0 and (bool(self.system.motions) or self.history is not None)
+
+    @cached_property
+    def history(self) -> PairHistory | None:
+        """What friction remembers of the last point of a path; None without a path."""
+        discrete = self.system.discrete
+        entries = discrete.layout.of_load(self.name, HISTORY)
+        if entries is None or self.system.motions:
+            return None
+        return PairHistory.of_column(self.system.arguments.inputs[entries], self.pair, discrete.remembered)
+
+    @property
+    def rubbing(self) -> Rubbing:
+        """How the sections of the first rod rub: what is remembered next, slip, 1×k, and force, 3×k, N."""
+        assert self.history is not None, "asked for along a path"
+        count = self.sides[0].count
+        way = self.section_pairs.way[:, :count]
+        pressing = way[3, :]
+        pressed = self.history.is_known * (pressing > 0.0)
+        drag = way[:3, :] * ca.repmat(pressed / ca.if_else(pressing > 0.0, pressing, 1.0), 3, 1)
+        share = ca.sqrt(ca.sum1(drag**2)) / self.pair.slip_way
+        after = drag / ca.repmat(ca.fmax(share, 1.0), 3, 1)
+        history = PairHistory(after, {side.rod: side.poses for side in self.sides})
+        slip = ca.if_else(pressing > 0.0, share, -1.0)
+        return Rubbing(history.column, slip, self.frictions[0][:3, :count])
 
     @property
     def dissipated_power(self) -> Matrix:

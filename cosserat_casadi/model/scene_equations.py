@@ -13,10 +13,12 @@ The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.assembly_equations import Assembly
@@ -67,6 +69,25 @@ class SceneEquations:
             # Rods that nothing couples do not meet in any row.
             tangents = [tangent.jacobian for tangent in self.system.tangents.values()]
             jacobian = ca.diagcat(*tangents, ca.DM(flows, flows))
+        if self.system.arguments.motion is None and self.system.rubbing:
+            jacobian += by_friction(self.system, [self.system.arguments.x])[0]
         if flows and self.system.arguments.motion is None:
             jacobian += ca.diagcat(ca.DM(discrete.size - flows, discrete.size - flows), ca.DM.eye(flows))
         return jacobian
+
+
+def by_friction(system: System, arguments: Sequence[Matrix]) -> list[Matrix]:
+    """Derivatives of the residual with arguments by the change of friction between rods, and of drag on bodies.
+
+    The equations are linear in it, and at fixed friction their derivatives are those of any dead load.
+    """
+    frictions = [friction for terms in system.rubbing for friction in terms.frictions]
+    loads = ca.vertcat(*map(ca.vec, frictions))
+    symbol = ca.MX.sym("friction", loads.shape[0])
+    ends = np.cumsum([0, *(friction.numel() for friction in frictions)]).tolist()
+    parts = iter(ca.reshape(part, 6, part.numel() // 6) for part in ca.vertsplit(symbol, ends))
+    given = {terms.name: [next(parts) for _ in terms.frictions] for terms in system.rubbing}
+    rows = SceneEquations(replace(system, friction=given)).residual
+    changes = [ca.jtimes(rows, symbol, ca.densify(ca.jacobian(loads, argument))) for argument in arguments]
+    derivatives: list[Matrix] = ca.substitute(changes, [symbol], [loads])
+    return derivatives

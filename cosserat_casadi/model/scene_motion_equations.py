@@ -11,14 +11,13 @@ from functools import cached_property
 from typing import NamedTuple
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.maths.numbers import as_matrix, is_symbolic
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.assembly_equations import BlockMatrix
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.scene_constraints import PlacedConstraint
-from cosserat_casadi.model.scene_equations import SceneEquations
+from cosserat_casadi.model.scene_equations import SceneEquations, by_friction
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.motion_load import motion_matrices
@@ -125,24 +124,11 @@ class SceneMotionEquations:
 
     @property
     def _by_friction(self) -> tuple[Matrix, Matrix]:
-        """Derivatives with x and v by the change of friction between rods, and of drag on bodies, with both.
-
-        The equations are linear in it, and at fixed friction their derivatives are those of any dead load.
-        """
-        rubbing = self.system.rubbing
+        """Derivatives with x and v by the change of friction between rods, and of drag on bodies, with both."""
         size = self.system.discrete.size
-        if not rubbing or not is_symbolic(self._velocity):
+        if not self.system.rubbing or not is_symbolic(self._velocity):
             return ca.DM(size, size), ca.DM(size, size)
-        frictions = [friction for terms in rubbing for friction in terms.frictions]
-        loads = ca.vertcat(*map(ca.vec, frictions))
-        symbol = ca.MX.sym("friction", loads.shape[0])
-        ends = np.cumsum([0, *(friction.numel() for friction in frictions)]).tolist()
-        parts = iter(ca.reshape(part, 6, part.numel() // 6) for part in ca.vertsplit(symbol, ends))
-        given = {terms.name: [next(parts) for _ in terms.frictions] for terms in rubbing}
-        rows = SceneEquations(replace(self.system, friction=given)).residual
-        with_x, with_v = (ca.jacobian(loads, argument) for argument in (self.system.arguments.x, self._velocity))
-        changes = [ca.jtimes(rows, symbol, ca.densify(change)) for change in (with_x, with_v)]
-        by_x, by_v = ca.substitute(changes, [symbol], [loads])
+        by_x, by_v = by_friction(self.system, [self.system.arguments.x, self._velocity])
         return by_x, by_v
 
     @property

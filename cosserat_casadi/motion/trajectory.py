@@ -260,11 +260,11 @@ class Motion(Result):
         return states_of(self.model.joint[name], self.x, self.inputs)
 
     def rubbing(self, index: int) -> tuple[RubbingStretch, ...]:
-        """The stretches that stick or slip in a row; none in a scene without friction.
+        """The stretches that stick or slip on obstacles in a row; none in a scene without friction.
 
         A section that creeps slower than the slip speed sticks.
         """
-        if not self.model.scene.rubs:
+        if self.model.slips is None:
             return ()
         # A motion keeps inputs without their rates.
         rates = np.gradient(self.inputs, self.times, axis=0) if len(self.times) > 1 else np.zeros_like(self.inputs)

@@ -212,7 +212,7 @@ def follow_path(
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
     path = _within_limits(_unless_too_deep(followed.record(traced)))
-    return replace(path, message=path.message + left_out_friction(model.scene, touching=True))
+    return replace(path, message=path.message + left_out_friction(model.scene))
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:

@@ -43,7 +43,8 @@ width = 5e-4
         "30 EI/(L² width²) of the stiffer rod when left out",
     )
     friction: NotNegative = Field(
-        0.0, description="coefficient μ of Coulomb's friction in motion, without unit, the same in all directions"
+        0.0,
+        description="coefficient μ of friction in motion and on paths, without unit, the same in all directions",
     )
     slip_speed: Positive = Field(
         1e-3, description="with friction: speed, m/s, below which what sticks creeps, under a force that grows with it"

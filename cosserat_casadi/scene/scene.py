@@ -234,7 +234,7 @@ inputs = ["push.force", "cable.tension"]
     @property
     def rubs(self) -> bool:
         """Whether there is friction of contact."""
-        return any(obstacle.rubs for obstacle in self.obstacles)
+        return any(obstacle.rubs for obstacle in self.obstacles) or any(pair.friction for pair in self.rod_contacts)
 
     def in_proportion(self) -> Scene:
         """The scene whose materials have the coefficients of their Young's moduli: parameters scale whole laws."""

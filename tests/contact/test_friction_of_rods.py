@@ -1,4 +1,4 @@
-"""Friction between rods that touch: sliding against a point mass, action and reaction, derivatives, energy."""
+"""Friction between rods: sliding against a point mass, crossed beams on a path, action and reaction, derivatives."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from functools import cache
 
 import casadi as ca
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Model, build, discretise, scene_from_dict, simulate, solve
-from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact
+from cosserat_casadi import Model, build, discretise, follow, scene_from_dict, simulate, solve
+from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, friction_kernel
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arclength import ArcSettings
+from cosserat_casadi.paths.friction_path import FrictionPath
 
 RADIUS = 5e-3
 DENSITY = 1000.0
@@ -104,6 +107,17 @@ def test_friction_between_sections_has_neither_a_sum_nor_a_moment() -> None:
     assert_allclose(moments[0] + moments[1], 0, rtol=0, atol=1e-13 * size)
 
 
+@pytest.mark.parametrize("along_path", [False, True])
+def test_a_section_does_not_rub_on_itself(along_path: bool) -> None:
+    """A rod that touches itself pairs each section with itself too: no force, and no derivative that is none."""
+    kernel = friction_kernel(along_path)
+    section = [[0.1, 0.2, 0.3], [1e-3, RADIUS, 0.1, *np.ones(6)]]
+    arguments = [*section, *section, [2e-3, 1e5, 0.05, FRICTION, SLIP]]
+    assert_allclose(kernel(*arguments), 0, rtol=0, atol=0)
+    for derivative in kernel.jacobian().call([*arguments, ca.DM(12, 1)]):
+        assert_allclose(derivative, 0, rtol=0, atol=0)
+
+
 def test_derivatives_are_those_of_differences() -> None:
     model = sliding()
     rng = np.random.default_rng(2)
@@ -130,5 +144,88 @@ def test_at_rest_rods_do_not_rub() -> None:
     """Statics have not one instruction more, and say so."""
     rubbing, plain = sliding(moving=False), sliding(friction=0.0, moving=False)
     assert rubbing.residual.n_instructions() == plain.residual.n_instructions()
-    assert "Friction between rods acts in motion alone" in solve(rubbing).message
+    assert "Friction acts in motion and on paths" in solve(rubbing).message
     assert "Friction" not in solve(plain).message
+
+
+BENDING, POISSON, THICK, WIDE, REACH = 2.0, 0.3, 0.02, 4e-3, 0.2
+"""EI, N m², ν, radius, width, and way from either base to where two rods cross, m."""
+
+STEPS = ArcSettings(first=0.5, load_factor_change=0.5)
+
+
+@cache
+def crossed() -> Model:
+    """Two clamped rods at a right angle, of which the upper one can be pressed and pulled where they cross."""
+    rod = {
+        "length": 1.1 * REACH,
+        "strain": "kirchhoff",
+        "section": {"shape": "circle", "radius": THICK},
+        "material": {"youngs_modulus": BENDING * 4 / np.pi / THICK**4, "poisson_ratio": POISSON},
+    }
+    lower = {"name": "lower", "base": {"position": [0, 0, 0], "tangent": [1, 0, 0]}, **rod}
+    over = [REACH, -REACH, 2 * THICK + WIDE / 2]
+    upper = {"name": "upper", "base": {"position": over, "tangent": [0, 1, 0]}, **rod}
+    load = {"kind": "point_wrench", "rod": "upper", "at": 1 / 1.1, "force": [0, 0, 0]}
+    touch = {"rods": ["lower", "upper"], "width": WIDE, "stiffness": 1e6, "friction": FRICTION}
+    loads = [{"name": name, **load} for name in ("press", "pull")]
+    scene = scene_from_dict({"schema": 1, "rods": [lower, upper], "rod_contacts": [touch], "loads": loads})
+    return build(scene, discretise(scene, 3, 4))
+
+
+@cache
+def pulled(force: float) -> FrictionPath:
+    """The path on which the upper rod, pressed by 6 N, is pulled across itself."""
+    first = follow(crossed(), "press.force", [0, 0, -6], settings=STEPS)
+    if not force:
+        assert isinstance(first, FrictionPath)
+        return first
+    path = follow(crossed(), "pull.force", [force, 0, 0], first=first, settings=STEPS)
+    assert isinstance(path, FrictionPath) and path.converged
+    return path
+
+
+def friction_on_lower(path: FrictionPath) -> float:
+    """Friction along the pull at the end of a path, N."""
+    _, _, friction = path.model.memory(path.x[-1], path.all_inputs[-1])
+    return float(friction.full()[0].sum())
+
+
+def test_crossed_rods_stick_and_slip() -> None:
+    """As beams on springs: the pulled one bends and twists, the other one turns where friction bends it.
+
+    What sticks is held by the layer: dragged by μ w/3 it slips. Deflections are of some hundredths of the length.
+    """
+    spring = 3 * BENDING / REACH**3
+    pressed = pulled(0.0)
+    before = pressed.solution(-1).pose(1 / 1.1, "upper").position[0]
+    for force, slips in ((0.5, False), (4.0, True)):
+        path = pulled(force)
+        end = path.solution(-1)
+        assert {stretch.slips for stretch in path.rubbing(-1)} == {slips}
+        (contact,) = end.contacts
+        limit = FRICTION * np.linalg.norm(contact.force)
+        found = friction_on_lower(path)
+        more = found - friction_on_lower(pressed)
+        twist = THICK**2 * REACH * (2 + POISSON) / BENDING
+        stuck = force / (1 + spring * (twist + FRICTION * WIDE / 3 / limit))
+        assert_allclose([more, found][slips], [stuck, limit][slips], rtol=1e-2, atol=0)
+        moved = end.pose(1 / 1.1, "upper").position[0] - before
+        assert_allclose(moved, (force - more) / spring, rtol=2e-2, atol=0)
+        # Contact gives no sum and no moment to both together.
+        bases = [(end.pose(0.0, rod).position, end.base_wrench(rod)) for rod in ("lower", "upper")]
+        load, at = np.array([force, 0, -6.0]), end.pose(1 / 1.1, "upper").position
+        assert_allclose(sum(base.force for _, base in bases), -load, rtol=0, atol=1e-11)
+        moments = [base.moment + np.cross(place, base.force) for place, base in bases]
+        assert_allclose(sum(moments), -np.cross(at, load), rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("force", [0.5, 4.0])
+def test_derivatives_along_a_path_are_those_of_differences(force: float) -> None:
+    """Where sections stick, and where they slip."""
+    path = pulled(force)
+    x, inputs = path.x[-1], path.all_inputs[-1]
+    change = np.random.default_rng(0).normal(size=x.size) * 1e-7
+    ends = [path.model.residual(x + sign * change, inputs).full()[:, 0] for sign in (1.0, -1.0)]
+    slope = path.model.path_jacobian(x, inputs, 1.0).full() @ change
+    assert_allclose(slope, (ends[0] - ends[1]) / 2, rtol=0, atol=1e-5 * np.abs(slope).max())
