@@ -98,7 +98,7 @@ def _stretches(model: Model, slip: FloatArray) -> Iterator[RubbingStretch]:
 
 
 def _alike(obstacle: str, rod: str, ends: FloatArray, slip: FloatArray) -> Iterator[RubbingStretch]:
-    """Stretches of neighbours that stick, then of those that slip.
+    """Stretches of neighbours that stick, then stretches that slip.
 
     Args:
         obstacle: what presses.

@@ -17,7 +17,7 @@ the third derivative of u is bounded: half as far apart, the ripple along a rod 
 
 Friction is Coulomb's, of each pair by its own force. In motion it is regularised by the slip speed. Along a path a pair
 that sticks is held by a spring of the stiffness μ F/s, which slips where it is dragged by the way s: s is the same
-however hard F the sections press. What is pressed harder while it sticks gives back energy, μ F s/2 at most.
+however hard F the sections press. Sections that are pressed harder while they stick give back energy, μ F s/2 at most.
 
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
 the bounding balls of two panels meet is mapped over all pairs of panels, inside one that is only called where those of

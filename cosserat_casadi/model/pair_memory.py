@@ -1,4 +1,4 @@
-"""What friction between two rods remembers of the last point of a path: where sections were, and how far dragged.
+"""The history of friction between two rods: where sections were at the last point of a path, and how far dragged.
 
 The way of two sections past each other is that of the points that touch since the last point of the path, and how far
 the section of the first rod was dragged then. So a section that comes to touch another one keeps its drag.

@@ -235,7 +235,7 @@ class PairTerms:
 
     @cached_property
     def history(self) -> PairHistory | None:
-        """What friction remembers of the last point of a path; None without a path."""
+        """The history of friction, from the last point of a path; None without a path."""
         discrete = self.system.discrete
         entries = discrete.layout.of_load(self.name, HISTORY)
         if entries is None or self.system.motions:
@@ -244,7 +244,7 @@ class PairTerms:
 
     @property
     def rubbing(self) -> Rubbing:
-        """How the sections of the first rod rub: what is remembered next, slip, 1×k, and force, 3×k, N."""
+        """How the sections of the first rod rub: history, slip, 1×k, and force, 3×k, N."""
         assert self.history is not None, "asked for along a path"
         count = self.sides[0].count
         way = self.section_pairs.way[:, :count]

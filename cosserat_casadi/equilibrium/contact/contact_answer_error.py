@@ -1,4 +1,4 @@
-"""The error of an answer in exact contact: its distance to one with modes and intervals added, and what it enters."""
+"""The error of an answer in exact contact: its distance to one with more modes and intervals, and its depth."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
     """A solution with its distance to a finer one: that of poses, of places of contact, or of forces, the largest.
 
     Forces count relative to EI/ℓ² or to the largest one, whichever is more. Of contacts that are not alike the whole
-    force is compared, and where they begin and end. What contacts of the finer one leave unmet counts too: in the same
-    contacts neither tells of those that should be there.
+    force is compared, and where they begin and end. Depth of the finer one in obstacles, and pull, count too: in the
+    same contacts neither solution tells of other contacts that should be there.
     """
     judged = with_estimate(coarse, fine)
     discrete = coarse.model.discrete
