@@ -67,7 +67,7 @@ def judged(text: str, modes: int) -> Judgement:
     scene = parse_scene(text)
     model = build(scene, discretise(scene, modes))
     begun = time.process_time()
-    if model.memory is None:
+    if not scene.rubs:
         solution = solve(model)
         seconds = time.process_time() - begun
         return Judgement(solution.outcome.label, bool(solution.contacts), list(_faults(text, solution)), seconds)

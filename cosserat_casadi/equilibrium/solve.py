@@ -166,6 +166,8 @@ def solve(
         load_factor=end.load_factor,
         tolerance=limits.newton.tolerance,
     )
+    if start is None and solution.outcome is Outcome.LOAD_STALLED:
+        solution = _settled_on_obstacles(solution, limits, progress)
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
     if estimate_error:
@@ -259,6 +261,20 @@ def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progr
     if stable is None:
         return replace(solution, message=solution.message + NONE_STABLE)
     return stable
+
+
+def _settled_on_obstacles(
+    solution: Solution, limits: ContinuationSettings, progress: Progress | None = None
+) -> Solution:
+    """The equilibrium that a rod snaps to where its load path stalled on soft obstacles, past none of them."""
+    model, inputs = solution.model, solution.inputs
+    barriers = SmoothBarriers(model)
+    if not barriers.any or not can_relax(model) or not model.has_potential(inputs):
+        return solution
+    settled = relaxed(solution, limits.newton, progress)
+    if settled is None or barriers.are_between(solution.x, settled.x, (inputs, inputs)):
+        return solution
+    return settled
 
 
 def _continuation(task: _Task) -> _End:

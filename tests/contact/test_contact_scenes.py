@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, discretise, follow, parse_scene, solve
+from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.paths.friction_path import FrictionPath
 from tests.contact.verdict import NEAR, compared, evenly_apart, faults
 from tests.families import mostly_slow
@@ -43,6 +44,18 @@ def test_large_loads_do_not_push_a_rod_through_a_layer_while_both_grow(seed: int
     solution = solve(build(scene, discretise(scene, 5)))
     assert solution.converged, solution.message
     assert pressed in {contact.obstacle for contact in solution.contacts}
+
+
+def test_a_rod_that_snaps_while_loads_and_layers_grow_settles() -> None:
+    """All loads growing at once stall; the weight alone, on whole layers, leads to the same equilibrium."""
+    scene = parse_scene(smooth_scene(195))
+    model = build(scene, discretise(scene, 5))
+    solution = solve(model)
+    assert solution.converged, solution.message
+    assert PATH_OF_ENERGY in solution.message
+    path = follow(model, "weight.acceleration", [0, 0, -9.81], {"weight.acceleration": [0, 0, 0]})
+    assert path.converged
+    assert_allclose(solution.tip().position, path.solution(-1).tip().position, rtol=0, atol=1e-8)
 
 
 @pytest.mark.slow

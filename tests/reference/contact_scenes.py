@@ -259,6 +259,11 @@ stiffness = 2e4
     )
 
 
+def rubbing_scene(seed: int) -> str:
+    """The same with friction."""
+    return pair_scene(seed) + f"friction = {np.random.default_rng([seed, 6]).uniform(0.1, 0.6)!r}\n"
+
+
 def friction_scene(seed: int) -> str:
     """The same in space, on a table that leans to the side, with friction."""
     generator = np.random.default_rng([seed, 5])
@@ -272,6 +277,7 @@ COMPOSED = {
     "bodies": body_scene,
     "moving": moving_scene,
     "pairs": pair_scene,
+    "rubbing": rubbing_scene,
 }
 """Families of other contacts than of rods with fixed obstacles: name → text of the scene of a seed."""
 

@@ -26,6 +26,9 @@ SETTINGS = {
 }
 """Options of IPOPT; a small barrier keeps it next to where it begins."""
 
+NEAR_AT_START = 0.05
+"""Distance of the surfaces of ends, m, from which on they do not come to touch on a path."""
+
 PARTS = 4
 """Points of a segment that are kept off hard obstacles."""
 
@@ -140,6 +143,8 @@ def discrete_friction_path(scene: Table, poses: Poses, factors: Array) -> dict[s
         poses: at the first factor, in balance.
         factors: shares of gravity, rising; nothing rubs at the first.
     """
+    if "rod_contacts" in scene:
+        return _pair_path(scene, poses, factors)
     share = ca.SX.sym("share")
     problem = _problem(scene, poses, share)
     multipliers = ca.SX.sym("multipliers", problem.joined.numel())
@@ -180,6 +185,71 @@ def discrete_friction_path(scene: Table, poses: Poses, factors: Array) -> dict[s
         else:
             at = [origin.full() for origin in after.call([x[: problem.x.numel()], *at])]
     return problem.ends(x[: problem.x.numel()])
+
+
+def _pair_path(scene: Table, poses: Poses, factors: Array) -> dict[str, Array] | None:
+    """The same of two rods in space that rub on each other: each pair of ends remembers how far it was dragged.
+
+    The force acts at the point of both sections that touches, whose way turns with the segments.
+    """
+    share, rubs = ca.SX.sym("share"), ca.SX.sym("rubs")
+    problem = _problem(scene, poses, share)
+    multipliers = ca.SX.sym("multipliers", problem.joined.numel())
+    last = ca.SX.sym("last", problem.x.numel())
+    (table,) = scene["rod_contacts"]
+    first, second = (problem.chains[name] for name in table["rods"])
+    before = [[ca.substitute(field, problem.x, last) for field in (own.ends, own.turns)] for own in (first, second)]
+    width, touching = table["width"], first.radius + second.radius
+    square = (touching + width) ** 2 - touching**2
+    coefficient = 5 * table["stiffness"] / (32 * square**1.5 * (5 * touching**2 - square))
+    slip_way = table["friction"] * width / 3
+    apart_at_start = first.start[1].T[:, None] - second.start[1].T
+    near = np.argwhere(np.linalg.norm(apart_at_start, axis=2) < touching + width + NEAR_AT_START)
+    drag = ca.SX.sym("drag", 3, len(near))
+    work, after, symbols, values = ca.SX(0), [], [], []
+    for p, (k, m) in enumerate(near.tolist()):
+        apart = first.ends[:, k] - second.ends[:, m]
+        distance = ca.sqrt(ca.sumsqr(apart))
+        inside = ca.fmax((touching + width) ** 2 - distance**2, 0)
+        pressing = 6 * coefficient * first.lengths[k] * second.lengths[m] * distance * inside**2
+        way = drag[:, p]
+        force = ca.SX.sym("force", 3)
+        sides = ((first, k, -first.radius, 1), (second, m, second.radius, -1))
+        for (own, number, reach, sign), (ends, turns) in zip(sides, before, strict=True):
+            rotation = _matrix(own.turns[:, number])
+            arm = rotation.T @ apart * (reach / touching)
+            way = way + sign * (own.ends[:, number] - ends[:, number] + (rotation - _matrix(turns[:, number])) @ arm)
+            fixed = ca.SX.sym("arm", 3)
+            work += sign * ca.dot(force, own.ends[:, number] + rotation @ fixed)
+            symbols.append(fixed)
+            values.append(arm)
+        way = way - apart * (ca.dot(apart, way) / distance**2)
+        dragged = ca.fmax(ca.sqrt(ca.sumsqr(way) + 1e-24), slip_way)
+        symbols.append(force)
+        values.append(-rubs * table["friction"] * pressing / dragged * way)
+        after.append(rubs * ca.if_else(pressing > 0, slip_way / dragged, 0) * way)
+    friction = ca.substitute(ca.gradient(work, problem.x), ca.vertcat(*symbols), ca.vertcat(*values))
+    balance = ca.gradient(problem.energy + ca.dot(multipliers, problem.joined), problem.x) - friction
+    residual, unknowns = ca.vertcat(balance, problem.joined), ca.vertcat(problem.x, multipliers)
+    given = [unknowns, share, rubs, last, drag]
+    equations = ca.Function("equations", given, [residual, ca.jacobian(residual, unknowns)])
+    update = ca.Function("update", given, [ca.horzcat(*after)])
+    x = np.concatenate([problem.start, np.zeros(problem.joined.numel())])
+    at: list[Any] = [0.0, problem.start, np.zeros(drag.shape)]
+    for factor in factors:
+        end = _newton(lambda x, factor=factor, at=at: equations(x, factor, *at), x)
+        if end is None:
+            return None
+        x = end
+        at = [1.0, x[: problem.x.numel()], update(x, factor, *at).full()]
+    return problem.ends(x[: problem.x.numel()])
+
+
+def _matrix(quaternion: Any) -> Any:
+    """Rotation matrix of a unit quaternion w x y z."""
+    w, x, y, z = ca.vertsplit(quaternion)
+    across = ca.vertcat(w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y))
+    return ca.horzcat(across, ca.cross(_tangent(quaternion), across), _tangent(quaternion))
 
 
 def _newton(equations: Any, x: Array) -> Array | None:
