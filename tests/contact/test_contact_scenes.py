@@ -14,7 +14,7 @@ from cosserat_casadi.paths.friction_path import FrictionPath
 from tests.contact.verdict import NEAR, compared, evenly_apart, faults
 from tests.families import mostly_slow
 from tests.reference.contact_scenes import COMPOSED, contact_scene, smooth_scene
-from tests.reference.discrete_rods import discrete_equilibrium
+from tests.reference.discrete_rods import discrete_equilibrium, discrete_friction_path
 
 
 @pytest.mark.parametrize("seed", mostly_slow([*range(12), 199], [3]))
@@ -71,6 +71,25 @@ def test_a_path_with_friction_ends_where_that_of_discrete_rods_does() -> None:
     (friction, *_) = [line for line in text.splitlines() if line.startswith("friction")]
     unhindered = solve(build(parse_scene(text.replace(friction, "friction = 0.0")), discretise(scene, 7)))
     assert np.abs(unhindered.tip().position - path.solution(-1).tip().position).max() > 10 * NEAR
+
+
+@pytest.mark.slow
+def test_friction_between_rods_moves_them_as_it_moves_discrete_ones() -> None:
+    """Friction changes their ends alike; the errors of coarse discrete rods are in both of theirs."""
+    text = COMPOSED["rubbing"](4)
+    scene = parse_scene(text)
+    model = build(scene, discretise(scene, 4))
+    path = follow(model, "weight.acceleration", [0, 0, -9.81], {"weight.acceleration": [0, 0, 0]})
+    assert isinstance(path, FrictionPath) and path.converged
+    rubbed, plain = evenly_apart(path.solution(-1), 24), evenly_apart(solve(model), 24)
+    tables = [tomllib.loads(text) for _ in range(2)]
+    tables[1]["rod_contacts"][0]["friction"] = 0.0
+    ends = [discrete_friction_path(table, evenly_apart(path.solution(0), 24), path.factor) for table in tables]
+    assert ends[0] is not None and ends[1] is not None
+    for rod, most in (("lower", 4e-4), ("upper", 1.5e-4)):
+        change = (rubbed[rod][0] - plain[rod][0])[1:]
+        assert np.abs(change).max() > most
+        assert_allclose(change, ends[0][rod] - ends[1][rod], rtol=0, atol=8e-5)
 
 
 def test_discrete_rods_converge_at_second_order() -> None:
