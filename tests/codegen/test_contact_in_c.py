@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import ExportError, Solution, build, discretise, export, load, read_scene, solve
+from cosserat_casadi import ExportError, Solution, build, discretise, export, linearise, load, read_scene, solve
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.equilibrium.contact.contact_answer_error import richer
@@ -120,6 +120,37 @@ def test_derivatives_of_the_tip(bar: ContactLibrary, force: float) -> None:
     assert np.log2(errors[0] / errors[1]) > 1.8
 
 
+def test_derivatives_of_a_contact(bar: ContactLibrary) -> None:
+    """Place and force by the inputs as differences of solves say, the tip as Python's linear model does."""
+    found = bar.loaded.solve(down(3.0))
+    (derivatives,) = bar.loaded.contact_sensitivity(found) or []
+    beside = [bar.loaded.solve(down(3.0 + change), found).contacts[0] for change in (1e-3, -1e-3)]
+    ends = [np.array([own.start, own.end, own.ends[0], 0.0]) for own in beside]
+    assert_allclose(-derivatives[:, 2], (ends[0] - ends[1]) / 2e-3, rtol=1e-6, atol=1e-12)
+    linear = linearise(solve(bar.model, down(3.0)))
+    gain = linear.D - linear.C @ np.linalg.solve(linear.A, linear.B)
+    by_inputs = bar.loaded.sensitivity(found)
+    assert by_inputs is not None
+    # Python holds the elements: the same to the error of the modes.
+    assert_allclose(by_inputs["rod"][:3], gain, rtol=2e-6, atol=1e-12)
+
+
+def test_derivatives_beside_a_touch(bar: ContactLibrary) -> None:
+    """Just before the rod touches and just after they are those of either side, and margins tell how near that is."""
+    gains = []
+    for force, side in ((0.5265, -1e-4), (0.527, 1e-4)):
+        found = bar.loaded.solve(down(force))
+        derivatives, margins = bar.loaded.sensitivity(found), bar.loaded.margins(found)
+        assert derivatives is not None and margins is not None
+        gains.append(-derivatives["rod"][2, 2])
+        tips = [bar.loaded.solve(down(own), found).tips["rod"] for own in (force, force + side)]
+        assert_allclose(gains[-1], (tips[1] - tips[0])[2] / side, rtol=1e-4, atol=0)
+        assert min(margins) < 3e-4
+    assert gains[0] < 5.0 * gains[1] < 0.0
+    far = bar.loaded.margins(bar.loaded.solve(down(3.0)))
+    assert far is not None and min(far) > 5e-3
+
+
 @pytest.mark.slow
 def test_derivatives_of_a_line(table: ContactLibrary) -> None:
     """The abscissa from which the rod lies moves; the derivative of its tip is that of differences in C."""
@@ -129,6 +160,10 @@ def test_derivatives_of_a_line(table: ContactLibrary) -> None:
     assert derivatives is not None
     ends = [library.solve(down(50.0 + change), found).tips["rod"] for change in (1e-2, -1e-2)]
     np.testing.assert_allclose(-derivatives["rod"][:, 2], (ends[0] - ends[1]) / 2e-2, rtol=1e-5, atol=1e-10)
+    (of_line,) = library.contact_sensitivity(found) or []
+    lines = [library.solve(down(50.0 + change), found).contacts[0] for change in (1e-2, -1e-2)]
+    wanted = [np.array([own.start, own.end, *own.ends]) for own in lines]
+    assert_allclose(-of_line[:, 2], (wanted[0] - wanted[1]) / 2e-2, rtol=1e-5, atol=1e-8)
 
 
 @pytest.mark.slow

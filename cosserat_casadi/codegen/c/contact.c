@@ -133,9 +133,23 @@ contact_status contact_solve(const real *inputs, contact_state *state, workspace
   return status;
 }
 
-/* Derivatives of the tips by the implicit function theorem, within the arrangement of contacts. */
+/* The rates of a contact's places and of its forces at sections, in an entry of d_contacts_d_inputs; what is at the tip
+   stays there. */
+static void contact_rates(const arrangement *at, const real *z_rate, int number, real *rates) {
+  const contact_entry *entry = at->touch + number;
+  const real *forces = z_rate + at->unknowns + entry->first_force;
+  const real *places = z_rate + at->unknowns + at->forces + entry->first_place;
+  const real unit = ROD[entry->rod].force_unit;
+  const int is_line = entry->ends > 1;
+  rates[0] = entry->moving > 0 ? places[0] : 0;
+  rates[1] = !is_line ? rates[0] : entry->moving > 1 ? places[1] : 0;
+  rates[2] = unit * forces[0];
+  rates[3] = is_line ? unit * forces[1] : 0;
+}
+
+/* Derivatives by the implicit function theorem, within the arrangement of contacts; either may be null. */
 static contact_status derivatives(const real *inputs, const contact_state *state, real *d_poses_d_inputs,
-                                  workspace *work) {
+                                  real *d_contacts_d_inputs, workspace *work) {
   const arrangement *at = ARRANGEMENT + state->arrangement;
   const int n = at->size;
   real *z_rate = work->step;
@@ -148,10 +162,16 @@ static contact_status derivatives(const real *inputs, const contact_state *state
     call_rate(at->rate, state->z, inputs, z_rate, inputs_rate, work->residual, work);
     for (int i = 0; i < n; i++) z_rate[i] = -work->residual[i];
     back_substitute(work->jacobian, work->pivots, z_rate, n);
-    call_rate(at->tip_rate, state->z, inputs, z_rate, inputs_rate, work->poses, work);
+    if (!all_finite(z_rate, n)) return CONTACT_SINGULAR;
+    for (int k = 0; d_contacts_d_inputs && k < at->touches; k++) {
+      contact_rates(at, z_rate, k, d_contacts_d_inputs + (k * INPUTS + j) * CONTACT_RATES);
+    }
+    if (d_poses_d_inputs) {
+      call_rate(at->tip_rate, state->z, inputs, z_rate, inputs_rate, work->poses, work);
+      if (!all_finite(work->poses, POSES * POSE_SIZE)) return CONTACT_SINGULAR;
+    }
     inputs_rate[j] = 0;
-    if (!all_finite(work->poses, POSES * POSE_SIZE)) return CONTACT_SINGULAR;
-    for (int r = 0; r < POSES; r++) {
+    for (int r = 0; d_poses_d_inputs && r < POSES; r++) {
       memcpy(d_poses_d_inputs + (r * INPUTS + j) * POSE_SIZE, work->poses + r * POSE_SIZE, POSE_SIZE * sizeof *z_rate);
     }
   }
@@ -187,7 +207,7 @@ contact_status contact_track(const real *inputs, contact_state *state, contact_m
     recall(memory, work);
     status = is_known(state) ? follow(inputs, &reached, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
   }
-  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, &reached, d_poses_d_inputs, work);
+  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, &reached, d_poses_d_inputs, 0, work);
   if (status == CONTACT_CONVERGED) {
     *state = reached;
     remember(memory, work);
@@ -199,7 +219,24 @@ contact_status contact_track(const real *inputs, contact_state *state, contact_m
 
 contact_status contact_solve_sensitivity(const contact_state *state, real *d_poses_d_inputs, workspace *work) {
   if (!is_in_equilibrium(state, work)) return CONTACT_NOT_IN_EQUILIBRIUM;
-  return derivatives(state->inputs, state, d_poses_d_inputs, work);
+  return derivatives(state->inputs, state, d_poses_d_inputs, 0, work);
+}
+
+contact_status contact_contact_sensitivity(const contact_state *state, real *d_contacts_d_inputs, workspace *work) {
+  if (!is_in_equilibrium(state, work)) return CONTACT_NOT_IN_EQUILIBRIUM;
+  return derivatives(state->inputs, state, 0, d_contacts_d_inputs, work);
+}
+
+contact_status contact_margins(const contact_state *state, real *force, real *gap, workspace *work) {
+  if (!is_in_equilibrium(state, work)) return CONTACT_NOT_IN_EQUILIBRIUM;
+  const arrangement *at = ARRANGEMENT + state->arrangement;
+  const real largest = largest_force(at, state->z);
+  real index[3];
+  call(at->nodes, state->z, state->inputs, work->nodes, index, work);
+  *force = *gap = HUGE_VAL;
+  for (int k = 0; k < at->touches; k++) *force = smaller(*force, least_force(at, state->z, k, largest, 1));
+  for (int p = 0; p < PAIRS; p++) *gap = smaller(*gap, least_gap(at, state->z, PAIR + p, work));
+  return CONTACT_CONVERGED;
 }
 
 int contact_contacts(const contact_state *state, contact_contact *contacts, workspace *work) {

@@ -32,7 +32,8 @@ enum {
   MOST_TOUCHES = CONTACT_TOUCHES, /* contacts of any arrangement */
   TRIES = CONTACT_TRIES,          /* arrangements that are solved for one change of the inputs */
   CANDIDATES = CONTACT_CANDIDATES,
-  POSE_SIZE = 7 /* position and quaternion */
+  POSE_SIZE = 7,    /* position and quaternion */
+  CONTACT_RATES = 4 /* from, to, and the forces there */
 };
 
 /* A generated function of z and of the inputs, or of a point. */

@@ -45,20 +45,26 @@ static real largest_force(const arrangement *at, const real *z) {
   return largest;
 }
 
-/* How much a contact would have to pull at most, relative to the largest force. */
-static real pull_of(const arrangement *at, const real *z, int number, real largest) {
+/* The least force of a contact where it opens first, relative to the largest force: at a section, or along a line.
+   Where only `opening` ends count, the tip of a line is left out, which may carry nothing. */
+static real least_force(const arrangement *at, const real *z, int number, real largest, int opening) {
   const contact_entry *entry = at->touch + number;
   const real *forces = z + at->unknowns + entry->first_force;
   real least = forces[0];
   if (entry->is_line) {
     const touch own = touch_at(at, z, number);
-    least = smaller(least, forces[1]);
+    if (!opening || entry->moving > 1) least = smaller(least, forces[1]);
     for (int k = 0; k <= SAMPLES; k++) {
       const real along = polynomial(0, forces + entry->ends, entry->along, (real)k / SAMPLES);
       least = smaller(least, along * (own.end - own.start));
     }
   }
-  return larger(-least, 0) / largest;
+  return least / largest;
+}
+
+/* How much a contact would have to pull at most, relative to the largest force. */
+static real pull_of(const arrangement *at, const real *z, int number, real largest) {
+  return larger(-least_force(at, z, number, largest, 0), 0);
 }
 
 /* Gap of the section at an abscissa; the nodes stand in the workspace. */
@@ -202,4 +208,21 @@ static int join_at_contacts(const arrangement *at, const real *z, penetration *f
     if (!joined) found[kept++] = own;
   }
   return kept;
+}
+
+/* The least gap of a rod where no contact of it with this obstacle is near; the nodes stand in the workspace. */
+static real least_gap(const arrangement *at, const real *z, const pair_entry *pair, workspace *work) {
+  real least = HUGE_VAL;
+  for (real X = 0;;) {
+    const real gap = gap_of_section(at, z, pair, X, work);
+    int is_near_contact = 0;
+    for (int k = 0; k < at->touches; k++) {
+      const touch own = touch_at(at, z, k);
+      if (own.rod != pair->rod || own.obstacle != pair->obstacle) continue;
+      is_near_contact |= own.start - NEAR_CONTACT < X && X < own.end + NEAR_CONTACT;
+    }
+    if (!is_near_contact) least = smaller(least, gap);
+    if (X == 1) return least;
+    X = smaller(X + step_along(at, z, pair, X, gap), 1);
+  }
 }

@@ -6,7 +6,7 @@ import ctypes
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,21 @@ from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
+
+RATES = 4
+"""Rows of the derivatives of a contact: its two abscissae, and the forces there."""
+
+
+class Margins(NamedTuple):
+    """How near a solution is to other contacts, beyond which its derivatives by inputs are not those.
+
+    Attributes:
+        force: the least with which a contact presses, relative to the largest force; infinite without contacts.
+        gap: the least distance from an obstacle, relative to the length, of sections away from contacts with it.
+    """
+
+    force: float
+    gap: float
 
 
 class ContactInfo(AnswerInfo):
@@ -182,6 +197,19 @@ class CompiledContact(LoadedLibrary):
         columns = np.zeros((self._posed, self.inputs.size, POSE_SIZE))
         status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
         return None if status != 0 else by_tip(self.rods, columns[: len(self.rods)])
+
+    def contact_sensitivity(self, solution: CompiledContactSolution) -> list[FloatArray] | None:
+        """The d(start, end, forces at both)/dinputs of each contact, shape (4, m); None where there are none."""
+        columns = np.zeros((max(len(solution.contacts), 1), self.inputs.size, RATES))
+        status = self._function("contact_sensitivity")(self._state(solution), pointer(columns), self._workspace())
+        return None if status != 0 else [own.T for own in columns[: len(solution.contacts)]]
+
+    def margins(self, solution: CompiledContactSolution) -> Margins | None:
+        """How near a solution is to other contacts; None where it is no solution."""
+        force, gap = ctypes.c_double(), ctypes.c_double()
+        state = self._state(solution)
+        status = self._function("margins")(state, ctypes.byref(force), ctypes.byref(gap), self._workspace())
+        return None if status != 0 else Margins(force.value, gap.value)
 
     def error_estimate(self, solution: CompiledContactSolution) -> float | None:
         """Estimated error of a solution, such as one of a turn; None where it is none.
