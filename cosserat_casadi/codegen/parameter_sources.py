@@ -82,6 +82,31 @@ def parameter_words(
     }
 
 
+def contact_parameter_words(model: Model, names: Names) -> Words:
+    """Words of a library of rods in exact contact, with parameters where the scene names some.
+
+    Args:
+        model: what is exported.
+        names: what things are called.
+    """
+    if not model.parameters.size:
+        empty = ("parameters", "poses_by_parameters", "contacts_by_parameters", "passed", "no_derivatives")
+        return {**dict.fromkeys(empty, ""), "solver_inputs": f"{names.macro}_INPUTS"}
+    entries = parameter_entries(model)
+    real = f"{names.name}_real"
+    return {
+        **_described(entries, names),
+        **parameter_struct_words(names, entries),
+        "with_parameters": True,
+        "parameters": f"const {real} *parameters, ",
+        "poses_by_parameters": f"{real} *d_poses_d_parameters, ",
+        "contacts_by_parameters": f"{real} *d_contacts_d_parameters, ",
+        "passed": ", parameters",
+        "no_derivatives": ", 0",
+        "solver_inputs": f"({names.macro}_INPUTS + {names.macro}_PARAMETERS)",
+    }
+
+
 def _listed_lines(functions: list[str]) -> str:
     return "".join(f"    {function},\n" for function in functions)
 

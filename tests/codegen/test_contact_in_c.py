@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, Solution, build, discretise, export, linearise, load, read_scene, solve
 from cosserat_casadi.accuracy.verified import Verified
+from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.equilibrium.contact.contact_answer_error import richer
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
@@ -58,6 +59,15 @@ def bar(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
 def table(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
     """A rod on a table, which knows the tip, a line and no contact."""
     return exported_contact(on_table(), tmp_path_factory.mktemp("table") / "table", down(60.0)[None], 4, 8)
+
+
+@pytest.fixture(scope="module")
+def pulled(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
+    """A rod over a bar that a tendon pulls and that carries a body, with parameters."""
+    head = {"body": "head", "rod": "rod", "kind": "fixed", "position": [5.0, 0, 0.02]}
+    named = ["rod.stiffness.bending_y", "tendon.offset"]
+    wanted = pulled_over_bar(bodies=[{"name": "head", "mass": 0.1}], joints=[head], parameters=named)
+    return exported_contact(wanted, tmp_path_factory.mktemp("pulled") / "pulled", np.zeros((0, 4)), modes=2, nodes=4)
 
 
 @pytest.mark.slow
@@ -210,9 +220,11 @@ def test_inputs_that_are_not_finite(bar: ContactLibrary, bad: float) -> None:
 
 
 @pytest.mark.slow
-def test_sources_by_hand_compile_without_a_word(bar: ContactLibrary, table: ContactLibrary, tmp_path: Path) -> None:
+def test_sources_by_hand_compile_without_a_word(
+    bar: ContactLibrary, table: ContactLibrary, pulled: ContactLibrary, tmp_path: Path
+) -> None:
     """All but the kernels, which CasADi has written."""
-    for library in (bar, table):
+    for library in (bar, table, pulled):
         name = library.folder.name
         for file in (f"{name}.c", f"{name}_demo.c"):
             gcc(*LINT, "-fsyntax-only", library.folder / file)
@@ -298,11 +310,9 @@ def test_an_error_is_of_a_solution(bar: ContactLibrary) -> None:
     assert bar.loaded.error_estimate(replace(found, state=bytes(moved))) is None
 
 
-def test_efforts_and_bodies_in_contact(tmp_path: Path) -> None:
+def test_efforts_and_bodies_in_contact(pulled: ContactLibrary) -> None:
     """A tendon's tension, and its length on the rod that bends over the bar; the pose of a body that it carries."""
-    head = {"body": "head", "rod": "rod", "kind": "fixed", "position": [5.0, 0, 0.02]}
-    carrying = pulled_over_bar(bodies=[{"name": "head", "mass": 0.1}], joints=[head])
-    library = exported_contact(carrying, tmp_path / "pulled", np.zeros((0, 4)), modes=2, nodes=4)
+    library = pulled
     inputs = {"push.force": [0, 0, -2.0], "tendon.tension": 3.0}
     found = library.loaded.solve(inputs)
     wanted = solve(library.model, inputs)
@@ -318,11 +328,35 @@ def test_efforts_and_bodies_in_contact(tmp_path: Path) -> None:
     ends = [library.loaded.solve(stacked + sign * change, found).bodies["head"] for sign in (1.0, -1.0)]
     assert_allclose(turned["head"] @ change, (ends[0] - ends[1]) / 2, rtol=0, atol=2e-7)
     # Far from the rod that carries it, it has the largest error.
+    carrying = library.model.scene.model_copy(update={"parameters": ()})
     grids = richer(Grids(library.model.discretisation), carrying)
     finer = solve_contact(carrying, grids, inputs, start=wanted)
     off = np.linalg.norm(finer.body("head").position - wanted.body("head").position)
     assert found.error_estimate is not None
     assert_allclose(found.error_estimate, SAFETY * off / carrying.rods[0].length, rtol=1e-3, atol=0)
+
+
+def test_parameters_in_contact(pulled: ContactLibrary) -> None:
+    """Answers at other parameters are those of Python, in a solve and in a turn; derivatives those of differences."""
+    library = pulled.loaded
+    inputs = {"push.force": [0, 0, -2.0], "tendon.tension": 3.0}
+    stiffness, *_ = library.parameters.pack()
+    others = {"rod.stiffness.bending_y": 1.1 * stiffness, "tendon.offset": [-0.02, 0.0]}
+    own = library.solve(inputs)
+    found = library.solve(inputs, parameters=others)
+    assert_same(found, solve(pulled.model, inputs, parameters=others))
+    turned = library.track(inputs, own, parameters=others)
+    assert_allclose(turned.tips["rod"], found.tips["rod"], rtol=0, atol=1e-12)
+    derivatives, of_contacts = library.sensitivity(own), library.contact_sensitivity(own)
+    assert derivatives is not None and of_contacts
+    for column, name, step in ((4, "rod.stiffness.bending_y", [1e-4, 0.0]), (5, "tendon.offset", [1e-6, 0.0])):
+        value = np.array([stiffness]) if column == 4 else np.array([-0.01, 0.0])
+        change = np.array(step[: len(value)])
+        ends = [library.solve(inputs, own, parameters={name: value + sign * change}) for sign in (1, -1)]
+        tips = (ends[0].tips["rod"] - ends[1].tips["rod"]) / (2 * step[0])
+        assert_allclose(derivatives["rod"][:, column], tips, rtol=1e-5, atol=1e-8)
+        forces = (ends[0].contacts[0].ends[0] - ends[1].contacts[0].ends[0]) / (2 * step[0])
+        assert_allclose(of_contacts[0][2, column], forces, rtol=1e-5, atol=0)
 
 
 def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:
@@ -361,6 +395,14 @@ def test_refused_uses(tmp_path: Path) -> None:
         export(model, tmp_path / "folder", derivatives=True)
     with pytest.raises(ExportError, match=r"of shape \(k, 3\), got shape \(1, 2\)"):
         export(model, tmp_path / "folder", load_cases=np.zeros((1, 2)))
+    named = ["rod.section.radius", "hook.at"]
+    material = {"youngs_modulus": 1e6, "poisson_ratio": 0.4}
+    round_rod = FLAT | {"material": material, "section": {"shape": "circle", "radius": 0.02}}
+    del round_rod["stiffness"], round_rod["linear_density"]
+    hook = {"name": "hook", "kind": "point_wrench", "rod": "rod", "at": 0.4, "force": [0, 0, -1.0]}
+    named_scene = scene(rods=[round_rod], loads=[hook], obstacles=[BAR], parameters=named)
+    with pytest.raises(ExportError, match=r"section.radius is the surface(?s:.*)hook.at would move ends of elements"):
+        check_contact(named_scene, {})
     free = scene(rods=[rod("planar")])
     with pytest.raises(ExportError, match="no rod of this scene touches an obstacle exactly"):
         export(build(free, discretise(free, 1, 2)), tmp_path / "folder", load_cases=np.zeros((1, 0)))

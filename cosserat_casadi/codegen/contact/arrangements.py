@@ -7,7 +7,7 @@ lines of inputs, as the solver in C moves them too. What is met on the way is co
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.inputs import InputLayout, input_layout
+from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 
@@ -34,9 +35,10 @@ class Chosen:
     """The arrangements of a library.
 
     Attributes:
-        scene: without contacts.
+        scene: without contacts, and without the list of its parameters.
         layout: its inputs.
-        given: stacked inputs that the library starts from: the scene's own.
+        parameters: numbers of the scene that the library is given behind the inputs; often none.
+        given: stacked inputs that the library starts from, and parameters behind them: the scene's own.
         equations: of each arrangement, at places where it was met.
         richer: of each arrangement with modes and intervals added; none where no error is estimated.
         start: number of the arrangement for these inputs.
@@ -45,6 +47,7 @@ class Chosen:
 
     scene: scenes.Scene
     layout: InputLayout
+    parameters: ParameterLayout
     given: FloatArray
     equations: Sequence[ContactEquations]
     richer: Sequence[ContactEquations]
@@ -108,7 +111,9 @@ def chosen_arrangements(
         ExportError: the scene has no equilibrium, a load case has none, there are too many arrangements, or a load acts
             inside a line of contact.
     """
-    scene = without_contacts(model.scene)
+    parameters = model.parameters
+    # All is found for the scene's own numbers; equations that take parameters are written at the end.
+    scene = without_contacts(model.scene).model_copy(update={"parameters": ()})
     grids = Grids(model.discretisation)
     layout = input_layout(scene)
     given = layout.pack(None)
@@ -136,11 +141,16 @@ def chosen_arrangements(
     if count > MOST_ARRANGEMENTS:
         problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
         raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
-    equations = [ContactEquations(scene, given, grids, state) for state in met.states.values()]
     start = list(met.states).index(met.key(first))
-    finer = richer(grids, scene)
-    richer_equations = [ContactEquations(scene, given, finer, own.state) for own in equations if estimate_errors]
-    return Chosen(scene, layout, given, equations, richer_equations, start, _z_of(equations[start], own))
+    answers, finer = (
+        [ContactEquations(scene, given, own_grids, state, parameters) for state in met.states.values()]
+        for own_grids in (grids, richer(grids, scene))
+    )
+    at_start = replace(answers[start], parameters=NO_PARAMETERS) if parameters.size else answers[start]
+    both = np.append(given, parameters.pack())
+    return Chosen(
+        scene, layout, parameters, both, answers, finer if estimate_errors else [], start, _z_of(at_start, own)
+    )
 
 
 def _check(solution: Solution, what: str) -> None:

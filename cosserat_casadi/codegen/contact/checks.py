@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import held_by_contact
+from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
     "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
@@ -38,9 +39,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     if not scene.touches_exactly:
         return
     problems = [Problem(f"--{word}", SENTENCES[word], REMEDY) for word, wanted in asked.items() if wanted]
-    if scene.parameters:
-        problem = "rods in exact contact have no parameters in C"
-        problems.append(Problem("parameters", problem, "leave them out"))
+    problems += _refused_parameters(scene)
     for obstacle in scene.obstacles:
         if obstacle.bodies or obstacle.body is not None:
             problem = "bodies in exact contact are not found in C, but for rods that carry them"
@@ -48,6 +47,18 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     problems += held_by_contact(scene)
     if problems:
         raise ExportError(*problems)
+
+
+def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
+    """Parameters that change what the solver in C knows of rods in numbers: their surfaces, and where elements end."""
+    for numbers in scene.named_parameters():
+        for own in numbers.all_numbers:
+            if own.holder.table == "rods" and own.keys[0] in ("length", "section"):
+                problem = f"{own.name} is the surface of a rod in exact contact, which C has in numbers"
+                yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")
+    for ends in parameter_layout(scene).moving:
+        problem = f"{', '.join(ends.names)} would move ends of elements, which in C contacts alone do"
+        yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")
 
 
 def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None:

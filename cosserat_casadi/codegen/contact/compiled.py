@@ -6,6 +6,7 @@ import ctypes
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from cosserat_casadi.codegen.compiled_results import SOLVED, AnswerInfo, JudgedA
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
+from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
@@ -114,8 +116,16 @@ class CompiledContact(LoadedLibrary):
 
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
-        """Number of the arrangements by its macro."""
-        return {"ARRANGEMENTS": len(described[ARRANGEMENTS])}
+        """Numbers of the arrangements and of the parameters by their macros."""
+        sizes = {"ARRANGEMENTS": len(described[ARRANGEMENTS])}
+        if described.get("parameters"):
+            sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
+        return sizes
+
+    @cached_property
+    def parameters(self) -> ListedParameters:
+        """Names, units and default values of the parameters; often none."""
+        return listed_parameters(self.manifest.get("parameters", []), self.scene)
 
     @property
     def rods(self) -> list[str]:
@@ -145,7 +155,11 @@ class CompiledContact(LoadedLibrary):
         return self._answer(state, info, solved=True)
 
     def solve(
-        self, inputs: ArgumentValues = None, start: CompiledContactSolution | None = None
+        self,
+        inputs: ArgumentValues = None,
+        start: CompiledContactSolution | None = None,
+        *,
+        parameters: ArgumentValues = None,
     ) -> CompiledContactSolution:
         """Equilibrium by the solver in C.
 
@@ -153,11 +167,13 @@ class CompiledContact(LoadedLibrary):
             inputs: the scene's own by default.
             start: a solution from which the inputs move on; that of the scene's own inputs by default, and where the
                 way from it does not lead to the inputs.
+            parameters: by name or stacked; the scene's own by default.
         """
         given = self.inputs.stacked(inputs)
+        p = self.parameters.passed(parameters)
         state = self._room() if start is None else self._state(start)
         info = ContactInfo()
-        status = self._function("solve")(pointer(given), state, self._workspace(), ctypes.byref(info))
+        status = self._function("solve")(pointer(given), *p, state, self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
         return self._answer(state, info, solved=outcome in SOLVED)
 
@@ -166,6 +182,7 @@ class CompiledContact(LoadedLibrary):
         inputs: ArgumentValues,
         start: CompiledContactSolution,
         *,
+        parameters: ArgumentValues = None,
         max_iterations: int | None = None,
         max_parts: int | None = None,
     ) -> CompiledContactSolution:
@@ -174,6 +191,7 @@ class CompiledContact(LoadedLibrary):
         Args:
             inputs: of the turn.
             start: the solution of the turn before.
+            parameters: by name or stacked; the scene's own by default.
             max_iterations: most Newton steps; by default what the header says.
             max_parts: most parts of the way of the inputs; likewise.
 
@@ -184,25 +202,32 @@ class CompiledContact(LoadedLibrary):
         options = budget(ContactOptions, max_iterations, max_parts)
         state = self._state(start)
         info = ContactInfo()
+        p = self.parameters.passed(parameters)
         columns = np.zeros((self._posed, self.inputs.size, POSE_SIZE))
-        track = self._function("track")
-        status = track(pointer(given), state, None, options, pointer(columns), self._workspace(), ctypes.byref(info))
+        further = [None] if p else []
+        room_of_call = (options, pointer(columns), *further, self._workspace(), ctypes.byref(info))
+        status = self._function("track")(pointer(given), *p, state, None, *room_of_call)
         outcome = CONTACT_OUTCOMES[status]
         # After any other end the state is that of the turn before, for its inputs.
         solved = outcome is Outcome.CONVERGED
         return self._answer(state, info, columns if solved else None, solved=solved)
 
     def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
-        """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
-        columns = np.zeros((self._posed, self.inputs.size, POSE_SIZE))
-        status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
-        return None if status != 0 else by_tip(self.rods, columns[: len(self.rods)])
+        """The d(position, quaternion)/d(inputs, parameters) of each tip, shape (7, m); None where there are none."""
+        columns = self._by_all("solve_sensitivity", solution, self._posed, POSE_SIZE)
+        return None if columns is None else by_tip(self.rods, columns[: len(self.rods)])
 
     def contact_sensitivity(self, solution: CompiledContactSolution) -> list[FloatArray] | None:
-        """The d(start, end, forces at both)/dinputs of each contact, shape (4, m); None where there are none."""
-        columns = np.zeros((max(len(solution.contacts), 1), self.inputs.size, RATES))
-        status = self._function("contact_sensitivity")(self._state(solution), pointer(columns), self._workspace())
-        return None if status != 0 else [own.T for own in columns[: len(solution.contacts)]]
+        """The d(start, end, forces at both)/d(inputs, parameters) of each contact, shape (4, m); None as there."""
+        columns = self._by_all("contact_sensitivity", solution, len(solution.contacts), RATES)
+        return None if columns is None else [own.T for own in columns]
+
+    def _by_all(self, word: str, solution: CompiledContactSolution, count: int, rows: int) -> FloatArray | None:
+        """Derivatives by inputs, then by parameters, shape (count, m, rows); None where a function in C has none."""
+        by_inputs, by_parameters = (np.zeros((count, of.size, rows)) for of in (self.inputs, self.parameters))
+        columns = [pointer(own) for own in (by_inputs, *([by_parameters] if self.parameters.size else []))]
+        status = self._function(word)(self._state(solution), *columns, self._workspace())
+        return None if status != 0 else np.concatenate([by_inputs, by_parameters], axis=1)
 
     def margins(self, solution: CompiledContactSolution) -> Margins | None:
         """How near a solution is to other contacts; None where it is no solution."""

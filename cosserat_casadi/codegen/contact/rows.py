@@ -10,6 +10,7 @@ from cosserat_casadi.codegen.rows import CONTACT, ERRORS, JUDGED, NAME, POSE, Ro
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -28,6 +29,8 @@ def contact_row_library(model: Model, load_cases: FloatArray, *, estimate_errors
         ExportError: C does not know what the scene has, or its contacts; or the scene has no equilibrium.
     """
     check_contact(model.scene, {})
+    if model.parameters.size:
+        raise ExportError(Problem("parameters", "rows in exact contact are of inputs alone", "bind a value to each"))
     columns = row_results(model.scene, estimate_errors=estimate_errors)
     chosen = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, leave_out=True)
     names = scene_names(NAME, without_contacts(model.scene))

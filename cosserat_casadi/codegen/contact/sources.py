@@ -24,10 +24,12 @@ from cosserat_casadi.codegen.manifest import (
     actuator_entries,
     head_entries,
     input_entries,
+    parameter_entries,
     with_manifest,
 )
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, identifier
+from cosserat_casadi.codegen.parameter_sources import contact_parameter_words
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
 from cosserat_casadi.equilibrium.contact import (
     contact_alternatives,
@@ -36,6 +38,7 @@ from cosserat_casadi.equilibrium.contact import (
     contact_state,
     passing_through,
 )
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.metrics import ROUNDING, SAFETY
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
@@ -120,12 +123,12 @@ def contact_files(
         kernels += ArrangementKernels(own, names.kernel(f"richer_{number}"), RICHER_WORDS).all()
     generated = kernel_sources(kernels, names)
     tables = Tables(chosen, names.name)
-    words = _words(chosen, names, tables, generated)
+    words = _words(chosen, names, tables, generated) | contact_parameter_words(model, names)
     words |= accuracy_words(chosen.scene, error_estimate, verified)
     files = {
         **rendered(words, (*VERBATIM, *(ERROR_FILES if chosen.richer else ())), TEMPLATES),
         **generated,
-        "scene.toml": scene_text(with_discretisation(chosen.scene, model.discretisation)),
+        "scene.toml": scene_text(with_discretisation(without_contacts(model.scene), model.discretisation)),
     }
     accuracy = accuracy_entries(chosen.scene, error_estimate, verified)
     return with_manifest(files, {**_manifest(model, chosen, names), **accuracy})
@@ -144,7 +147,8 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         **dict.fromkeys(("in_contact", "with_axes"), True),
         **input_words(free, names),
         "inputs": inputs,
-        "input_room": max(inputs, 1),
+        # C has no array without entries; parameters are behind the inputs.
+        "input_room": max(len(chosen.given), 1),
         "rods": len(tables.rods),
         "poses": len(tables.rods) + len(chosen.scene.bodies),
         "obstacles": len(tables.obstacles),
@@ -248,6 +252,7 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
     return {
         **head_entries(names, chosen.scene),
         "inputs": input_entries(free),
+        **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
         "rods": [rod.name for rod in chosen.scene.rods],
         **({"bodies": [body.name for body in chosen.scene.bodies]} if chosen.scene.bodies else {}),
         "obstacles": [obstacle.name for obstacle in chosen.scene.obstacles],
