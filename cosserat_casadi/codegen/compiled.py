@@ -14,7 +14,6 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_motion import CompiledMotion
 from cosserat_casadi.codegen.compiled_results import (
-    VERDICTS,
     AnswerInfo,
     CompiledSolution,
     CompiledStability,
@@ -260,9 +259,7 @@ class Compiled(LoadedLibrary, CompiledMotion):
         p = self.parameters.passed(parameters)
         judge = self._function("stability")
         status = judge(pointer(given), *p, pointer(unknowns), self._workspace(), room, ctypes.byref(info))
-        if status != 0:
-            return None
-        return CompiledStability(info.smallest_eigenvalue, info.negative, info.zero, VERDICTS[info.verdict])
+        return None if status != 0 else info.judged
 
     def parameter_sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None

@@ -68,17 +68,6 @@ class TubeInfo(AnswerInfo):
     _fields_ = (("determinant", ctypes.c_double),)
 
 
-class StabilityInfo(ctypes.Structure):
-    """The struct in C that says what eigenvalues mean."""
-
-    _fields_ = (
-        ("smallest_eigenvalue", ctypes.c_double),
-        ("negative", ctypes.c_int),
-        ("zero", ctypes.c_int),
-        ("verdict", ctypes.c_int),
-    )
-
-
 VERDICTS = ("stable", "neutral", "critical", "unstable")
 """Verdicts on stability in C, in the order of their numbers."""
 
@@ -105,6 +94,22 @@ class CompiledStability:
     def stable(self) -> bool:
         """Whether a real rod stays there."""
         return self.verdict in ("stable", "neutral")
+
+
+class StabilityInfo(ctypes.Structure):
+    """The struct in C that says what eigenvalues mean."""
+
+    _fields_ = (
+        ("smallest_eigenvalue", ctypes.c_double),
+        ("negative", ctypes.c_int),
+        ("zero", ctypes.c_int),
+        ("verdict", ctypes.c_int),
+    )
+
+    @property
+    def judged(self) -> CompiledStability:
+        """The same as a record."""
+        return CompiledStability(self.smallest_eigenvalue, self.negative, self.zero, VERDICTS[self.verdict])
 
 
 @dataclass(frozen=True, kw_only=True)

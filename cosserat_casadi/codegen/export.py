@@ -105,7 +105,7 @@ def export(
         files = tube_files(model, chosen, error_estimate)
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
-        arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors)
+        arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, stability=stability)
         files = contact_files(model, arrangements, names, error_estimate, verified)
     else:
         files = folder_files(

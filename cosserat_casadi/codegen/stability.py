@@ -50,7 +50,6 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
     units = allowed.units
     # As in Python: rods of one energy unit need no scaling, and keep their digits.
     roots = np.sqrt(units / units.max()) if len(set(units)) > 1 else np.ones(len(units))
-    everywhere = model.has_potential(np.ones(model.inputs.size))
     words: dict[str, Any] = {
         "name": names.name,
         "MACRO": names.macro,
@@ -61,13 +60,10 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
         "free_unknowns": numbers(allowed.free.tolist()),
         "held_unknowns": numbers(allowed.held.tolist() or [0]),
         "roots": numbers(roots.tolist()),
-        "zero": ZERO,
-        "dependent": DEPENDENT,
-        "aside": ASIDE,
+        **limits_of_stability(model),
         "tolerance": ContinuationSettings().newton.tolerance,
         "single_tolerance": SINGLE["single_tolerance"],
         **_parameter_words(model, names),
-        "potential_note": ALWAYS if everywhere else AT_TIMES,
     }
     source, header, algorithm = stability_files(names.name)
     return {
@@ -75,6 +71,12 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
         header: render("stability.h.in", words),
         algorithm: resource("c", algorithm),
     }
+
+
+def limits_of_stability(model: Model) -> dict[str, Any]:
+    """What templates say of the limits of a verdict, and of where it has a meaning."""
+    everywhere = model.has_potential(np.ones(model.inputs.size))
+    return {"zero": ZERO, "dependent": DEPENDENT, "aside": ASIDE, "potential_note": ALWAYS if everywhere else AT_TIMES}
 
 
 def _parameter_words(model: Model, names: Names) -> dict[str, str]:

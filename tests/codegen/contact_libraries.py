@@ -69,11 +69,11 @@ class ContactLibrary:
 
 
 def exported_contact(
-    wanted: Scene, folder: Path, load_cases: FloatArray, modes: int, nodes: int, *, estimate_errors: bool = True
+    wanted: Scene, folder: Path, load_cases: FloatArray, modes: int, nodes: int, **options: bool
 ) -> ContactLibrary:
-    """A scene in exact contact as a folder."""
+    """A scene in exact contact as a folder, with options of an export."""
     model = build(wanted, discretise(wanted, modes, nodes))
-    return ContactLibrary(model, export(model, folder, load_cases=load_cases, estimate_errors=estimate_errors))
+    return ContactLibrary(model, export(model, folder, load_cases=load_cases, **options))
 
 
 def assert_same(found: CompiledContactSolution, wanted: Solution, *, forces: float = 1e-9) -> None:

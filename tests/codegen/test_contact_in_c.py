@@ -52,13 +52,15 @@ def down(force: float) -> np.ndarray:
 @pytest.fixture(scope="module")
 def bar(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
     """A rod over a bar, which knows contact at a point, and none."""
-    return exported_contact(over_bar(), tmp_path_factory.mktemp("bar") / "bar", down(8.0)[None], 3, 6)
+    return exported_contact(over_bar(), tmp_path_factory.mktemp("bar") / "bar", down(8.0)[None], 3, 6, stability=True)
 
 
 @pytest.fixture(scope="module")
 def table(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
     """A rod on a table, which knows the tip, a line and no contact."""
-    return exported_contact(on_table(), tmp_path_factory.mktemp("table") / "table", down(60.0)[None], 4, 8)
+    return exported_contact(
+        on_table(), tmp_path_factory.mktemp("table") / "table", down(60.0)[None], 4, 8, stability=True
+    )
 
 
 @pytest.fixture(scope="module")
@@ -220,6 +222,24 @@ def test_inputs_that_are_not_finite(bar: ContactLibrary, bad: float) -> None:
 
 
 @pytest.mark.slow
+def test_a_rod_that_tips_over_beside_a_bar_is_told(tmp_path: Path) -> None:
+    """Weak against bending aside and torsion, it is unstable in contact from 0.43 N on, as in Python."""
+    weak = {"bending_x": 0.05, "bending_y": 1.4, "torsion": 0.03}
+    thin = rod("kirchhoff", stiffness=weak, base={"position": [0, 0, 0], "tangent": [1, 0, 0]})
+    near = {**BAR, "from": [0.5, -0.5, -0.052], "to": [0.5, 0.5, -0.052]}
+    pushed = {**PUSH, "force": [0, 0, -0.1]}
+    wanted = scene(rods=[thin], loads=[pushed], obstacles=[near], accuracy={"tolerance": 1e-8})
+    library = exported_contact(wanted, tmp_path / "thin", down(1.0)[None], 2, 4, estimate_errors=False, stability=True)
+    found, same = library.loaded.start(), None
+    for force, verdict in ((0.1, "stable"), (0.4, "stable"), (0.5, "unstable")):
+        found = library.loaded.solve(down(force), found)
+        same = solve(library.model, down(force), start=same)
+        judged = library.loaded.stability(found)
+        assert judged is not None and judged.verdict == verdict and same.stable == judged.stable
+        assert_allclose(judged.smallest_eigenvalue, same.smallest_eigenvalue, rtol=1e-6, atol=0)
+
+
+@pytest.mark.slow
 def test_sources_by_hand_compile_without_a_word(
     bar: ContactLibrary, table: ContactLibrary, pulled: ContactLibrary, tmp_path: Path
 ) -> None:
@@ -249,7 +269,7 @@ AT_FORCES = [("bar", 0.2, []), ("bar", 8.0, ["point"]), ("table", 10.0, ["point"
 
 
 @pytest.mark.parametrize(("which", "force", "kinds"), mostly_slow(AT_FORCES, quick=AT_FORCES[:2]))
-def test_errors_in_contact(which: str, force: float, kinds: list[str], request: pytest.FixtureRequest) -> None:
+def test_errors_and_verdicts(which: str, force: float, kinds: list[str], request: pytest.FixtureRequest) -> None:
     """They are those of Python, without contact, at a point, at the tip and along a line."""
     library: ContactLibrary = request.getfixturevalue(which)
     found = library.loaded.solve(down(force))
@@ -260,6 +280,9 @@ def test_errors_in_contact(which: str, force: float, kinds: list[str], request: 
     np.testing.assert_allclose(found.error_estimate, wanted.error_estimate, rtol=1e-4, atol=2e-12)
     assert found.within_tolerance == wanted.within_tolerance
     assert library.loaded.error_estimate(found) == found.error_estimate
+    judged = library.loaded.stability(found)
+    assert judged is not None and judged.stable and wanted.stable
+    assert_allclose(judged.smallest_eigenvalue, wanted.smallest_eigenvalue, rtol=1e-10, atol=0)
 
 
 @pytest.mark.slow
@@ -307,7 +330,9 @@ def test_an_error_is_of_a_solution(bar: ContactLibrary) -> None:
     moved = bytearray(found.state)
     # The first unknown stands behind two whole numbers.
     moved[8:16] = np.float64(0.5).tobytes()
-    assert bar.loaded.error_estimate(replace(found, state=bytes(moved))) is None
+    unsolved = replace(found, state=bytes(moved))
+    assert bar.loaded.error_estimate(unsolved) is None
+    assert bar.loaded.stability(unsolved) is None and bar.loaded.margins(unsolved) is None
 
 
 def test_efforts_and_bodies_in_contact(pulled: ContactLibrary) -> None:
@@ -389,8 +414,8 @@ def test_refused_uses(tmp_path: Path) -> None:
     """What C does not have of exact contact is refused, with all faults at once, and nothing is written."""
     wanted = over_bar()
     model = build(wanted, discretise(wanted, 1, 2))
-    with pytest.raises(ExportError, match=r"no exact contact(?s:.*)not written in C"):
-        export(model, tmp_path / "folder", dynamics=True, stability=True)
+    with pytest.raises(ExportError, match=r"no exact contact(?s:.*)no batches on a GPU"):
+        export(model, tmp_path / "folder", dynamics=True, cuda=True)
     with pytest.raises(ExportError, match="no one function for CasADi"):
         export(model, tmp_path / "folder", derivatives=True)
     with pytest.raises(ExportError, match=r"of shape \(k, 3\), got shape \(1, 2\)"):

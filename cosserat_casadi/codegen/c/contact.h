@@ -94,6 +94,10 @@ typedef struct {
 #if CONTACT_ACTUATORS
   kernel actuators; /* efforts, and what they work on */
 #endif
+#if CONTACT_STABILITY
+  kernel bends;      /* second derivative of the gap along the rod at every contact, over the length */
+  const real *roots; /* of the energy unit of each unknown over the largest; zero of multipliers */
+#endif
 } arrangement;
 
 /* What a rod is in every arrangement. */
@@ -104,6 +108,9 @@ typedef struct {
   real radius_at_tip;
   real length;
   real force_unit; /* EI/l2, N */
+#if CONTACT_STABILITY
+  real energy; /* unit of its energy over the largest */
+#endif
 } rod_entry;
 
 /* A rod and an obstacle that it must not enter. */

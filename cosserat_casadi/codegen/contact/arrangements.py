@@ -43,6 +43,7 @@ class Chosen:
         richer: of each arrangement with modes and intervals added; none where no error is estimated.
         start: number of the arrangement for these inputs.
         z: unknowns, forces and places that solve its equations.
+        judges_stability: whether the library says which solutions are stable.
     """
 
     scene: scenes.Scene
@@ -53,6 +54,7 @@ class Chosen:
     richer: Sequence[ContactEquations]
     start: int
     z: FloatArray
+    judges_stability: bool = False
 
     @property
     def tolerance(self) -> float:
@@ -97,7 +99,12 @@ class _Met:
 
 
 def chosen_arrangements(
-    model: Model, load_cases: FloatArray | None, *, estimate_errors: bool, leave_out: bool = False
+    model: Model,
+    load_cases: FloatArray | None,
+    *,
+    estimate_errors: bool,
+    leave_out: bool = False,
+    stability: bool = False,
 ) -> Chosen:
     """The arrangements that a scene meets, and no contact.
 
@@ -106,6 +113,7 @@ def chosen_arrangements(
         load_cases: stacked inputs, a row for each case, shape (k, m).
         estimate_errors: whether the library estimates the errors of its answers.
         leave_out: whether load cases without an equilibrium are left out, instead of refused.
+        stability: whether the library says which solutions are stable.
 
     Raises:
         ExportError: the scene has no equilibrium, a load case has none, there are too many arrangements, or a load acts
@@ -147,9 +155,16 @@ def chosen_arrangements(
         for own_grids in (grids, richer(grids, scene))
     )
     at_start = replace(answers[start], parameters=NO_PARAMETERS) if parameters.size else answers[start]
-    both = np.append(given, parameters.pack())
     return Chosen(
-        scene, layout, parameters, both, answers, finer if estimate_errors else [], start, _z_of(at_start, own)
+        scene=scene,
+        layout=layout,
+        parameters=parameters,
+        given=np.append(given, parameters.pack()),
+        equations=answers,
+        richer=finer if estimate_errors else [],
+        start=start,
+        z=_z_of(at_start, own),
+        judges_stability=stability,
     )
 
 

@@ -17,7 +17,6 @@ from cosserat_casadi.model.parameters import parameter_layout
 SENTENCES = {
     "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
     "dynamics": "motions in C know no exact contact",
-    "stability": "the stability of rods in exact contact is not written in C",
     "batches": "rods in exact contact have no function for many load cases",
     "cuda": "rods in exact contact have no batches on a GPU",
 }
@@ -31,14 +30,16 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
 
     Args:
         scene: the scene.
-        asked: whether ``derivatives``, ``dynamics``, ``stability``, ``batches`` and ``cuda`` are asked for.
+        asked: which of the options of an export are asked for.
 
     Raises:
         ExportError: with every fault.
     """
     if not scene.touches_exactly:
         return
-    problems = [Problem(f"--{word}", SENTENCES[word], REMEDY) for word, wanted in asked.items() if wanted]
+    problems = [
+        Problem(f"--{word}", SENTENCES[word], REMEDY) for word, wanted in asked.items() if wanted and word in SENTENCES
+    ]
     problems += _refused_parameters(scene)
     for obstacle in scene.obstacles:
         if obstacle.bodies or obstacle.body is not None:

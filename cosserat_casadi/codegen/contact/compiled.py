@@ -11,7 +11,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiled_results import SOLVED, AnswerInfo, JudgedAnswer, judged_words
+from cosserat_casadi.codegen.compiled_results import (
+    SOLVED,
+    AnswerInfo,
+    CompiledStability,
+    JudgedAnswer,
+    StabilityInfo,
+    judged_words,
+)
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
@@ -235,6 +242,18 @@ class CompiledContact(LoadedLibrary):
         state = self._state(solution)
         status = self._function("margins")(state, ctypes.byref(force), ctypes.byref(gap), self._workspace())
         return None if status != 0 else Margins(force.value, gap.value)
+
+    def stability(self, solution: CompiledContactSolution) -> CompiledStability | None:
+        """Whether a solution is stable, for loads with a potential; None where it is no solution.
+
+        Raises:
+            AttributeError: the folder was exported without stability.
+        """
+        size = self._function("stability_workspace_size")()
+        info = StabilityInfo()
+        judge = self._function("stability")
+        status = judge(self._state(solution), self._workspace(), room(size), ctypes.byref(info))
+        return None if status != 0 else info.judged
 
     def error_estimate(self, solution: CompiledContactSolution) -> float | None:
         """Estimated error of a solution, such as one of a turn; None where it is none.

@@ -37,6 +37,9 @@ ACTUATORS = "actuators"
 WATCHED = "watched"
 """Kernel more where errors are estimated: the poses and lengths whose errors they are."""
 
+BENDS = "bends"
+"""Kernel more of a library that judges stability."""
+
 RICHER_WORDS = ("residual", "jacobian", "nodes", "contacts", WATCHED)
 """The same on the modes and intervals that an estimate of errors adds."""
 
@@ -72,6 +75,7 @@ class ArrangementKernels:
             "contacts": lambda: self._kernel("contacts", [self._resultants(), self._point_forces()]),
             WATCHED: lambda: self._kernel(WATCHED, [watched(self._written.system).column]),
             ACTUATORS: lambda: self._kernel(ACTUATORS, self._actuators()),
+            BENDS: lambda: self._kernel(BENDS, [self._bends()]),
         }
         return [kernels[word]() for word in self.words]
 
@@ -205,6 +209,32 @@ class ArrangementKernels:
         normal: Matrix = surface(obstacle)(position)[1]
         return normal
 
+    def _bends(self) -> Matrix:
+        """Second derivative of the gap with X at the beginning of every contact, over the length."""
+        bends: list[Matrix] = [ca.MX(0, 1)]
+        for touch in self._written.state.touches:
+            rod = self._written.system.discrete.rods[touch.owner]
+            shape = self._written.system.shapes[touch.owner]
+            node = rod.grid.node_at(touch.start)
+            base = self._written.system.base(touch.owner)
+            rotation = quaternion_to_matrix(base.quaternion)
+            # Rates and strains are counted in the coordinate that integrals run over, which a moving element stretches.
+            rates = rod.grid.rates_in(rod.grid.element_of_node[[node]])
+            rate = 1.0 if rates is None else as_matrix(rates)[0]
+            tangent = rotation @ shape.tangent[:, node] / rate
+            curvature: Matrix = ca.MX.zeros(3)
+            for director, row in zip(shape.directors, rod.strain_rows(shape.q, (0, 1, 2), shape.ratio), strict=True):
+                if row is not None:
+                    curvature = curvature + rotation @ director[:, node] * row[node] / rate
+            position = base.position + rotation @ shape.position_at(node)
+            obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
+            _, normal, second = surface(obstacle)(position)
+            length = rod.properties.length
+            # The rate of the extension is along the tangent, on which the normal stands.
+            bend = ca.dot(tangent, second @ tangent) + ca.dot(normal, length * ca.cross(curvature, tangent))
+            bends.append(bend / length)
+        return ca.vertcat(*bends)
+
     def _forces(self) -> list[tuple[Touch, Matrix, Matrix]]:
         """Each contact, the forces at its ends and the coefficients of that along it, without unit."""
         _, f, _ = self._written.unknowns
@@ -223,8 +253,12 @@ class ArrangementKernels:
 
 def words_of(chosen: Chosen) -> tuple[str, ...]:
     """Kernels of every arrangement of a library, in the order of the table in C."""
-    words = (*WORDS, WATCHED) if chosen.richer else WORDS
-    return (*words, ACTUATORS) if chosen.scene.actuators else words
+    further = (
+        (WATCHED, bool(chosen.richer)),
+        (ACTUATORS, bool(chosen.scene.actuators)),
+        (BENDS, chosen.judges_stability),
+    )
+    return (*WORDS, *(word for word, is_there in further if is_there))
 
 
 def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:

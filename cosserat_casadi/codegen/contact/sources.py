@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
+from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import (
     RICHER_WORDS,
@@ -17,7 +18,15 @@ from cosserat_casadi.codegen.contact.kernels import (
 )
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernel_files import kernel_sources
-from cosserat_casadi.codegen.library import PLAIN_BUILD, accuracy_words, comment, input_words, rendered, title_words
+from cosserat_casadi.codegen.library import (
+    PLAIN_BUILD,
+    SECOND_VARIATION,
+    accuracy_words,
+    comment,
+    input_words,
+    rendered,
+    title_words,
+)
 from cosserat_casadi.codegen.manifest import (
     ARRANGEMENTS,
     accuracy_entries,
@@ -30,10 +39,12 @@ from cosserat_casadi.codegen.manifest import (
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.parameter_sources import contact_parameter_words
+from cosserat_casadi.codegen.stability import limits_of_stability
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
 from cosserat_casadi.equilibrium.contact import (
     contact_alternatives,
     contact_equations,
+    contact_judgement,
     contact_search,
     contact_state,
     passing_through,
@@ -54,6 +65,9 @@ TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "con
 
 ERROR_FILES = ("contact_error.c",)
 """The same of a library that estimates errors."""
+
+STABILITY_FILES = ("contact_stability.c", SECOND_VARIATION)
+"""The same of a library that judges stability."""
 
 MOST_TRIES = 24
 """Most arrangements that are solved for one change of the inputs."""
@@ -124,9 +138,12 @@ def contact_files(
     generated = kernel_sources(kernels, names)
     tables = Tables(chosen, names.name)
     words = _words(chosen, names, tables, generated) | contact_parameter_words(model, names)
+    if chosen.judges_stability:
+        words |= _stability_words(model, tables)
     words |= accuracy_words(chosen.scene, error_estimate, verified)
+    further = (*(ERROR_FILES if chosen.richer else ()), *(STABILITY_FILES if chosen.judges_stability else ()))
     files = {
-        **rendered(words, (*VERBATIM, *(ERROR_FILES if chosen.richer else ())), TEMPLATES),
+        **rendered(words, (*VERBATIM, *further), TEMPLATES),
         **generated,
         "scene.toml": scene_text(with_discretisation(without_contacts(model.scene), model.discretisation)),
     }
@@ -186,6 +203,23 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "default_parts": TRACK_PARTS,
         **_limits(chosen),
         **status_words(names, CONTACT_OUTCOMES, "CONTACT"),
+    }
+
+
+def _stability_words(model: Model, tables: Tables) -> dict[str, Any]:
+    free, held, unknowns = tables.varying
+    return {
+        "stability": True,
+        "free": free,
+        "held": held,
+        "most_unknowns": unknowns,
+        "free_unknowns": numbers(list(range(free))),
+        "held_unknowns": numbers(list(range(free, free + held))),
+        "ones": numbers([1.0] * free),
+        "units_note": "",
+        "flat": contact_judgement.FLAT,
+        "pressing": contact_judgement.PRESSING,
+        **limits_of_stability(model),
     }
 
 

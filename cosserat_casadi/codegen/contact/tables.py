@@ -13,6 +13,7 @@ from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, words_of
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
@@ -173,8 +174,35 @@ class Tables:
                 "length": repr(float(rod.properties.length)),
                 "force_unit": repr(float(discrete.tension_unit(name))),
             }
+            if self.chosen.judges_stability:
+                fields["energy"] = repr(float(rod.energy_unit / self._largest_unit))
             entries.append(_initialiser(fields))
         return _table("rod_entry", "ROD", "RODS", entries)
+
+    @cached_property
+    def _largest_unit(self) -> float:
+        """Largest energy unit of the unknowns that vary, J."""
+        return float(variations(self.chosen.equations[0].nominal.model).units.max())
+
+    def roots(self, equations: ContactEquations) -> FloatArray:
+        """Root of the energy unit of each unknown over the largest; zero of multipliers and tensions."""
+        allowed = variations(equations.nominal.model)
+        roots = np.zeros(equations.nominal.model.size)
+        roots[allowed.free] = np.sqrt(allowed.units / self._largest_unit)
+        return roots
+
+    @cached_property
+    def varying(self) -> tuple[int, int, int]:
+        """Of the stability of all arrangements as one: unknowns that vary, constraints, and most unknowns of both."""
+        free, held, sizes = [], [], []
+        for equations in self.chosen.equations:
+            unknowns, forces, places = self.sizes(equations)
+            free.append(int(np.count_nonzero(self.roots(equations))))
+            held.append(unknowns - free[-1] + forces + places)
+            sizes.append(unknowns)
+        most = max(free)
+        constraints = [own + most - varied for own, varied in zip(held, free, strict=True)]
+        return most, max(*constraints, 1), max(sizes)
 
     @property
     def watched_counts(self) -> tuple[int, int]:
@@ -217,6 +245,8 @@ class Tables:
             elements.append(_initialiser(fields))
             first_node += rod.grid.size
         lines.append(_table("rod_elements", f"ELEMENTS_{level.prefix}{number}", "RODS", elements))
+        if self.chosen.judges_stability and not level.prefix:
+            lines.append(_reals(f"ROOTS_{number}", self.roots(equations)))
         if equations.state.touches:
             lines.append(_table("contact_entry", f"TOUCHES_{level.prefix}{number}", "", self._touches(equations)))
         return "\n".join(lines)
@@ -273,6 +303,8 @@ class Tables:
             "rods": f"ELEMENTS_{level.prefix}{number}",
             "modes": f"{level.prefix}ROD_MODES",
         }
+        if self.chosen.judges_stability and not level.prefix:
+            fields["roots"] = f"ROOTS_{number}"
         for word in level.words:
             fields[word] = f"{self.name}_k_{level.prefix.lower()}{number}_{word}"
         return _initialiser(fields)

@@ -1,0 +1,118 @@
+/* Stability of equilibria in exact contact: the second variation over the variations that contacts admit.
+
+   Contacts that press are constraints, and the curvature of the gap times their force is in the Jacobian already. The place
+   of a point of contact follows a variation; of the second variation of -N min d the part N (dd'/dx)^2 / d'' is left to add.
+   cosserat_casadi/equilibrium/contact/contact_judgement.py does the same in Python.
+
+   All arrangements are judged as one problem of FREE unknowns that vary and HELD constraints: those that an arrangement
+   has fewer of are held, each by a constraint of its own. */
+
+static const real NO_UNKNOWNS[N] = {0};
+
+typedef struct {
+  const arrangement *at;
+  const contact_state *state;
+  workspace *work;
+  memory *room;
+} problem;
+
+/* Scale of each unknown of an arrangement, zero of multipliers: root of its energy unit, and what takes it from an element
+   that has moved to one at rest, in whose width strains are counted. */
+static void scale_unknowns(const arrangement *at, const real *z, real *scale) {
+  memcpy(scale, at->roots, (size_t)at->unknowns * sizeof *scale);
+  for (int rod = 0; rod < RODS; rod++) {
+    const rod_elements *elements = at->rods + rod;
+    real *own = scale + elements->first_strain;
+    for (int c = 0; c < ROD[rod].components; c++) {
+      for (int e = 0; e < elements->elements; e++) {
+        const real width = end_of_element(at, z, rod, e + 1) - end_of_element(at, z, rod, e);
+        for (int m = 0; m < at->modes[rod].modes[c]; m++) *own++ *= nominal_width(elements, e) / width;
+      }
+    }
+  }
+}
+
+/* A row of the Jacobian as a constraint on the unknowns that vary, which is the next one that is held. */
+static int hold(const arrangement *at, int row, const real *scale, const workspace *work, int held, real *matrix) {
+  for (int i = 0, free = 0; i < at->unknowns; i++) {
+    if (scale[i] != 0) matrix[free++ * N + FREE + held] = work->jacobian[i * at->size + row] / scale[i];
+  }
+  return held + 1;
+}
+
+/* Adds what the place of a point of contact gives, which slides as the rod moves. */
+static void add_slide(const arrangement *at, int row, real stiffness, const real *scale, const workspace *work,
+                      real *matrix) {
+  for (int j = 0, column = 0; j < at->unknowns; j++) {
+    if (scale[j] == 0) continue;
+    for (int i = 0, free = 0; i < at->unknowns; i++) {
+      if (scale[i] == 0) continue;
+      const real share = work->jacobian[i * at->size + row] / scale[i];
+      matrix[column * N + free++] += stiffness * share * work->jacobian[j * at->size + row] / scale[j];
+    }
+    column++;
+  }
+}
+
+/* The contacts that press, as constraints behind those that are held already; returns how many are held then. */
+static int hold_contacts(const problem *judged, const real *scale, int held, real *matrix) {
+  const arrangement *at = judged->at;
+  const real *z = judged->state->z;
+  workspace *work = judged->work;
+  const real largest = largest_force(at, z);
+  real bends[CONTACT_TOUCHES];
+  int row = at->unknowns;
+  call(at->bends, z, judged->state->inputs, bends, 0, work);
+  for (int k = 0; k < at->touches; k++) {
+    const contact_entry *entry = at->touch + k;
+    const int rows = entry->ends + entry->moving + entry->along;
+    const real force = z[at->unknowns + entry->first_force];
+    const int presses = entry->is_line || force > PRESSING * largest;
+    const int slides = !entry->is_line && entry->moving && bends[k] > FLAT;
+    for (int i = 0; presses && i < (slides ? 1 : rows); i++) held = hold(at, row + i, scale, work, held, matrix);
+    if (presses && slides) add_slide(at, row + 1, force / bends[k] * ROD[entry->rod].energy, scale, work, matrix);
+    row += rows;
+  }
+  return held;
+}
+
+static void jacobian_at(const problem *judged, const real *unused, real *matrix, real *residual) {
+  const arrangement *at = judged->at;
+  workspace *work = judged->work;
+  real *scale = judged->room->scale;
+  const int n = at->size;
+  int free = 0, held = 0;
+  (void)unused;
+  memset(matrix, 0, N * N * sizeof *matrix);
+  memset(residual, 0, N * sizeof *residual);
+  scale_unknowns(at, judged->state->z, scale);
+  work->jacobian_of = -1;
+  call(at->jacobian, judged->state->z, judged->state->inputs, work->jacobian, 0, work);
+  int place[CONTACT_UNKNOWNS]; /* of each unknown in the problem of all arrangements */
+  for (int i = 0; i < at->unknowns; i++) place[i] = scale[i] != 0 ? free++ : FREE + held++;
+  for (int j = 0; j < at->unknowns; j++) {
+    for (int i = 0; i < at->unknowns; i++) {
+      const real row = scale[i] != 0 ? scale[i] : 1, column = scale[j] != 0 ? scale[j] : 1;
+      /* A balance is in the unit of its energy, of which the scale has the root; widths count once on either side. */
+      const real unit = scale[i] != 0 ? at->roots[i] * at->roots[i] / row : 1;
+      matrix[place[j] * N + place[i]] = unit * work->jacobian[j * n + i] / column;
+    }
+  }
+  held = hold_contacts(judged, scale, held, matrix);
+  for (; free < FREE; free++) matrix[free * N + FREE + held++] = 1;
+}
+
+/* No equilibrium alike is looked for beside one in contact: as in Python, one at which a variation costs none is critical. */
+static int solve(const problem *judged, const real *x) {
+  (void)judged;
+  (void)x;
+  return 0;
+}
+
+#include "second_variation.c"
+
+contact_status contact_stability(const contact_state *state, workspace *work, memory *room, verdict_info *info) {
+  if (!is_in_equilibrium(state, work)) return CONTACT_NOT_IN_EQUILIBRIUM;
+  const problem judged = {ARRANGEMENT + state->arrangement, state, work, room};
+  return stability(&judged, NO_UNKNOWNS, room, info);
+}
