@@ -131,8 +131,8 @@ class Plan:
     def work(self) -> list[Chunk]:
         """All rows in chunks."""
         if self.device is not None:
-            return chunks(self.variants, stability=self.stability, compiled_rows=DEVICE_ROWS)
-        return chunks(self.variants, stability=self.stability)
+            return chunks(self.variants, compiled_rows=DEVICE_ROWS)
+        return chunks(self.variants)
 
     @property
     def part(self) -> Path | None:
@@ -539,7 +539,7 @@ def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:
     in_python = _row_model(plan, choice, variant)
     try:
         model = build(choice.scene(entry.scene))
-        library = contact_row_library(model, cases, estimate_errors=plan.estimate_errors)
+        library = contact_row_library(model, cases, estimate_errors=plan.estimate_errors, stability=plan.stability)
         # Once, before many processes look for it.
         library.compiled()
     except ExportError:

@@ -105,7 +105,6 @@ def chunks(
     variants: Variants,
     compiled_from: int = COMPILED_FROM,
     *,
-    stability: bool = False,
     compiled_rows: int | None = None,
 ) -> list[Chunk]:
     """All work of a table; the same table gives the same chunks.
@@ -113,14 +112,13 @@ def chunks(
     Args:
         variants: the scenes of the table.
         compiled_from: rows of one scene from which it is compiled.
-        stability: whether each row says whether its equilibrium is stable, which C does not say in exact contact.
         compiled_rows: rows of a chunk that a compiled library solves, :data:`COMPILED_ROWS` by default.
     """
     listed: list[Chunk] = []
     modelled = []
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
-        in_contact = len(entry.rows) >= IN_CONTACT_FROM and _touches_in_c(entry.scene, stability=stability)
+        in_contact = len(entry.rows) >= IN_CONTACT_FROM and _touches_in_c(entry.scene)
         # Tubes choose their steps row by row.
         if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
@@ -134,14 +132,14 @@ def chunks(
     return listed
 
 
-def _touches_in_c(scene: Scene, *, stability: bool) -> bool:
+def _touches_in_c(scene: Scene) -> bool:
     """Whether a scene is in exact contact, and C knows all that it has."""
     try:
-        check_contact(scene, {"stability": stability})
+        check_contact(scene, {})
     except ExportError:
         return False
     # Errors of rods that carry bodies are those of sections between, of which C knows nothing.
-    return scene.touches_exactly and not scene.bodies
+    return scene.touches_exactly and not scene.bodies and not scene.parameters
 
 
 def solve_parts(parts: Sequence[Part]) -> FloatArray:

@@ -68,7 +68,7 @@ def test_moments_and_lengths_vs_arcs() -> None:
 def test_stiffnesses_vs_arcs_compiled_and_in_python(compiled_from: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "cosserat_casadi.sweeps.run.chunks",
-        lambda found, stability: work.chunks(found, compiled_from, stability=stability),
+        lambda found: work.chunks(found, compiled_from),
     )
     stiffness = np.tile([1.0, 2.5], 10)
     found = sweep(PLANAR, bent(20, **{"rod.stiffness.bending_y": stiffness}), cores=2)

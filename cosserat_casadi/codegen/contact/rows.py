@@ -6,33 +6,44 @@ from cosserat_casadi.codegen.contact.arrangements import Chosen, chosen_arrangem
 from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.names import Names, scene_names
-from cosserat_casadi.codegen.rows import CONTACT, ERRORS, JUDGED, NAME, POSE, RowLibrary, row_results, to_compile
+from cosserat_casadi.codegen.rows import (
+    CONTACT,
+    ERRORS,
+    JUDGED,
+    NAME,
+    POSE,
+    STABILITY,
+    RowLibrary,
+    row_results,
+    to_compile,
+)
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import pairs
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
 
-def contact_row_library(model: Model, load_cases: FloatArray, *, estimate_errors: bool) -> RowLibrary:
+def contact_row_library(
+    model: Model, load_cases: FloatArray, *, estimate_errors: bool, stability: bool = False
+) -> RowLibrary:
     """Sources of the solver of a scene in exact contact with a function for rows.
 
     Args:
-        model: on the discretisation of all rows.
+        model: on the discretisation of all rows, without parameters.
         load_cases: stacked inputs, a row for each case, shape (k, m): the library knows the arrangements of contacts
             that it meets on the way from the scene's own inputs to each of them that has an equilibrium, one after
             the other.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
+        stability: whether they end with :data:`cosserat_casadi.codegen.rows.STABILITY`.
 
     Raises:
         ExportError: C does not know what the scene has, or its contacts; or the scene has no equilibrium.
     """
     check_contact(model.scene, {})
-    if model.parameters.size:
-        raise ExportError(Problem("parameters", "rows in exact contact are of inputs alone", "bind a value to each"))
-    columns = row_results(model.scene, estimate_errors=estimate_errors)
-    chosen = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, leave_out=True)
+    columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
+    asked = {"estimate_errors": estimate_errors, "stability": stability}
+    chosen = chosen_arrangements(model, load_cases, **asked, leave_out=True)
     names = scene_names(NAME, without_contacts(model.scene))
     files = contact_files(model, chosen, names, None)
     files[f"{NAME}_rows.c"] = _rows_source(chosen, names, columns)
@@ -60,5 +71,7 @@ def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
         "pair_entries": ", ".join(entries),
         "estimates_errors": int(estimate in columns),
         "estimate": columns.index(estimate) if estimate in columns else 0,
+        "stability": chosen.judges_stability,
+        "verdict": columns.index(STABILITY[0]) if chosen.judges_stability else 0,
     }
     return render("contact_rows.c.in", words)
