@@ -249,8 +249,9 @@ int contact_contacts(const contact_state *state, contact_contact *contacts, work
     named->rod = own.rod;
     named->obstacle = own.obstacle;
     named->is_line = own.is_line;
-    named->from = own.start;
-    named->to = own.end;
+    /* A body has one section alone, of which no abscissa is told. */
+    named->from = own.rod < RODS ? own.start : 0;
+    named->to = own.rod < RODS ? own.end : 0;
     memcpy(named->force, work->contact_forces + 3 * k, sizeof named->force);
     memcpy(named->point_forces, work->point_forces + 2 * k, sizeof named->point_forces);
   }

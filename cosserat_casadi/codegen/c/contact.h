@@ -27,6 +27,7 @@ enum {
   ARRANGEMENTS = CONTACT_ARRANGEMENTS,
   INPUTS = CONTACT_INPUTS,
   RODS = CONTACT_RODS,
+  OWNERS = CONTACT_OWNERS, /* of contacts: rods, then bodies where any may touch, each a ball with one section, at 1 */
   POSES = CONTACT_POSES, /* tips of rods, then bodies */
   PAIRS = CONTACT_PAIRS,
   MOST_TOUCHES = CONTACT_TOUCHES, /* contacts of any arrangement */
@@ -78,13 +79,14 @@ typedef struct {
   int forces;
   int places;
   int touches;
+  int nodes_of_rods;
   const contact_entry *touch;
   const rod_elements *rods;
   const rod_modes *modes; /* of every rod */
   kernel residual;
   kernel jacobian;
   kernel rate;     /* of the residual, as z and the inputs change at some rates */
-  kernel nodes;    /* positions of the nodes; whether they resolve the rods */
+  kernel nodes;    /* positions of the nodes, and of bodies that may touch; whether they resolve the rods */
   kernel tips;     /* position and quaternion of every tip and body */
   kernel tip_rate; /* its rate, likewise */
   kernel contacts; /* forces of the contacts in world axes, and at their ends */
@@ -100,8 +102,9 @@ typedef struct {
 #endif
 } arrangement;
 
-/* What a rod is in every arrangement. */
+/* What a rod is in every arrangement, or a body. */
 typedef struct {
+  int rank; /* among the owners of contacts, in whose order an arrangement has them */
   int components;   /* admitted strains */
   int is_chebyshev; /* polynomials of strains; else Legendre's */
   real radius_at_base;

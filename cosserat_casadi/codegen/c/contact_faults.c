@@ -148,7 +148,7 @@ static int add_inside(penetration *found, int count, int joins, const pair_entry
    the number of all. */
 static int find_inside(const arrangement *at, const real *z, const pair_entry *pair, real admitted, penetration *found,
                        int count, workspace *work) {
-  real X = 0, before = 0, before_last = 0;
+  real X = first_section(pair->rod), before = X, before_last = X;
   real gap_before = HUGE_VAL, gap_before_last = HUGE_VAL;
   int is_inside = 0;
   for (;;) {
@@ -160,7 +160,7 @@ static int find_inside(const arrangement *at, const real *z, const pair_entry *p
       const real least = gap_of_section(at, z, pair, lowest, work);
       if (least < -admitted) count = add_inside(found, count, 0, pair, lowest, -least, 0);
     }
-    const real angle = X > 0 ? fabs(gap - gap_before) / (X - before) : 0;
+    const real angle = X > before ? fabs(gap - gap_before) / (X - before) : 0;
     if (is_inside) found[count - 1].angle = larger(found[count - 1].angle, angle);
     if (gap < -admitted) {
       count = add_inside(found, count, is_inside, pair, X, -gap, angle);
@@ -213,7 +213,7 @@ static int join_at_contacts(const arrangement *at, const real *z, penetration *f
 /* The least gap of a rod where no contact of it with this obstacle is near; the nodes stand in the workspace. */
 static real least_gap(const arrangement *at, const real *z, const pair_entry *pair, workspace *work) {
   real least = HUGE_VAL;
-  for (real X = 0;;) {
+  for (real X = first_section(pair->rod);;) {
     const real gap = gap_of_section(at, z, pair, X, work);
     int is_near_contact = 0;
     for (int k = 0; k < at->touches; k++) {

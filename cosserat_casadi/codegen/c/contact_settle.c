@@ -30,7 +30,7 @@ static touch line(int rod, int obstacle, real start, real end) {
 }
 
 static int comes_before(const touch *a, const touch *b) {
-  if (a->rod != b->rod) return a->rod < b->rod;
+  if (a->rod != b->rod) return ROD[a->rod].rank < ROD[b->rod].rank;
   if (a->start != b->start) return a->start < b->start;
   return a->obstacle < b->obstacle;
 }

@@ -132,8 +132,15 @@ static void fit_forces(const arrangement *at, const real *inputs, real *z, works
   }
 }
 
-/* Position of the section at an abscissa, from the positions of all nodes. */
+/* Abscissa of the first section of the owner of contacts. */
+static real first_section(int owner) { return owner < RODS ? 0 : 1; }
+
+/* Position of the section at an abscissa, from the positions of all nodes, behind which are those of bodies. */
 static void position_at(const arrangement *at, const real *z, const real *nodes, int rod, real X, real *position) {
+  if (rod >= RODS) {
+    memcpy(position, nodes + 3 * (at->nodes_of_rods + rod - RODS), 3 * sizeof *position);
+    return;
+  }
   const rod_modes *own = at->modes + rod;
   const int count = own->intervals + 1;
   const int e = element_at(at, z, rod, X);
@@ -193,8 +200,8 @@ static real clear_distance(const pair_entry *pair, real X, const real *start, co
 /* Whether no section moves far from one shape to the other, and none through an obstacle. The nodes of both stand in the
    workspace. Each step along the rod is at least CLOSEST. */
 static int is_near(const arrangement *from, const real *old, const arrangement *to, const real *z, workspace *work) {
-  for (int rod = 0; rod < RODS; rod++) {
-    real X = 0;
+  for (int rod = 0; rod < OWNERS; rod++) {
+    real X = first_section(rod);
     for (;;) {
       real start[3], end[3], change[3];
       position_at(from, old, work->nodes_before, rod, X, start);

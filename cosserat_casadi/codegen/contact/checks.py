@@ -42,8 +42,9 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     ]
     problems += _refused_parameters(scene)
     for obstacle in scene.obstacles:
-        if obstacle.bodies or obstacle.body is not None:
-            problem = "bodies in exact contact are not found in C, but for rods that carry them"
+        disks = [body for body in scene.bodies if obstacle.concerns_body(body.name) and body.thickness is not None]
+        if obstacle.body is not None or disks:
+            problem = "exact contact with an obstacle on a body, or of a disk, is not found in C"
             problems.append(Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m"))
     problems += held_by_contact(scene)
     if problems:

@@ -316,7 +316,8 @@ class CompiledContact(LoadedLibrary):
             ends = 2 if own.is_line else 1
             contact = Contact(
                 obstacle=self.manifest["obstacles"][own.obstacle],
-                owner=self.rods[own.rod],
+                owner=[*self.rods, *self.bodies][own.rod],
+                of_body=own.rod >= len(self.rods),
                 start=own.start,
                 end=own.end,
                 force=np.array(own.force),

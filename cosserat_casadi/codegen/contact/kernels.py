@@ -9,13 +9,14 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.kernels import by_columns, kernel
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
-from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, obstacle_of, pairs
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.maths.numbers import as_matrix
@@ -127,12 +128,15 @@ class ArrangementKernels:
         return ca.Function(function.name(), [z, *behind], results, ["z", *words[len(sizes) :]], function.name_out())
 
     def _nodes(self) -> Matrix:
-        """Positions of the nodes of all rods, one after the other, 3×M, m."""
+        """Positions of the nodes of all rods, one after the other, and of bodies that may touch, 3×M, m."""
         positions = []
         for name, shape in self._written.system.shapes.items():
             base = self._written.system.base(name)
             rotation = quaternion_to_matrix(base.quaternion)
             positions.append(ca.repmat(base.position, 1, shape.rod.grid.size) + rotation @ shape.position)
+        scene = self._written.system.discrete.scene
+        if touches_bodies(scene):
+            positions += [self._written.system.frame(FrameName("body", body.name)).position for body in scene.bodies]
         return ca.horzcat(*positions)
 
     def _indices(self) -> Matrix:
@@ -178,6 +182,9 @@ class ArrangementKernels:
         """Force of every contact on its rod, world axes, N, three numbers for each."""
         forces: list[Matrix] = [ca.MX(0, 1)]
         for touch, ends, line in self._forces():
+            if touch.of_body:
+                forces.append(self._unit(touch) * ends * self._normal_of_body(touch))
+                continue
             grid = self._written.system.discrete.rods[touch.owner].grid
             force: Matrix = ca.MX.zeros(3)
             for number, end in enumerate(touch.ends):
@@ -213,6 +220,10 @@ class ArrangementKernels:
         """Second derivative of the gap with X at the beginning of every contact, over the length."""
         bends: list[Matrix] = [ca.MX(0, 1)]
         for touch in self._written.state.touches:
+            if touch.of_body:
+                # Its place follows from where it is, and does not slide by itself.
+                bends.append(ca.MX.zeros(1))
+                continue
             rod = self._written.system.discrete.rods[touch.owner]
             shape = self._written.system.shapes[touch.owner]
             node = rod.grid.node_at(touch.start)
@@ -235,6 +246,13 @@ class ArrangementKernels:
             bends.append(bend / length)
         return ca.vertcat(*bends)
 
+    def _normal_of_body(self, touch: Touch) -> Matrix:
+        """Normal of the obstacle at the origin of the body that touches it."""
+        system = self._written.system
+        position = system.frame(FrameName("body", touch.owner)).position
+        normal: Matrix = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)[1]
+        return normal
+
     def _forces(self) -> list[tuple[Touch, Matrix, Matrix]]:
         """Each contact, the forces at its ends and the coefficients of that along it, without unit."""
         _, f, _ = self._written.unknowns
@@ -248,7 +266,12 @@ class ArrangementKernels:
         return split
 
     def _unit(self, touch: Touch) -> float:
-        return self._written.system.discrete.tension_unit(touch.owner)
+        return self._written.system.discrete.contact_unit(touch.owner, of_body=touch.of_body)
+
+
+def touches_bodies(scene: scenes.Scene) -> bool:
+    """Whether any body of a scene may touch an obstacle exactly."""
+    return any(True for _ in body_pairs(scene))
 
 
 def words_of(chosen: Chosen) -> tuple[str, ...]:
@@ -262,9 +285,9 @@ def words_of(chosen: Chosen) -> tuple[str, ...]:
 
 
 def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:
-    """Point ↦ distance from an obstacle, for each pair of a rod and an obstacle; rods share those of an obstacle."""
+    """Point ↦ distance from an obstacle, for each that may be touched."""
     kernels = {}
-    for _, obstacle in pairs(chosen.scene):
+    for _, obstacle in (*pairs(chosen.scene), *body_pairs(chosen.scene)):
         number = [other.name for other in chosen.scene.obstacles].index(obstacle.name)
         point = ca.SX.sym("point", 3)
         distance = distance_from(obstacle)(point)

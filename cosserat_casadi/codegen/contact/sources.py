@@ -168,6 +168,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "input_room": max(len(chosen.given), 1),
         "rods": len(tables.rods),
         "poses": len(tables.rods) + len(chosen.scene.bodies),
+        "owners": len(tables.owners),
         "obstacles": len(tables.obstacles),
         "actuators": len(chosen.scene.actuators),
         "pairs": tables.pair_count,
@@ -273,7 +274,12 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
     arrangements = []
     for own in chosen.equations:
         touches = [
-            {"rod": touch.owner, "obstacle": touch.obstacle, "kind": touch.kind, "at_tip": touch.reaches_tip}
+            {
+                "body" if touch.of_body else "rod": touch.owner,
+                "obstacle": touch.obstacle,
+                "kind": touch.kind,
+                "at_tip": touch.reaches_tip,
+            }
             for touch in own.state.touches
         ]
         nominal = own.nominal

@@ -10,9 +10,9 @@ import numpy as np
 
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, words_of
+from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, touches_bodies, words_of
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
-from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
@@ -20,6 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import watched_cables, watched_sections
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene import ObstacleRecord
 
 POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshev.chebyshev_polynomials}
 
@@ -62,9 +63,21 @@ class Tables:
         return [obstacle.name for obstacle in self.chosen.scene.obstacles]
 
     @property
+    def owners(self) -> list[str]:
+        """Names of what may touch: of the rods, then of all bodies where any of them may."""
+        bodies = [body.name for body in self.chosen.scene.bodies]
+        return [*self.rods, *(bodies if touches_bodies(self.chosen.scene) else [])]
+
+    @property
+    def _pairs(self) -> list[tuple[str, ObstacleRecord]]:
+        """Each owner of contacts with each obstacle that it must not enter."""
+        scene = self.chosen.scene
+        return [*pairs(scene), *((body.name, obstacle) for body, obstacle in body_pairs(scene))]
+
+    @property
     def pair_count(self) -> int:
-        """Number of pairs of a rod and an obstacle that it must not enter."""
-        return len(list(pairs(self.chosen.scene)))
+        """Number of pairs of a rod or a body and an obstacle that it must not enter."""
+        return len(self._pairs)
 
     def sizes(self, equations: ContactEquations) -> tuple[int, int, int]:
         """Numbers of unknowns, of forces and of places of an arrangement."""
@@ -93,7 +106,7 @@ class Tables:
         for equations in self._all:
             rods = equations.nominal.model.discrete.rods.values()
             counts.append(sum(rod.grid.size for rod in rods))
-        return max(counts)
+        return max(counts) + len(self.owners) - len(self.rods)
 
     def text(self) -> str:
         """All tables."""
@@ -162,8 +175,10 @@ class Tables:
 
     def _rod_table(self) -> str:
         entries = []
+        discrete = self.chosen.equations[0].nominal.model.discrete
+        bodies = self.owners[len(self.rods) :]
+        ranks = [*sorted(self.rods), *sorted(bodies)]
         for name in self.rods:
-            discrete = self.chosen.equations[0].nominal.model.discrete
             rod = discrete.rods[name]
             radii = section_radius(rod.properties, np.array([0.0, 1.0])).tolist()
             fields = {
@@ -176,8 +191,18 @@ class Tables:
             }
             if self.chosen.judges_stability:
                 fields["energy"] = repr(float(rod.energy_unit / self._largest_unit))
+            entries.append(_initialiser({"rank": ranks.index(name), **fields}))
+        radii_of_bodies = {body.name: ball_radius(body) for body in self.chosen.scene.bodies}
+        for name in bodies:
+            fields = {
+                "rank": ranks.index(name),
+                "radius_at_base": repr(radii_of_bodies[name]),
+                "radius_at_tip": repr(radii_of_bodies[name]),
+                "length": repr(float(discrete.body_frame(name).length)),
+                "force_unit": repr(float(discrete.contact_unit(name, of_body=True))),
+            }
             entries.append(_initialiser(fields))
-        return _table("rod_entry", "ROD", "RODS", entries)
+        return _table("rod_entry", "ROD", "OWNERS", entries)
 
     @cached_property
     def _largest_unit(self) -> float:
@@ -213,10 +238,10 @@ class Tables:
 
     def _pair_table(self) -> str:
         entries = []
-        for rod, obstacle in pairs(self.chosen.scene):
+        for owner, obstacle in self._pairs:
             number = self.obstacles.index(obstacle.name)
             fields = {
-                "rod": self.rods.index(rod),
+                "rod": self.owners.index(owner),
                 "obstacle": number,
                 "distance": f"{self.name}_k_distance_{number}",
             }
@@ -269,7 +294,7 @@ class Tables:
         for touch in equations.state.touches:
             along = touch.moment_count(equations.nominal.modes[touch.owner]) if touch.is_line else 0
             fields = {
-                "rod": self.rods.index(touch.owner),
+                "rod": self.owners.index(touch.owner),
                 "obstacle": self.obstacles.index(touch.obstacle),
                 "is_line": int(touch.is_line),
                 "ends": len(touch.ends),
@@ -299,6 +324,7 @@ class Tables:
             "forces": forces,
             "places": places,
             "touches": touches,
+            "nodes_of_rods": sum(rod.grid.size for rod in equations.nominal.model.discrete.rods.values()),
             "touch": f"TOUCHES_{level.prefix}{number}" if touches else "0",
             "rods": f"ELEMENTS_{level.prefix}{number}",
             "modes": f"{level.prefix}ROD_MODES",
