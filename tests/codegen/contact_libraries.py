@@ -42,7 +42,8 @@ def pulled_over_bar(**more: Any) -> Scene:
         "offset": [-0.01, 0],
         "tension": 2,
     }
-    return scene(rods=[FLAT], loads=[PUSH], obstacles=[BAR], actuators=[tendon], accuracy={"tolerance": 1e-8}, **more)
+    plain = {"obstacles": [BAR], "accuracy": {"tolerance": 1e-8}}
+    return scene(rods=[FLAT], loads=[PUSH], actuators=[tendon], **plain | more)
 
 
 @dataclass(frozen=True)
