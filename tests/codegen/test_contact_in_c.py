@@ -388,6 +388,21 @@ def test_a_body_that_touches(pulled: ContactLibrary) -> None:
         assert_allclose(-by_inputs[-1][2, 2], (ends[0] - ends[1]) / 2e-3, rtol=1e-6, atol=0)
 
 
+@pytest.mark.slow
+def test_contacts_of_rods_in_any_order_of_their_names(tmp_path: Path) -> None:
+    """Arrangements have contacts by the names of rods, the scene has the rods in another order."""
+    beside = FLAT | {"name": "a", "base": {"position": [0, 0.2, 0], "tangent": [1, 0, 0]}}
+    loads = [PUSH | {"rod": "b"}, PUSH | {"name": "other", "rod": "a", "force": [0, 0, -2.0]}]
+    wanted = scene(rods=[FLAT | {"name": "b"}, beside], loads=loads, obstacles=[BAR], accuracy={"tolerance": 1e-8})
+    library = exported_contact(wanted, tmp_path / "two", np.zeros((0, 6)), 2, 4, estimate_errors=False)
+    inputs = [0.0, 0.0, -3.5, 0.0, 0.0, -2.5]
+    found = library.loaded.solve(inputs)
+    same = solve(library.model, {"push.force": inputs[:3], "other.force": inputs[3:]})
+    assert [contact.owner for contact in found.contacts] == ["a", "b"]
+    places = [[contact.start for contact in own.contacts] for own in (found, same)]
+    assert_allclose(places[0], places[1], rtol=0, atol=1e-9)
+
+
 def test_parameters_in_contact(pulled: ContactLibrary) -> None:
     """Answers at other parameters are those of Python, in a solve and in a turn; derivatives those of differences."""
     library = pulled.loaded
