@@ -86,7 +86,7 @@ def contact_parameter_words(model: Model, names: Names) -> Words:
     """Words of a library of rods in exact contact, with parameters where the scene names some.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
     """
     if not model.parameters.size:

@@ -74,7 +74,7 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
 
 
 def limits_of_stability(model: Model) -> dict[str, Any]:
-    """What templates say of the limits of a verdict, and of where it has a meaning."""
+    """Words of templates for the limits of a verdict, and for the inputs at which it has a meaning."""
     everywhere = model.has_potential(np.ones(model.inputs.size))
     return {"zero": ZERO, "dependent": DEPENDENT, "aside": ASIDE, "potential_note": ALWAYS if everywhere else AT_TIMES}
 

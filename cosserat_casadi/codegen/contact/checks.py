@@ -52,7 +52,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
 
 
 def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
-    """Parameters that change what the solver in C knows of rods in numbers: their surfaces, and where elements end."""
+    """Problems of parameters that change numbers of the solver in C: surfaces of rods, and ends of elements."""
     for numbers in scene.named_parameters():
         for own in numbers.all_numbers:
             if own.holder.table == "rods" and own.keys[0] in ("length", "section"):

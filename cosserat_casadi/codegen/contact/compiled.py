@@ -35,7 +35,7 @@ RATES = 4
 
 
 class Margins(NamedTuple):
-    """How near a solution is to other contacts, beyond which its derivatives by inputs are not those.
+    """How near a solution is to other contacts, beyond which its derivatives by inputs do not hold.
 
     Attributes:
         force: the least with which a contact presses, relative to the largest force; infinite without contacts.
@@ -225,7 +225,7 @@ class CompiledContact(LoadedLibrary):
         return None if columns is None else by_tip(self.rods, columns[: len(self.rods)])
 
     def contact_sensitivity(self, solution: CompiledContactSolution) -> list[FloatArray] | None:
-        """The d(start, end, forces at both)/d(inputs, parameters) of each contact, shape (4, m); None as there."""
+        """The d(start, end, both forces)/d(inputs, parameters) of each contact, shape (4, m); or None."""
         columns = self._by_all("contact_sensitivity", solution, len(solution.contacts), RATES)
         return None if columns is None else [own.T for own in columns]
 

@@ -285,7 +285,7 @@ def words_of(chosen: Chosen) -> tuple[str, ...]:
 
 
 def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:
-    """Point ↦ distance from an obstacle, for each that may be touched."""
+    """Point ↦ distance from an obstacle, for each obstacle that may be touched."""
     kernels = {}
     for _, obstacle in (*pairs(chosen.scene), *body_pairs(chosen.scene)):
         number = [other.name for other in chosen.scene.obstacles].index(obstacle.name)

@@ -67,7 +67,7 @@ ERROR_FILES = ("contact_error.c",)
 """The same of a library that estimates errors."""
 
 STABILITY_FILES = ("contact_stability.c", SECOND_VARIATION)
-"""The same of a library that judges stability."""
+"""Further files of a library that judges stability."""
 
 MOST_TRIES = 24
 """Most arrangements that are solved for one change of the inputs."""

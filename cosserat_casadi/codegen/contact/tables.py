@@ -64,7 +64,7 @@ class Tables:
 
     @property
     def owners(self) -> list[str]:
-        """Names of what may touch: of the rods, then of all bodies where any of them may."""
+        """Names of the owners of contacts: the rods, then all bodies where any of them may touch."""
         bodies = [body.name for body in self.chosen.scene.bodies]
         return [*self.rods, *(bodies if touches_bodies(self.chosen.scene) else [])]
 
@@ -218,7 +218,7 @@ class Tables:
 
     @cached_property
     def varying(self) -> tuple[int, int, int]:
-        """Of the stability of all arrangements as one: unknowns that vary, constraints, and most unknowns of both."""
+        """Sizes of one stability problem for all arrangements: unknowns that vary, constraints, most unknowns."""
         free, held, sizes = [], [], []
         for equations in self.chosen.equations:
             unknowns, forces, places = self.sizes(equations)
