@@ -7,7 +7,7 @@ lines of inputs, as the solver in C moves them too. What is met on the way is co
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
+from cosserat_casadi.model.parameters import ParameterLayout
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 
@@ -150,20 +150,20 @@ def chosen_arrangements(
         problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
         raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
     start = list(met.states).index(met.key(first))
+    named, theta = without_contacts(model.scene), parameters.pack()
     answers, finer = (
-        [ContactEquations(scene, given, own_grids, state, parameters) for state in met.states.values()]
+        [ContactEquations(named, given, own_grids, state, theta) for state in met.states.values()]
         for own_grids in (grids, richer(grids, scene))
     )
-    at_start = replace(answers[start], parameters=NO_PARAMETERS) if parameters.size else answers[start]
     return Chosen(
         scene=scene,
         layout=layout,
         parameters=parameters,
-        given=np.append(given, parameters.pack()),
+        given=np.append(given, theta),
         equations=answers,
         richer=finer if estimate_errors else [],
         start=start,
-        z=_z_of(at_start, own),
+        z=_z_of(answers[start], own),
         judges_stability=stability,
     )
 

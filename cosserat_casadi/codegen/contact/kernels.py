@@ -82,7 +82,7 @@ class ArrangementKernels:
 
     def _jacobian(self) -> Kernel:
         """The Jacobian, by columns where it has such a form that is not too long."""
-        whole = self._of_z([self._written.jacobian])
+        whole = self._of_z([self._by_z(self._written.jacobian)])
         name = f"{self.name}_jacobian"
         columned = by_columns(self._written_jacobian, whole, name)
         return kernel(self.equations.nominal.model, whole, name) if columned is None else columned
@@ -93,9 +93,14 @@ class ArrangementKernels:
         arguments = dict(zip(("x", "f", "p", "inputs"), written.arguments, strict=True))
 
         def of_system(system: System) -> Matrix:
-            return replace(written, system=system).jacobian
+            return self._by_z(replace(written, system=system).jacobian)
 
         return WrittenJacobian(arguments, written.system, of_system, self._gathered, ("z", "inputs"))
+
+    def _by_z(self, jacobian: Matrix) -> Matrix:
+        """The columns of a Jacobian that are of z: those of parameters stand behind them."""
+        count = self.equations.parameters.size
+        return jacobian[:, :-count] if count else jacobian
 
     def _kernel(self, word: str, results: Sequence[Matrix]) -> ca.Function:
         """A function of z and of the inputs, with dense results."""
@@ -118,13 +123,24 @@ class ArrangementKernels:
         return self._gathered(ca.Function("of_z", self._written.arguments, list(results), words, names))
 
     def _gathered(self, function: ca.Function) -> ca.Function:
-        """A function of x, f, p, the inputs, and of more behind them, as one of z, the inputs and these."""
+        """A function of x, f, p, the inputs, and of more behind them, as one of z, the inputs and these.
+
+        Parameters of the scene, which p has behind the places, stand behind the inputs then.
+        """
         words = function.name_in()
+        count = self.equations.parameters.size
         sizes = [part.shape[0] for part in self._written.unknowns]
+        sizes[-1] -= count
         z = ca.MX.sym("z", sum(sizes))
         behind = function.mx_in()[len(sizes) :]
         parts = ca.vertsplit(z, np.cumsum([0, *sizes]).tolist())
-        results = function.call([*parts, *behind], True, False)
+        passed = behind
+        if count:
+            inputs = behind[0].shape[0]
+            given = ca.MX.sym("inputs", inputs + count)
+            parts[-1] = ca.vertcat(parts[-1], given[inputs:])
+            behind, passed = [given, *behind[1:]], [given[:inputs], *behind[1:]]
+        results = function.call([*parts, *passed], True, False)
         return ca.Function(function.name(), [z, *behind], results, ["z", *words[len(sizes) :]], function.name_out())
 
     def _nodes(self) -> Matrix:
