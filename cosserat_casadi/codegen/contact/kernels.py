@@ -98,7 +98,7 @@ class ArrangementKernels:
         return WrittenJacobian(arguments, written.system, of_system, self._gathered, ("z", "inputs"))
 
     def _by_z(self, jacobian: Matrix) -> Matrix:
-        """The columns of a Jacobian that are of z: those of parameters stand behind them."""
+        """The columns of a Jacobian that are of z, behind which columns of parameters stand."""
         count = self.equations.parameters.size
         return jacobian[:, :-count] if count else jacobian
 
