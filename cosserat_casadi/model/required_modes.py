@@ -9,6 +9,8 @@ have decayed can be a reference solution (docs/theory.md, section 10).
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +24,6 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.strain import DiscreteRod
 
 DECAYED = 0.1
@@ -42,14 +43,14 @@ def signal_modes(scene: scenes.Scene) -> int:
     """Modes per strain component and element from which on a level can see what the scene puts along its rods."""
     degrees = [0]
     for record in scene.rods:
-        rod = rod_properties(record)
         breaks = element_ends(scene, record.name)
         for actuator in scene.actuators:
             # Between its holes a straight cable pulls with one force: there are no waves.
             if EFFECTS[actuator.kind].acts_on(actuator, record.name) and holes(actuator) is None:
-                degree = _actuator_degree(actuator, rod, breaks)
+                degree = _actuator_degree(actuator, record, breaks)
                 degrees.append(degree)
-        degrees += [_series_degree(known(as_vector(coefficients))) for coefficients in rod.intrinsic]
+        intrinsic = rod_properties(record).intrinsic
+        degrees += [_series_degree(known(as_vector(coefficients))) for coefficients in intrinsic]
     for load in scene.loads:
         if isinstance(load, scenes.DistributedWrench):
             components = (*load.force, *load.moment)
@@ -58,12 +59,13 @@ def signal_modes(scene: scenes.Scene) -> int:
     return max(degrees) + BEYOND
 
 
-def _actuator_degree(actuator: scenes.Actuator, rod: RodProperties, breaks: tuple[float, ...]) -> int:
+@lru_cache(maxsize=64)
+def _actuator_degree(actuator: scenes.Actuator, record: scenes.Rod, breaks: tuple[float, ...]) -> int:
     """Degree at which the actuation stress along the unloaded rod has decayed in every element."""
     degree = -1
     for modes in PROJECTIONS:
         coarser = degree
-        degree = _last_degree(_projection(actuator, rod, breaks, modes))
+        degree = _last_degree(_projection(actuator, _discrete_rod(record, breaks, modes)))
         # On too few nodes waves pass for longer ones: a finer projection tells.
         if degree == coarser:
             break
@@ -80,19 +82,19 @@ def _last_degree(sizes: FloatArray) -> int:
     return int(present[-1]) + 1
 
 
-def _projection(
-    actuator: scenes.Actuator,
-    rod: RodProperties,
-    breaks: tuple[float, ...],
-    modes: int,
-) -> FloatArray:
+@lru_cache(maxsize=8)
+def _discrete_rod(record: scenes.Rod, breaks: tuple[float, ...], modes: int) -> DiscreteRod:
+    """A rod with so many modes of every strain in each element."""
+    rod = rod_properties(record)
+    return DiscreteRod(rod, Discretisation((modes,) * len(rod.admitted), 2 * modes, breaks, "magnus4"))
+
+
+def _projection(actuator: scenes.Actuator, discrete_rod: DiscreteRod) -> FloatArray:
     """Largest strain by a unit effort in the polynomials of each degree, over components and elements, shape (modes,).
 
     The gradient of length or volume is the projection of the actuation stress, ∂L/∂q = ℓ ∫ Φᵀ Λ_ad dX.
     """
-    counts = (modes,) * len(rod.admitted)
-    discretisation = Discretisation(counts, 2 * modes, breaks, "magnus4")
-    discrete_rod = DiscreteRod(rod, discretisation)
+    discretisation = discrete_rod.discretisation
     # What an actuator works on follows from strains alone: the rotations of the sections are not integrated.
     unturned = ca.repmat(ca.DM([1, 0, 0, 0]), 1, discrete_rod.grid.elements * discretisation.nodes + 1)
     unloaded = Shape(discrete_rod, ca.DM.zeros(discrete_rod.size), unturned, None)
@@ -100,7 +102,7 @@ def _projection(
     gradient = ca.DM(ca.densify(quantity.on(unloaded).gradient)).full()[:, 0]
     # In coordinates of unit stiffness all strains count alike, whatever the slenderness.
     units = np.sqrt(np.diag(known(discrete_rod.stiffness)))
-    sizes = np.zeros(modes)
+    sizes = np.zeros(max(discretisation.modes))
     for component, columns in discrete_rod.columns.items():
         degrees = discrete_rod.degrees(component)
         np.maximum.at(sizes, degrees, np.abs(gradient[columns] / units[columns]))

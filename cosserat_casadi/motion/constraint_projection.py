@@ -22,13 +22,13 @@ from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
 
-MOST_CORRECTIONS = 6
+MOST_CORRECTIONS = 12
 """Most corrections of a state."""
 
 INDEPENDENT = 1e-8
 """Eigenvalue of the normal equations of constraints, over the largest, from which they are clearly independent."""
 
-CONTRACTED = 0.01
+CONTRACTED = 0.2
 """Share of the gaps that a correction may leave before the next one has a new Jacobian."""
 
 
@@ -52,19 +52,20 @@ class Closing:
         numbers = [np.arange(span.start, span.stop) for span in entries]
         return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
 
-    def closed(self, instant: Instant, equations: MotionEquations) -> FloatArray:
+    def closed(self, instant: Instant, equations: MotionEquations, near: Instant) -> FloatArray:
         """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
 
         Args:
             instant: of the motion, in the unknowns of the model.
             equations: of motion, of which some rows are the constraints.
+            near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many of them.
         """
         x = instant.x
         if not len(self.rows):
             return x
         best = x
         before = np.inf
-        answer: FloatArray | None = None
+        answer = None
         for _ in range(MOST_CORRECTIONS):
             instant = replace(instant, x=x)
             gaps = equations.residual_at(instant)[self.rows]
@@ -75,11 +76,25 @@ class Closing:
             if not largest < before:
                 return best
             best = x
-            if answer is None or largest > CONTRACTED * before:
+            if answer is None:
+                answer = self._answer_near(near, equations)
+            elif largest > CONTRACTED * before:
                 answer = self._answer(equations.linearised(instant).stiffness)
             before = largest
             x = x - answer @ gaps
         return x
+
+    def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
+        """As :meth:`_answer`, at an end of a step; that of the last one asked for is remembered."""
+        time, answer = self._remembered.get("last", (None, None))
+        if answer is None or time != near.time:
+            answer = self._answer(equations.linearised(near).stiffness)
+            self._remembered["last"] = near.time, answer
+        return answer
+
+    @cached_property
+    def _remembered(self) -> dict[str, tuple[float, FloatArray]]:
+        return {}
 
     def _answer(self, stiffness: FloatArray) -> FloatArray:
         """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""

@@ -210,7 +210,11 @@ class History:
         leg, instant = self.locate(time)
         inputs = leg.piece.at(instant.time).value
         equations = leg.equations or equations_of(self.model, leg.piece)
-        return MotionState(self._closing.closed(instant, equations), instant.v, instant.a, inputs)
+        near = instant
+        if self.steps:
+            _, step = self.steps[self.number_at(time)]
+            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time)))
+        return MotionState(self._closing.closed(instant, equations, near), instant.v, instant.a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""

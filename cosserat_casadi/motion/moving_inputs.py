@@ -308,14 +308,12 @@ class _Table(_Path):
 
     def at(self, t: float) -> InputState:
         # At a break the segment of the span is asked for, not that beyond it.
-        segment = int(np.searchsorted(self.knots, t, side="right"))
+        segment = bisect_right(self.knots, t)
         segment = min(max(segment, self.first), self.last)
-        s = t - self.origins[segment]
-        constant, linear, quadratic, cubic = self.coefficients[segment]
-        value = constant + s * (linear + s * (quadratic + s * cubic))
-        rate = linear + s * (2 * quadratic + 3 * s * cubic)
-        acceleration = 2 * quadratic + 6 * s * cubic
-        return InputState(value, rate, acceleration)
+        s = t - float(self.origins[segment])
+        # Value, rate and acceleration of 1, s, s², s³.
+        powers = np.array([[1.0, s, s**2, s**3], [0.0, 1.0, 2.0 * s, 3.0 * s**2], [0.0, 0.0, 2.0, 6.0 * s]])
+        return InputState(*(powers @ self.coefficients[segment]))
 
     def values_at(self, times: FloatArray) -> FloatArray:
         segments = np.clip(np.searchsorted(self.knots, times, side="right"), self.first, self.last)
