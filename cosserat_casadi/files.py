@@ -183,15 +183,15 @@ def sources_hash(folder: Path | None = None) -> str | None:
     # The package's own module stands above all others, so that none imports it.
     imported = sys.modules[__package__ or ""].IMPORTED
     digest = hashlib.sha256()
-    # Paths as texts: hundreds of records of paths take longer than to read the files.
-    files = sorted(os.path.join(at, name) for at, _, names in os.walk(root) for name in names if _is_source(name))
+    # Paths as texts: to sort and to compare hundreds of records of paths takes longer than to read the files.
+    files = sorted(f"{at}/{name}" for at, _, names in os.walk(root) for name in names if _is_source(name))
     for path in files:
-        facts = os.stat(path)
+        file = Path(path)
+        facts = file.stat()
         # A file that is moved or linked into place keeps its own time; that of its entry in the folder changes.
         if max(facts.st_mtime, facts.st_ctime) >= imported:
             return None
-        with open(path, "rb") as stream:
-            content = stream.read()
+        content = file.read_bytes()
         within = path[len(root) :].replace(os.sep, "/")
         digest.update(f"{within}\0{len(content)}\0".encode() + content)
     return digest.hexdigest() if files else None
@@ -199,4 +199,5 @@ def sources_hash(folder: Path | None = None) -> str | None:
 
 def _is_source(name: str) -> bool:
     """Whether a file of this name decides on the results of the package."""
-    return os.path.splitext(name)[1] in ENDINGS
+    stem, dot, ending = name.rpartition(".")
+    return bool(stem) and dot + ending in ENDINGS

@@ -15,6 +15,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.motion_sources import initialiser, pairs
+from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.kernel_residual import KernelResidual
@@ -28,6 +29,9 @@ from cosserat_casadi.numerics.step_run import StepRun
 
 NAME = "controlled_steps"
 """Of the library in the cache."""
+
+LANES = 4
+"""Lanes of a slot of a program: a stage each, and one more."""
 
 FACTS = 7
 """Numbers of a step beside its state and its stages."""
@@ -57,7 +61,8 @@ class _Record(ctypes.Structure):
         *((name, POINTER) for name in ("differential", "weights", "kinks", "x", "v", "a")),
         *((name, POINTER) for name in ("input_values", "input_rates", "input_accelerations", "residual")),
         *((name, POINTER) for name in ("kernel", "kernel_arguments", "kernel_results")),
-        *((name, POINTER) for name in ("kernel_integers", "kernel_scratch")),
+        *((name, POINTER) for name in ("kernel_integers", "kernel_scratch", "program", "slots")),
+        *((name, ctypes.c_int) for name in ("program_lines", "program_arguments")),
         *((name, CALL) for name in ("residual_at", "residual_of_stages", "inputs_at", "jacobians_at")),
         *((name, POINTER) for name in ("stage_times", "stage_x", "stage_v", "stage_a", "stage_results")),
         *((name, POINTER) for name in ("matrices", "linearised_at", "kept_at", "now", "before", "room")),
@@ -84,6 +89,7 @@ def steps_library() -> ctypes.CDLL:
     texts = {
         f"{NAME}.c": resource("c", f"{NAME}.c"),
         "stage_newton.c": resource("c", "stage_newton.c"),
+        "fours.h": resource("c", "fours.h"),
         f"{NAME}.h": render(f"{NAME}.h.in", _words()),
     }
     path = compiled_texts(NAME, texts, find_compiler(), included={"stage_newton.c"})
@@ -118,6 +124,7 @@ def _words() -> dict[str, Any]:
         "from_pair": pairs(method.from_eigenvectors[:, 1]),
     }
     return {
+        "operations": cases_in_c(),
         "iterations": step_control.MOST_ITERATIONS,
         "few_iterations": step_run.FEW_ITERATIONS,
         "singular_steps": time_steps.SINGULAR_STEPS,
@@ -234,6 +241,12 @@ class CompiledSteps:
         record.inputs_at = self._called(inputs_at)
         if call.code is None:
             record.residual_at = self._called(lambda _: call.evaluate())
+            if call.program is not None:
+                lines, slots, arguments = call.program
+                # Four lanes of each slot: a run of its own, since constants are among them.
+                self._share("program", lines)
+                self._share("slots", np.repeat(slots, LANES))
+                record.program_lines, record.program_arguments = len(lines), arguments
             return
         kernel = call.code
         record.kernel = kernel.address

@@ -18,6 +18,7 @@ import casadi as ca
 from cosserat_casadi.codegen.cache import cache_folder, kept_texts, texts_in_cache
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_library
+from cosserat_casadi.codegen.scalar_program import scalar_program
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -53,10 +54,13 @@ INSTRUCTION = 7e-9
 AS_MANY_RESIDUALS = 10.0
 """Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""
 
-SAVED = {RESIDUAL: 0.95, JACOBIANS: 0.8}
-"""Share of that time that machine code saves."""
+IN_PROGRAM = 0.35
+"""Time of inverse dynamics as a program of scalars, three stages at once, over that in the virtual machine."""
 
-TO_COMPILE = {RESIDUAL: (0.3, 2.5e-5), JACOBIANS: (0.5, 2e-4)}
+SAVED = {RESIDUAL: 0.85, JACOBIANS: 0.8}
+"""Share of the time in either that machine code saves."""
+
+TO_COMPILE = {RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
 """Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
 
 MOTIONS_TO_COME = 2.0
@@ -92,11 +96,14 @@ class MotionCompiler:
         """
         residual = self._compiled(model, RESIDUAL)
         jacobians = self._compiled(model, JACOBIANS)
-        return StepKernels(
-            residual or interpreted_residual(model),
-            interpreted_jacobians(model) if jacobians is None else jacobians.matrices,
-            self._stepper(),
-        )
+        stepper = self._stepper()
+        if residual is None:
+            residual = interpreted_residual(model)
+            if stepper is not None:
+                residual.program = kept_with(
+                    model, "_program", lambda: scalar_program(model.inverse_dynamics_in_scalars)
+                )
+        return StepKernels(residual, interpreted_jacobians(model) if jacobians is None else jacobians.matrices, stepper)
 
     def tips(self, model: Model) -> dict[str, ca.Function] | None:
         """Poses of the tips by rod where the residual is machine code, which they stand beside; else None."""
@@ -151,8 +158,8 @@ def _spent(model: Model) -> dict[str, float]:
 
 
 def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
-    """Processor time that the virtual machine takes for a function in a motion, s."""
-    calls = STAGES * work.iterations
+    """Processor time that the virtual machine, or a program, takes for a function in a motion, s."""
+    calls = IN_PROGRAM * STAGES * work.iterations
     if name == JACOBIANS:
         calls = AS_MANY_RESIDUALS * work.jacobians
     instructions: int = model.inverse_dynamics_in_scalars.n_instructions()

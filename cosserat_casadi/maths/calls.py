@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import casadi as ca
 
 
-def called_functions(function: ca.Function) -> dict[int, ca.Function]:
+def called_functions(function: ca.Function, codes: Iterable[int] | None = None) -> dict[int, ca.Function]:
     """The function that each call of a scalar function is of, by the number of its instruction.
 
     Args:
         function: of scalar instructions (an ``SXFunction``).
+        codes: its instructions, where they are known.
     """
-    calls = [k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CALL]
+    if codes is None:
+        codes = map(function.instruction_id, range(function.n_instructions()))
+    calls = [k for k, code in enumerate(codes) if code == ca.OP_CALL]
     if not calls:
         return {}
     elements = function.instructions_sx().nz

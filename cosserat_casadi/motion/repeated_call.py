@@ -54,6 +54,8 @@ class RepeatedCall:
         results: matrices that the results are written to.
         evaluate: reads the one and writes the other.
         code: the function in machine code; None where CasADi's virtual machine runs it.
+        program: lines of numbers for a loop in C, initial values of its slots, and the number of arguments among them;
+            None where none was written.
 
     Raises:
         ValueError: an argument or a result is not dense.
@@ -75,6 +77,7 @@ class RepeatedCall:
             buffer.set_res(number, result.ravel(order="K").data)
         # The evaluation reads and writes the buffer's memory: it has to live as long.
         self._buffer = buffer
+        self.program: tuple[npt.NDArray[np.intc], FloatArray, int] | None = None
         self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
     def __call__(self, *values: FloatArray) -> FloatArray:

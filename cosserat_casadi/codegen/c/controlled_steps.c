@@ -15,6 +15,11 @@
 #include "controlled_steps.h"
 
 typedef double real;
+#define casadi_real real
+#ifdef __GNUC__
+#define FOURS_IN_VECTORS
+#endif
+#include "fours.h"
 #define ABSOLUTE fabs
 
 static real larger(real a, real b) { return a > b ? a : b; }
@@ -60,6 +65,12 @@ typedef struct {
   real **kernel_results;
   long long *kernel_integers;
   real *kernel_scratch;
+  /* The same as a program on slots, each of which has four lanes: x, v, a, inputs, rates and accelerations, residual,
+     and what is computed on the way. Null where there is none. */
+  const int *program;
+  real *slots;
+  int program_lines;
+  int program_arguments;
   python_call residual_at;
   python_call residual_of_stages; /* null where residual_at is called for one stage after the other */
   python_call inputs_at;
@@ -121,7 +132,7 @@ typedef struct {
   real *duals[ITERATIONS];
 } workspace;
 
-enum { STAGES = 3, PLANES = 3, FACTS = 7, VECTORS = 6, ORDERS = 3 };
+enum { STAGES = 3, LANES = 4, PLANES = 3, FACTS = 7, VECTORS = 6, ORDERS = 3 };
 #define N (work->unknowns)
 #define STAGED (STAGES * N)
 #define IS_SHAPE (work->differential)
@@ -224,6 +235,56 @@ static void motion_in(real size, real share, const real *values, const real *int
   }
 }
 
+/* ---- Inverse dynamics at all stages at once: scalar_program.py ---- */
+
+#ifdef FOURS_IN_VECTORS
+#define EVERY(assignment) \
+  for (int i = 0; i < LANES; i++) assignment
+#else
+#define EVERY(assignment) \
+  {                       \
+    enum { i = 0 };       \
+    assignment;           \
+  }
+#endif
+
+static void run_lines(const int *program, int lines, real *slots) {
+  for (const int *line = program; line < program + 4 * lines; line += 4) {
+    real *to = slots + LANES * line[1];
+    const real *a = slots + LANES * line[2];
+    const real *b = slots + LANES * line[3];
+    switch (line[0]) {
+      SCALAR_OPERATIONS
+    }
+  }
+}
+
+/* A program of so many lines on slots of four lanes. */
+void program_run(const int *program, int lines, real *slots) {
+  EVERY_LANE(run_lines(program, lines, slots + lane))
+}
+
+static void fill_lane(int lane, int first, const real *values, int count, workspace *work) {
+  for (int i = 0; i < count; i++) work->slots[LANES * (first + i) + lane] = values[i];
+}
+
+/* The arguments of a stage are where inverse dynamics is evaluated. */
+static void fill_stage(int stage, workspace *work) {
+  fill_lane(stage, 0, work->x, N, work);
+  fill_lane(stage, N, work->v, N, work);
+  fill_lane(stage, 2 * N, work->a, N, work);
+  fill_lane(stage, 3 * N, work->input_values, work->inputs, work);
+  fill_lane(stage, 3 * N + work->inputs, work->input_rates, work->inputs, work);
+  fill_lane(stage, 3 * N + 2 * work->inputs, work->input_accelerations, work->inputs, work);
+}
+
+static void evaluate_program(real *residuals, workspace *work) {
+  program_run(work->program, work->program_lines, work->slots);
+  for (int stage = 0; stage < STAGES; stage++) {
+    for (int i = 0; i < N; i++) residuals[stage * N + i] = work->slots[LANES * (work->program_arguments + i) + stage];
+  }
+}
+
 /* Residuals of all stages. Returns the largest entry, or one that is not finite. */
 static real residuals_of_stages(const step_start *start, const real *unknowns, real *residuals, workspace *work) {
   const size_t bytes = (size_t)N * sizeof *residuals;
@@ -237,8 +298,17 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
               a, work);
     if (work->residual_of_stages) continue;
     if (work->moving) copy_inputs(work->stage_inputs + 3 * stage * work->inputs, work);
+    if (work->program) {
+      fill_stage(stage, work);
+      continue;
+    }
     evaluate(work->stage_times[stage], work);
     memcpy(residuals + stage * N, work->residual, bytes);
+  }
+  if (work->program) {
+    /* The lane that is left over repeats the last stage. */
+    fill_stage(STAGES, work);
+    evaluate_program(residuals, work);
   }
   if (work->residual_of_stages) {
     call(work->residual_of_stages, work->time, work);

@@ -1,0 +1,149 @@
+"""A function of scalars as numbers that a loop in C reads: the three stages of a step at once, and nothing to compile.
+
+CasADi's virtual machine takes one state at a time, and as long to find out what an instruction is as to execute it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
+from cosserat_casadi.maths.calls import called_functions
+from cosserat_casadi.maths.typing import FloatArray
+
+Lines = npt.NDArray[np.intc]
+"""One line for each instruction: its operation by CasADi's number, slots of the result and of two operands."""
+
+OF_TWO = {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "hypot"}
+"""Functions of the mathematical library with two arguments."""
+
+KNOWN = {ca.OP_ASSIGN, ca.OP_SQ, ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CALL, *REWRITTEN}
+KNOWN |= {*BINARY, *FUNCTIONS, *CHOICES}
+"""Instructions that a line can be written for."""
+
+
+class ScalarProgram(NamedTuple):
+    """A function as lines on numbered slots; the first slots are its arguments, the next its results.
+
+    Attributes:
+        lines: shape (lines, 4).
+        slots: what the slots hold before the first line: constants where they are, shape (slots,).
+        arguments: number of slots of arguments.
+    """
+
+    lines: Lines
+    slots: FloatArray
+    arguments: int
+
+
+def scalar_program(function: ca.Function) -> ScalarProgram | None:
+    """The program of a function of scalar instructions (an ``SXFunction``); None where it has one that is not known."""
+    if not function.is_a("SXFunction"):
+        return None
+    writer = _Writer()
+    lines = writer.lines_of(function, 0)
+    if lines is None:
+        return None
+    slots = np.zeros(writer.size)
+    for begin, values in writer.constants:
+        slots[begin : begin + len(values)] = values
+    return ScalarProgram(np.ascontiguousarray(lines), slots, function.nnz_in())
+
+
+@dataclass
+class _Writer:
+    """Slots that are taken, and the functions that are called.
+
+    Attributes:
+        size: number of slots.
+        constants: first slot of the constants of each function, and their values.
+        called: by the hash of a function its first slot and its lines.
+    """
+
+    size: int = 0
+    constants: list[tuple[int, FloatArray]] = field(default_factory=list)
+    called: dict[int, tuple[int, Lines | None]] = field(default_factory=dict)
+
+    def lines_of(self, function: ca.Function, begin: int) -> Lines | None:
+        """The lines of a function whose slots begin at one; None where it has an instruction that is not known."""
+        every = range(function.n_instructions())
+        codes = np.fromiter(map(function.instruction_id, every), np.intc, len(every))
+        if not KNOWN.issuperset(np.unique(codes).tolist()):
+            return None
+        taken = [function.instruction_input(k) for k in every]
+        made = [function.instruction_output(k) for k in every]
+        arguments = begin + np.cumsum([0, *(function.nnz_in(i) for i in range(function.n_in()))])
+        results = arguments[-1] + np.cumsum([0, *(function.nnz_out(i) for i in range(function.n_out()))])
+        constant = codes == ca.OP_CONST
+        values = np.array([function.instruction_constant(k) for k in np.flatnonzero(constant).tolist()])
+        first = int(results[-1])
+        self.constants.append((first, values))
+        work = first + len(values)
+        self.size = max(self.size, work + function.sz_w())
+
+        operand = np.array([numbers[0] if numbers else 0 for numbers in taken], dtype=np.intc)
+        other = np.array([numbers[-1] if numbers else 0 for numbers in taken], dtype=np.intc)
+        result = np.array([numbers[0] for numbers in made], dtype=np.intc)
+        entry = np.array([numbers[-1] for numbers in made], dtype=np.intc)
+        lines = np.stack([codes, work + result, work + operand, work + other], axis=1).astype(np.intc)
+        lines[constant, 2] = first + np.arange(len(values))
+        read, written = codes == ca.OP_INPUT, codes == ca.OP_OUTPUT
+        lines[read, 2] = arguments[operand[read]] + other[read]
+        lines[written, 1] = results[result[written]] + entry[written]
+        moved = constant | read | written
+        lines[moved, 0] = ca.OP_ASSIGN
+        lines[moved, 3] = lines[moved, 2]
+
+        parts = []
+        last = -1
+        for k, callee in called_functions(function, codes.tolist()).items():
+            within = self._call(callee, np.array(taken[k], np.intc), np.array(made[k], np.intc), work)
+            if within is None:
+                return None
+            parts += [lines[last + 1 : k], *within]
+            last = k
+        return np.concatenate([*parts, lines[last + 1 :]])
+
+    def _call(self, callee: ca.Function, operands: Lines, results: Lines, work: int) -> list[Lines] | None:
+        """Lines of a call: the arguments are copied, and the results when all of them are there.
+
+        Args:
+            callee: what is called.
+            operands: numbers of all its arguments in the work of the caller.
+            results: of its results; below zero where one is not wanted.
+            work: slot of the first of them.
+        """
+        place = callee.__hash__()
+        if place not in self.called:
+            begin = self.size
+            self.called[place] = begin, self.lines_of(callee, begin)
+        begin, lines = self.called[place]
+        if lines is None:
+            return None
+        own = begin + np.arange(len(operands) + len(results), dtype=np.intc)
+        given, found = own[: len(operands)], own[len(operands) :]
+        wanted = results >= 0
+        return [_copied(given, work + operands), lines, _copied(work + results[wanted], found[wanted])]
+
+
+def _copied(to: Lines, slots: Lines) -> Lines:
+    """Lines that copy slots."""
+    return np.stack([np.full(len(to), ca.OP_ASSIGN), to, slots, slots], axis=1).astype(np.intc)
+
+
+def cases_in_c() -> str:
+    """What a line does, by its operation, for the loop in C: ``a`` and ``b`` are its operands, ``to`` its result."""
+    fours = {ca.OP_ASSIGN: "LOAD(a)", ca.OP_SQ: "LOAD(a) * LOAD(a)"}
+    fours |= {code: f"LOAD(a) {sign} LOAD(b)" for code, sign in BINARY.items()}
+    for code, (operation, constant) in REWRITTEN.items():
+        fours[code] = f"EACH({constant!r}) {BINARY[operation]} LOAD(a)"
+    numbers = {code: f"{name}(a[i], b[i])" if name in OF_TWO else f"{name}(a[i])" for code, name in FUNCTIONS.items()}
+    numbers |= {code: text.format("a[i]", "b[i]") for code, text in CHOICES.items()}
+    lines = [f"    case {code}: STORE(to, {text}); break;" for code, text in sorted(fours.items())]
+    lines += [f"    case {code}: EVERY(to[i] = {text}); break;" for code, text in sorted(numbers.items())]
+    return " \\\n".join(lines)
