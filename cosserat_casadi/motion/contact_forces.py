@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -77,7 +77,7 @@ class Follower:
         touches: the contacts.
 
     Attributes:
-        facings: what touches, of each contact.
+        facings: what touches, of each contact; nothing in a copy by pickle, which tells the places alone.
         touches: the contacts.
         places: where they were last followed to.
     """
@@ -86,6 +86,10 @@ class Follower:
         self.facings = [facings[touch.facing] for touch in touches]
         self.touches = touches
         self.places = [touch.place for touch in touches]
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Their functions are those of one process; a motion that goes on has its own.
+        return vars(self) | {"facings": []}
 
     def follow(self, x: FloatArray, inputs: FloatArray) -> Followed:
         """Places, gaps, and which are gone, at a state of the motion, next to which others are looked for from now on.

@@ -147,6 +147,10 @@ class History:
     flight: FreeFlight
     stopped: int | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        # The record of contacts has functions in symbols of one process; it is made anew where it is asked for.
+        return {name: value for name, value in vars(self).items() if name != "contacts"}
+
     @property
     def begin(self) -> float:
         """Time at which it begins, s: zero, unless it goes on from another."""
@@ -316,12 +320,18 @@ class FreeFlight:
     """Coordinates and momentum of the steps of rods that nothing holds: built once, for all motions of a model.
 
     Attributes:
+        model: the model.
         coordinates: coordinates of the steps; None for the unknowns of the model.
         keeper: puts the momentum right; None where something is held.
     """
 
+    model: Model
     coordinates: CentredCoordinates | None
     keeper: MomentumKeeper | None
+
+    def __reduce__(self) -> tuple[Callable[..., FreeFlight], tuple[Model, bool]]:
+        """How pickle and copy make it anew: its functions are of one process."""
+        return _flight, (self.model, self.coordinates is not None)
 
     def to_model(self, instant: Instant) -> Instant:
         """A state in the unknowns of the model, with the forces of contacts behind them, from one of the steps."""
@@ -354,10 +364,14 @@ def free_flight(model: Model, p: FloatArray | None = None, library: str | None =
         library: shared object that has :func:`functions_of_flight`; None without one.
     """
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
-    coordinates = CentredCoordinates(model, library) if p is None and can_be_centred(model) else None
+    return _flight(model, p is None and can_be_centred(model), library)
+
+
+def _flight(model: Model, centred: bool, library: str | None = None) -> FreeFlight:
+    coordinates = CentredCoordinates(model, library) if centred else None
     to_model = None if coordinates is None else coordinates.to_model
     keeper = MomentumKeeper(model, to_model, library) if flies_free(model) else None
-    return FreeFlight(coordinates, keeper)
+    return FreeFlight(model, coordinates, keeper)
 
 
 def functions_of_flight(model: Model) -> list[ca.Function]:

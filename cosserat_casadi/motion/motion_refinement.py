@@ -29,9 +29,7 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
     COARSER,
-    FAR_APART,
     MOST_TIGHTENINGS,
-    NOT_NEARER,
     SLOPE,
     TIGHTER,
     Companion,
@@ -41,6 +39,7 @@ from cosserat_casadi.motion.simulate import (
     bound_of,
     ended_early,
     factor_for,
+    hangs_on_rounding,
     judged,
     left_by,
     motion_of,
@@ -365,27 +364,24 @@ def _with_tolerance(search: _Search) -> Motion:
 
 
 def _is_erratic(search: _Search) -> bool:
-    """Whether the first motion strikes, and is as far from one of coarser steps as that is from one of still coarser.
-
-    Errors that go with LEAST_SLOPE or faster fall to a third from one distance to the next.
-    """
+    """Whether the first motion is as far from one of coarser steps as that is from one of still coarser."""
     level = search.last
-    struck = any(event.kind == "impact" for event in level.history.events)
-    if not struck or not np.isfinite(search.step_tolerance):
+    if not np.isfinite(search.step_tolerance):
         return False
     paths, tolerance = level.paths, search.step_tolerance
     distances: list[float] = []
-    for _ in range(2):
+    # The second pair is computed where the first one does not rule it out.
+    while len(distances) < 2 and hangs_on_rounding(
+        level.history, min(distances, default=np.inf), 0.0, search.tolerance
+    ):
         tolerance *= TIGHTER
         coarse = level.simulator.controlled(tolerance)
         if not coarse.completed:
             return False
         coarse_paths = level.simulator.paths(coarse)
         distances.append(path_distance(paths, coarse_paths))
-        if distances[0] <= FAR_APART * search.tolerance:
-            return False
         paths = coarse_paths
-    if distances[0] <= NOT_NEARER * distances[1]:
+    if len(distances) < 2 or not hangs_on_rounding(level.history, distances[0], distances[1], search.tolerance):
         return False
     search.time_error = distances[0]
     return True
@@ -548,10 +544,14 @@ def _interrupted(search: _Search) -> Motion:
     level = search.last
     error = search.space_error + search.time_error
     told = f": its estimated error is {error:.2g} of the length."
-    if not np.isfinite(error):
+    if np.isfinite(search.space_error) and not np.isfinite(search.time_error):
+        # Nothing was compared that tells it of this motion.
+        foreseen = _of_steps(search, level.simulator.model)
+        error = search.space_error + foreseen
+        modes = f"its modes leave an error of about {search.space_error:.2g} of the length"
+        told = f": {modes}, its steps about {foreseen:.2g} where they are as exact as those of like motions."
+    elif not np.isfinite(error):
         error = float("nan")
         told = ", and its error is not known."
-        if np.isfinite(search.space_error):
-            told = f": its modes leave an error of about {search.space_error:.2g} of the length, its steps one unknown."
     message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked{told}"
     return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)

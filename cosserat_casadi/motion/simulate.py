@@ -247,14 +247,14 @@ class Simulator:
                 break
             timed = self.finer(timed, factor)
             distance = timed.error / left_by(factor)
-            struck = any(event.kind == "impact" for event in timed.history.events)
-            if struck and distance > max(NOT_NEARER * before, FAR_APART * tolerance):
-                # Its impacts make the motion hang on rounding.
+            if hangs_on_rounding(timed.history, distance, before, tolerance):
                 return replace(timed, error=distance)
-            before = distance
             if timed.error <= tolerance:
                 break
-            factor = factor_for(timed.error, tolerance)
+            # Far apart, the next two motions are compared with these: their steps are to differ alike.
+            far = distance > FAR_APART * tolerance
+            before = distance if far else np.inf
+            factor = TIGHTER if far else factor_for(timed.error, tolerance)
         return timed
 
     def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
@@ -323,6 +323,21 @@ class Simulator:
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
             self.tell(MotionProgress(self.stage, time, self.simulation.duration, size))
+
+
+def hangs_on_rounding(history: History, distance: float, before: float, tolerance: float) -> bool:
+    """Whether impacts make a motion erratic: more exact steps do not bring its paths nearer to a limit.
+
+    Errors that go with LEAST_SLOPE or faster fall to a third from one distance to the next.
+
+    Args:
+        history: the motion.
+        distance: between the paths of two motions, over the length, of which one has steps TIGHTER times as exact.
+        before: the same of two that are TIGHTER times as coarse; infinite where it is not known.
+        tolerance: error of the paths allowed, over the length.
+    """
+    struck = any(event.kind == "impact" for event in history.events)
+    return struck and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
 
 
 def left_by(factor: float) -> float:

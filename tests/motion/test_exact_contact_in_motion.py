@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -278,6 +279,15 @@ def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None
     on_ball.write(tmp_path / "motion.npz")
     with np.load(tmp_path / "motion.npz") as arrays:
         assert_allclose(arrays["contact.at"], entry["at"], rtol=1e-15, atol=0)
+
+
+def test_a_motion_in_contact_is_pickled(on_ball: Motion) -> None:
+    """States between steps, forces and what goes on are those of the motion: functions are made anew."""
+    again = pickle.loads(pickle.dumps(on_ball))
+    time = float(on_ball.events[-1].time)
+    assert_allclose(again.at(time).x, on_ball.at(time).x, rtol=0, atol=0)
+    assert again.interpolant.__self__.touching(time) == on_ball.interpolant.__self__.touching(time)
+    assert again.events == on_ball.events
 
 
 @pytest.mark.slow
