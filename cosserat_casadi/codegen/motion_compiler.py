@@ -18,7 +18,7 @@ import casadi as ca
 from cosserat_casadi.codegen.cache import cache_folder, kept_texts, texts_in_cache
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_library
-from cosserat_casadi.codegen.scalar_program import scalar_program
+from cosserat_casadi.codegen.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -31,7 +31,13 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Tell
-from cosserat_casadi.motion.step_kernels import StepKernels, interpreted_jacobians, interpreted_residual
+from cosserat_casadi.motion.step_kernels import (
+    MATRICES,
+    StepKernels,
+    dense_jacobians,
+    interpreted_jacobians,
+    interpreted_residual,
+)
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
@@ -42,11 +48,11 @@ RESIDUAL = "motion_residual"
 JACOBIANS = "motion_jacobians"
 """Names of the functions in C, and of their files in the cache."""
 
+PROGRAM = "motion_program"
+"""Inverse dynamics as a program of scalars, three stages at once."""
+
 TIP = "motion_tip_"
 """Name of the pose of a tip in C, before the number of its rod; it stands in the file of the residual."""
-
-MATRICES = 3
-"""Derivatives of inverse dynamics: stiffness, damping, mass."""
 
 INSTRUCTION = 7e-9
 """Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 4e-9 of few to 10e-9 of many."""
@@ -54,13 +60,10 @@ INSTRUCTION = 7e-9
 AS_MANY_RESIDUALS = 10.0
 """Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""
 
-IN_PROGRAM = 0.35
-"""Time of inverse dynamics as a program of scalars, three stages at once, over that in the virtual machine."""
+SAVED = {PROGRAM: 0.65, RESIDUAL: 0.3, JACOBIANS: 0.8}
+"""Share of the virtual machine's time that a program saves, machine code beyond a program, and machine code."""
 
-SAVED = {RESIDUAL: 0.85, JACOBIANS: 0.8}
-"""Share of the time in either that machine code saves."""
-
-TO_COMPILE = {RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
+TO_COMPILE = {PROGRAM: (0.0, 5e-6), RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
 """Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
 
 MOTIONS_TO_COME = 2.0
@@ -100,10 +103,15 @@ class MotionCompiler:
         if residual is None:
             residual = interpreted_residual(model)
             if stepper is not None:
-                residual.program = kept_with(
-                    model, "_program", lambda: scalar_program(model.inverse_dynamics_in_scalars)
-                )
+                residual.program = self._program(model)
         return StepKernels(residual, interpreted_jacobians(model) if jacobians is None else jacobians.matrices, stepper)
+
+    def _program(self, model: Model) -> ScalarProgram | None:
+        """Inverse dynamics as a program; None where to write it does not pay, or where it has none."""
+        written: dict[str, ScalarProgram | None] = kept_with(model, "_programs", dict)
+        if PROGRAM not in written and self._pays(model, PROGRAM):
+            written[PROGRAM] = scalar_program(model.inverse_dynamics_in_scalars)
+        return written.get(PROGRAM)
 
     def tips(self, model: Model) -> dict[str, ca.Function] | None:
         """Poses of the tips by rod where the residual is machine code, which they stand beside; else None."""
@@ -146,7 +154,8 @@ class MotionCompiler:
         """
         if self.last is None:
             return False
-        foreseen = max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), _spent(model)[name])
+        spent = _spent(model)[RESIDUAL if name == PROGRAM else name]
+        foreseen = max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), spent)
         at_least, each = TO_COMPILE[name]
         instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
         return SAVED[name] * foreseen > at_least + each * instructions
@@ -158,8 +167,8 @@ def _spent(model: Model) -> dict[str, float]:
 
 
 def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
-    """Processor time that the virtual machine, or a program, takes for a function in a motion, s."""
-    calls = IN_PROGRAM * STAGES * work.iterations
+    """Processor time that the virtual machine takes for a function in a motion, s."""
+    calls = STAGES * work.iterations
     if name == JACOBIANS:
         calls = AS_MANY_RESIDUALS * work.jacobians
     instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
@@ -229,10 +238,7 @@ def _residual(model: Model) -> list[ca.Function]:
 
 
 def _jacobians(model: Model) -> list[ca.Function]:
-    function = model.dynamics_jacobian
-    arguments = function.mx_in()
-    matrices = [ca.densify(matrix) for matrix in function.call(arguments)[:MATRICES]]
-    return [ca.Function(JACOBIANS, arguments, matrices, function.name_in(), function.name_out()[:MATRICES])]
+    return [dense_jacobians(model, JACOBIANS)]
 
 
 WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}

@@ -5,7 +5,9 @@ CasADi's virtual machine takes one state at a time, and as long to find out what
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import NamedTuple
 
 import casadi as ca
@@ -75,8 +77,8 @@ class _Writer:
         codes = np.fromiter(map(function.instruction_id, every), np.intc, len(every))
         if not KNOWN.issuperset(np.unique(codes).tolist()):
             return None
-        taken = [function.instruction_input(k) for k in every]
-        made = [function.instruction_output(k) for k in every]
+        operand, other = _first_and_last(map(function.instruction_input, every), len(every))
+        result, entry = _first_and_last(map(function.instruction_output, every), len(every))
         arguments = begin + np.cumsum([0, *(function.nnz_in(i) for i in range(function.n_in()))])
         results = arguments[-1] + np.cumsum([0, *(function.nnz_out(i) for i in range(function.n_out()))])
         constant = codes == ca.OP_CONST
@@ -86,10 +88,6 @@ class _Writer:
         work = first + len(values)
         self.size = max(self.size, work + function.sz_w())
 
-        operand = np.array([numbers[0] if numbers else 0 for numbers in taken], dtype=np.intc)
-        other = np.array([numbers[-1] if numbers else 0 for numbers in taken], dtype=np.intc)
-        result = np.array([numbers[0] for numbers in made], dtype=np.intc)
-        entry = np.array([numbers[-1] for numbers in made], dtype=np.intc)
         lines = np.stack([codes, work + result, work + operand, work + other], axis=1).astype(np.intc)
         lines[constant, 2] = first + np.arange(len(values))
         read, written = codes == ca.OP_INPUT, codes == ca.OP_OUTPUT
@@ -102,7 +100,8 @@ class _Writer:
         parts = []
         last = -1
         for k, callee in called_functions(function, codes.tolist()).items():
-            within = self._call(callee, np.array(taken[k], np.intc), np.array(made[k], np.intc), work)
+            taken, made = function.instruction_input(k), function.instruction_output(k)
+            within = self._call(callee, np.array(taken, np.intc), np.array(made, np.intc), work)
             if within is None:
                 return None
             parts += [lines[last + 1 : k], *within]
@@ -129,6 +128,16 @@ class _Writer:
         given, found = own[: len(operands)], own[len(operands) :]
         wanted = results >= 0
         return [_copied(given, work + operands), lines, _copied(work + results[wanted], found[wanted])]
+
+
+def _first_and_last(numbers: Iterable[list[int]], count: int) -> tuple[Lines, Lines]:
+    """The first and the last of the numbers of each of so many instructions; zeros where there are none.
+
+    No list lives on: tens of thousands of them would have Python look for cycles of references.
+    """
+    ends = chain.from_iterable((each[0], each[-1]) if each else (0, 0) for each in numbers)
+    both = np.fromiter(ends, np.intc, 2 * count).reshape(-1, 2)
+    return both[:, 0], both[:, 1]
 
 
 def _copied(to: Lines, slots: Lines) -> Lines:

@@ -13,9 +13,13 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.time_steps import Stepper
+
+MATRICES = 3
+"""Derivatives of inverse dynamics: stiffness, damping, mass."""
 
 
 @dataclass(frozen=True)
@@ -57,11 +61,26 @@ def interpreted_residual(model: Model) -> RepeatedCall:
     return RepeatedCall(model.inverse_dynamics_in_scalars)
 
 
+def dense_jacobians(model: Model, name: str = "motion_jacobians") -> ca.Function:
+    """Stiffness, damping and mass with all their entries, in the arguments of inverse dynamics."""
+    function = model.dynamics_jacobian
+    arguments = function.mx_in()
+    matrices = [ca.densify(matrix) for matrix in function.call(arguments)[:MATRICES]]
+    return ca.Function(name, arguments, matrices, function.name_in(), function.name_out()[:MATRICES])
+
+
 def interpreted_jacobians(model: Model) -> Callable[..., list[FloatArray]]:
-    """The derivatives of inverse dynamics by CasADi's virtual machine."""
+    """The derivatives of inverse dynamics by CasADi's virtual machine; they are written where they are first asked for.
+
+    Sparse matrices of CasADi become arrays by way of lists, which takes a fifth of the time of the derivatives.
+    """
+    calls: list[RepeatedCall] = []
 
     def jacobians(*arguments: FloatArray) -> list[FloatArray]:
-        return [matrix.full() for matrix in model.dynamics_jacobian(*arguments)[:3]]
+        if not calls:
+            dense = kept_with(model, "_dense_jacobians", lambda: dense_jacobians(model))
+            calls.append(RepeatedCall(dense, MATRICES))
+        return calls[0].matrices(*arguments)
 
     return jacobians
 
