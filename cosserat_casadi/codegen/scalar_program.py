@@ -34,7 +34,7 @@ class ScalarProgram(NamedTuple):
 
     Attributes:
         lines: shape (lines, 4).
-        slots: what the slots hold before the first line: constants where they are, shape (slots,).
+        slots: contents of the slots before the first line: constants where they are, shape (slots,).
         arguments: number of slots of arguments.
     """
 
@@ -112,9 +112,9 @@ class _Writer:
         """Lines of a call: the arguments are copied, and the results when all of them are there.
 
         Args:
-            callee: what is called.
+            callee: the function that is called.
             operands: numbers of all its arguments in the work of the caller.
-            results: of its results; below zero where one is not wanted.
+            results: numbers of its results there; below zero where a result is not wanted.
             work: slot of the first of them.
         """
         place = callee.__hash__()
@@ -146,7 +146,7 @@ def _copied(to: Lines, slots: Lines) -> Lines:
 
 
 def cases_in_c() -> str:
-    """What a line does, by its operation, for the loop in C: ``a`` and ``b`` are its operands, ``to`` its result."""
+    """Cases of operations for the loop in C: ``a`` and ``b`` are the operands of a line, ``to`` is its result."""
     fours = {ca.OP_ASSIGN: "LOAD(a)", ca.OP_SQ: "LOAD(a) * LOAD(a)"}
     fours |= {code: f"LOAD(a) {sign} LOAD(b)" for code, sign in BINARY.items()}
     for code, (operation, constant) in REWRITTEN.items():
