@@ -546,7 +546,7 @@ def _interrupted(search: _Search) -> Motion:
     told = f": its estimated error is {error:.2g} of the length."
     if np.isfinite(search.space_error) and not np.isfinite(search.time_error):
         # Nothing was compared that tells it of this motion.
-        foreseen = _of_steps(search, level.simulator.model)
+        foreseen = TIME_SHARE * search.tolerance
         error = search.space_error + foreseen
         modes = f"its modes leave an error of about {search.space_error:.2g} of the length"
         told = f": {modes}, its steps about {foreseen:.2g} where they are as exact as those of like motions."
