@@ -44,7 +44,7 @@ DATA = 3
 MOTION = 6
 """Numbers of the motion of a section, which stand behind its data: velocity, m/s, and angular velocity, rad/s.
 
-Along a path displacement, m, and rotation since its last point, the axis times the sine of the angle.
+Along a path displacement, m, and rotation since its last point, the axis times the tangent of half of the angle.
 """
 
 STILL = ca.DM(MOTION, 0)
@@ -129,17 +129,34 @@ class PairInMotion:
         arguments: symbols (position, data and motion, position, data and motion, law).
         arms: from the centre of each to the point that touches, 3×1, m.
         pressing: force between them, 1×1, N.
-        sliding: relative velocity, or way, of their points that touch, along the surface, 3×1, m/s or m.
+        normal: unit vector from the second to the first, 3×1.
+        velocity: relative velocity, or way, of their points that touch, 3×1, m/s or m.
     """
 
     arguments: list[ca.SX]
     arms: list[ca.SX]
     pressing: ca.SX
-    sliding: ca.SX
+    normal: ca.SX
+    velocity: ca.SX
+
+    @property
+    def sliding(self) -> ca.SX:
+        """The part of the velocity, or way, along the surface, 3×1."""
+        return self.velocity - self.normal * ca.dot(self.normal, self.velocity)
 
 
-def _pair_in_motion() -> PairInMotion:
-    """Two sections in symbols."""
+def _turned(vector: ca.SX, rotation: ca.SX) -> ca.SX:
+    """A vector turned by a rotation, which is the axis times the tangent of half of the angle."""
+    across = ca.cross(rotation, vector)
+    return vector + 2 * (across + ca.cross(rotation, across)) / (1 + ca.sumsqr(rotation))
+
+
+def _pair_in_motion(along_path: bool) -> PairInMotion:
+    """Two sections in symbols.
+
+    Along a path the drag, which is part of the displacement of the first, turns with this section: rods that are moved
+    together as if they were rigid rub as before.
+    """
     places = [ca.SX.sym(name, 3) for name in ("first", "second")]
     data = [ca.SX.sym(name, DATA + MOTION) for name in ("first_data", "second_data")]
     law = ca.SX.sym("law", LAW)
@@ -154,11 +171,18 @@ def _pair_in_motion() -> PairInMotion:
     # Minus the derivative of the energy with the distance d, over d.
     by_distance = 6 * meets * length * other_length * coefficient(width, stiffness, touching) * inside**2
     arms = [-radius / touching * apart, other_radius / touching * apart]
-    speeds = [own[DATA : DATA + 3] + ca.cross(own[DATA + 3 :], arm) for own, arm in zip(data, arms, strict=True)]
-    velocity = speeds[0] - speeds[1]
-    sliding = velocity - apart * (ca.dot(apart, velocity) / square)
+    motions = [own[DATA : DATA + 3] for own in data]
+    turns = [own[DATA + 3 :] for own in data]
+    if along_path:
+        arms_before = [_turned(arm, -turn) for arm, turn in zip(arms, turns, strict=True)]
+        ways = [motion + arm - before for motion, arm, before in zip(motions, arms, arms_before, strict=True)]
+        velocity = _turned(ways[0] - ways[1], turns[0])
+    else:
+        speeds = [motion + ca.cross(turn, arm) for motion, turn, arm in zip(motions, turns, arms, strict=True)]
+        velocity = speeds[0] - speeds[1]
+    distance = ca.sqrt(square)
     arguments = [places[0], data[0], places[1], data[1], law]
-    return PairInMotion(arguments, arms, by_distance * ca.sqrt(square), sliding)
+    return PairInMotion(arguments, arms, by_distance * distance, apart / distance, velocity)
 
 
 @cache
@@ -169,7 +193,7 @@ def friction_kernel(along_path: bool) -> ca.Function:
     sections that touch. They are one point on the line of the centres, so that neither a sum nor a moment remains.
     Along a path the way of these points stands for it, and sections slip where it is as long as the law says.
     """
-    pair = _pair_in_motion()
+    pair = _pair_in_motion(along_path)
     *_, friction, slip = ca.vertsplit(pair.arguments[LAW_ARGUMENT])
     if along_path:
         length = ca.fmax(ca.sqrt(ca.sumsqr(pair.sliding) + (NO_WAY * slip) ** 2), slip)
@@ -182,9 +206,9 @@ def friction_kernel(along_path: bool) -> ca.Function:
 
 @cache
 def way_kernel() -> ca.Function:
-    """The same ↦ way of the points that touch times the force between them, and that force, 4×1, N m and N."""
-    pair = _pair_in_motion()
-    weighted = ca.vertcat(pair.pressing * pair.sliding, pair.pressing)
+    """The same ↦ way of the points that touch and normal, times the force between them, and that force, 7×1."""
+    pair = _pair_in_motion(along_path=True)
+    weighted = pair.pressing * ca.vertcat(pair.velocity, pair.normal, 1)
     return ca.Function("contact_way", pair.arguments, ca.cse([weighted]))
 
 
@@ -243,7 +267,7 @@ def panel_gradient() -> ca.Function:
 
 @cache
 def panel_way() -> ca.Function:
-    """The same with motions behind the data ↦ sums of :func:`way_kernel` for the sections of the first, 4×PANEL."""
+    """The same with motions behind the data ↦ sums of :func:`way_kernel` for the sections of the first, 7×PANEL."""
     arguments = _panels(DATA + MOTION)
     return ca.Function("way", arguments, [_over_second(_by_pair(way_kernel(), arguments))])
 
@@ -414,7 +438,7 @@ class SectionPairs:
 
     @cached_property
     def way(self) -> Matrix:
-        """Of the sections of the first: way past the second times the force between them, and that force, 4×S."""
+        """Of each section of the first: sums of way, of normal and of one, times the force between them, 7×S."""
         (weighted,) = self._moving._over_pairs(panel_way())
         return self._of_first(weighted)
 

@@ -33,6 +33,9 @@ from cosserat_casadi.rod.wrenches import LineWrench
 if TYPE_CHECKING:
     from cosserat_casadi.model.system import System
 
+HALF_TURN = 1e-6
+"""Least 2 + 2 cos θ of a rotation by θ between points of a path: tan θ/2 has no end at half a turn."""
+
 
 @dataclass(frozen=True)
 class ContactSide:
@@ -110,9 +113,12 @@ class ContactSide:
         if own is not remembered:
             before = before @ ca.DM(remembered.interpolation_matrix(known(own.nodes)).T)
         position, *directors = ca.vertsplit(before, 3)
-        here, *turned = ca.vertsplit(self.poses, 3)
-        # R R₀ᵀ has the sum of d₀ × d over the directors, over 2, for its axis times the sine of the angle.
-        rotation = sum(cross(old, new) for old, new in zip(directors, turned, strict=True)) / 2
+        poses = self.poses
+        here, *turned = ca.vertsplit(poses, 3)
+        # The axis of R R₀ᵀ times tan θ/2 is Σ d₀ × d / (1 + Σ d₀·d) over the directors.
+        sines = sum(cross(old, new) for old, new in zip(directors, turned, strict=True))
+        cosines = ca.sum1(before[3:, :] * poses[3:, :])
+        rotation = sines / ca.repmat(ca.fmax(1 + cosines, HALF_TURN), 3, 1)
         return ca.vertcat(here - position, rotation)
 
     @property
@@ -247,10 +253,12 @@ class PairTerms:
         """How the sections of the first rod rub: history, slip, 1×k, and force, 3×k, N."""
         assert self.history is not None, "asked for along a path"
         count = self.sides[0].count
-        way = self.section_pairs.way[:, :count]
-        pressing = way[3, :]
+        way, push, pressing = ca.vertsplit(self.section_pairs.way[:, :count], [0, 3, 6, 7])
         pressed = self.history.is_known * (pressing > 0.0)
-        drag = way[:3, :] * ca.repmat(pressed / ca.if_else(pressing > 0.0, pressing, 1.0), 3, 1)
+        way = way * ca.repmat(pressed / ca.if_else(pressing > 0.0, pressing, 1.0), 3, 1)
+        # Along the surface of all pairs together: projected on that of each pair it would fade, point after point.
+        square = ca.sum1(push**2)
+        drag = way - push * ca.repmat(ca.sum1(push * way) / ca.if_else(square > 0.0, square, 1.0), 3, 1)
         share = ca.sqrt(ca.sum1(drag**2)) / self.pair.slip_way
         after = drag / ca.repmat(ca.fmax(share, 1.0), 3, 1)
         history = PairHistory(after, {side.rod: side.poses for side in self.sides})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import casadi as ca
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Model, build, discretise, follow, scene_from_dict, simulate, solve
 from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, friction_kernel
@@ -118,6 +120,24 @@ def test_a_section_does_not_rub_on_itself(along_path: bool) -> None:
         assert_allclose(derivative, 0, rtol=0, atol=0)
 
 
+def test_friction_turns_with_sections_that_move_together() -> None:
+    """Along a path: two sections that a rotation by 2 rad moves as one body rub as they did, turned."""
+    rotation = Rotation.from_rotvec([1.2, 1.6 * 0.6, -1.6 * 0.8])
+    half = rotation.as_rotvec() / 2.0 * np.tan(1.0)
+    drag = np.array([2e-4, -1e-4, 3e-4])
+    places = np.array([[0.1, 0.2, 0.3], [0.1 + RADIUS, 0.2 + RADIUS, 0.3 + RADIUS]])
+    turned = rotation.apply(places)
+    law = [2e-3, 1e5, 0.0, FRICTION, SLIP]
+    loads = []
+    for now, turn in ((places, np.zeros(3)), (turned, half)):
+        moved = now - places
+        moved[0] += drag
+        sections = [[place, [1e-3, RADIUS, 0.1, *way, *turn]] for place, way in zip(now, moved, strict=True)]
+        loads.append(friction_kernel(True)(*sections[0], *sections[1], law).full().reshape(4, 3))
+    assert np.abs(loads[0][0]).max() > 0.0
+    assert_allclose(loads[1], rotation.apply(loads[0]), rtol=0, atol=1e-13 * np.abs(loads[0]).max())
+
+
 def test_derivatives_are_those_of_differences() -> None:
     model = sliding()
     rng = np.random.default_rng(2)
@@ -218,6 +238,58 @@ def test_crossed_rods_stick_and_slip() -> None:
         assert_allclose(sum(base.force for _, base in bases), -load, rtol=0, atol=1e-11)
         moments = [base.moment + np.cross(place, base.force) for place, base in bases]
         assert_allclose(sum(moments), -np.cross(at, load), rtol=0, atol=1e-11)
+
+
+def test_what_sticks_stays_however_many_points_a_path_has() -> None:
+    """Across a rod too, where pairs of sections press in directions that differ; the load hardly changes."""
+    held = []
+    for step in (1.0, 0.1):
+        settings = ArcSettings(first=step, load_factor_change=step)
+        path = follow(crossed(), "press.force", [0, 0, -6.0001], first=pulled(0.5), settings=settings)
+        assert isinstance(path, FrictionPath) and path.converged
+        held.append(path.model.memory(path.x[-1], path.all_inputs[-1])[2].full().sum(axis=1))
+    assert np.abs(held[0][:2]).min() > 0.1
+    assert_allclose(*held, rtol=0, atol=1e-5)
+
+
+@pytest.mark.slow
+def test_rods_that_turn_together_rub_as_before() -> None:
+    """Two rods that press each other stand on a robot, whose joint turns by most of half a turn in two steps."""
+    section = {"strain": "kirchhoff", "section": {"shape": "circle", "radius": THICK}}
+    moduli = {"post": 1e11, "arm": 1e11, "lower": 1.6e7, "upper": 1.6e7}
+    above = [REACH, -REACH, 2 * THICK + WIDE / 2 - 0.1]
+    bases = {
+        "post": {"tangent": [0, 0, 1]},
+        "arm": {"rod": "post", "at": 1.0, "tangent": [0, 0, 1]},
+        "lower": {"rod": "post", "at": 1.0, "tangent": [1, 0, 0]},
+        "upper": {"rod": "arm", "at": 1.0, "position": above, "tangent": [0, 1, 0]},
+    }
+    rods = [
+        {
+            "name": name,
+            "length": 0.1 if name in ("post", "arm") else 1.1 * REACH,
+            "base": bases[name],
+            "material": {"youngs_modulus": modulus, "poisson_ratio": POISSON},
+            **section,
+        }
+        for name, modulus in moduli.items()
+    ]
+    press = {"kind": "point_wrench", "name": "press", "rod": "upper", "at": 1 / 1.1, "frame": "body"}
+    touch = {"rods": ["lower", "upper"], "width": WIDE, "stiffness": 1e6, "friction": FRICTION}
+    joint = {"kind": "revolute", "name": "turn", "rod": "post", "at": 0, "axis": [0.48, 0.6, 0.64], "angle": 0.0}
+    loads = [{**press, "force": [0, 0, 0]}]
+    scene = scene_from_dict({"schema": 1, "rods": rods, "rod_contacts": [touch], "joints": [joint], "loads": loads})
+    model = build(scene, discretise(scene, 2, 3))
+    upright = solve(model).pose(0, "upper").rotation
+    first = follow(model, "press.force", upright.T @ [0.5, 0.3, -6.0], settings=STEPS)
+    frictions = []
+    for angle in (1e-9, 0.9 * np.pi):
+        path = follow(model, "turn.angle", angle, first=first, settings=replace(STEPS, longest=np.inf))
+        assert isinstance(path, FrictionPath) and len(path.factor) == 3
+        friction = path.model.memory(path.x[-1], path.all_inputs[-1])[2].full().sum(axis=1)
+        frictions.append(path.solution(-1).pose(0, "upper").rotation.T @ friction)
+    assert np.linalg.norm(frictions[0]) > 0.1
+    assert_allclose(*frictions, rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("force", [0.5, 4.0])
