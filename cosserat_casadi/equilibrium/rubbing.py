@@ -43,7 +43,8 @@ def rubbing_stretches(model: Model, slip: FloatArray) -> tuple[RubbingStretch, .
 
     Args:
         model: the model.
-        slip: of the nodes, load after load, as ``model.memory`` and ``model.slips`` give it.
+        slip: of the nodes, load after load, and of sections, pair after pair, as ``model.memory`` and
+            ``model.slips`` give it.
     """
     return tuple(_stretches(model, slip))
 

@@ -35,12 +35,12 @@ SHORTEST = 1e-6
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class FrictionPath(EquilibriumPath):
-    """Equilibria of rods that rub on obstacles.
+    """Equilibria of rods that rub on obstacles, or on each other.
 
     Attributes:
         histories: inputs ``history`` of the model at each point, shape (k, h), from which friction is counted.
-        slips: how far the nodes are dragged over the way at which they slip, load after load, shape (k, nodes); −1
-            where nothing presses.
+        slips: how far nodes, and sections of rods that rub on rods, are dragged over the way at which they slip, load
+            after load, pair after pair, shape (k, nodes and sections); −1 where nothing presses.
     """
 
     histories: FloatArray
@@ -66,7 +66,7 @@ class _Point:
         factor: share of the input.
         solution: equilibrium.
         history: for the next increment, shape (h,).
-        slips: at the nodes.
+        slips: at the nodes and sections.
     """
 
     factor: float

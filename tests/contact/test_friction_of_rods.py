@@ -91,11 +91,11 @@ def test_friction_between_sections_has_neither_a_sum_nor_a_moment() -> None:
     lines = [np.array([0.2 * along, none, none]), np.array([0.2 * along, 0.1 * along, none + 2 * RADIUS + 2e-4])]
 
     def loads(*motions: FloatArray) -> list[FloatArray]:
-        sides = [
+        first, second = [
             SectionsInContact(ca.MX(ca.DM(line)), data, ca.DM(motion))
             for line, motion in zip(lines, motions, strict=True)
         ]
-        pairs = SectionPairs(*sides, ca.DM([1e-3, 1e5, -1e100, FRICTION, SLIP]))
+        pairs = SectionPairs(first, second, ca.DM([1e-3, 1e5, -1e100, FRICTION, SLIP]))
         return [ca.evalf(load).full() for load in pairs.friction]
 
     first, second = loads(rng.standard_normal((6, len(along))), rng.standard_normal((6, len(along))))
@@ -249,7 +249,7 @@ def test_what_sticks_stays_however_many_points_a_path_has() -> None:
         assert isinstance(path, FrictionPath) and path.converged
         held.append(path.model.memory(path.x[-1], path.all_inputs[-1])[2].full().sum(axis=1))
     assert np.abs(held[0][:2]).min() > 0.1
-    assert_allclose(*held, rtol=0, atol=1e-5)
+    assert_allclose(held[1], held[0], rtol=0, atol=1e-5)
 
 
 @pytest.mark.slow
@@ -289,7 +289,7 @@ def test_rods_that_turn_together_rub_as_before() -> None:
         friction = path.model.memory(path.x[-1], path.all_inputs[-1])[2].full().sum(axis=1)
         frictions.append(path.solution(-1).pose(0, "upper").rotation.T @ friction)
     assert np.linalg.norm(frictions[0]) > 0.1
-    assert_allclose(*frictions, rtol=0, atol=1e-7)
+    assert_allclose(frictions[1], frictions[0], rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("force", [0.5, 4.0])
