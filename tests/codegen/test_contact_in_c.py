@@ -470,6 +470,19 @@ def test_refused_uses(tmp_path: Path) -> None:
     named_scene = scene(rods=[round_rod], loads=[hook], obstacles=[BAR], parameters=named)
     with pytest.raises(ExportError, match=r"section.radius is the surface(?s:.*)hook.at would move ends of elements"):
         check_contact(named_scene, {})
+    wall = {"name": "wall", "kind": "plane", "point": [2.0, 0, 0], "normal": [-1, 0, 0], "bodies": ["head"]}
+    carried = {
+        "bodies": [{"name": "head", "mass": 0.1, "radius": 0.1}, {"name": "free", "mass": 0.1, "radius": 0.1}],
+        "joints": [
+            {"body": name, "rod": "rod", "kind": "fixed", "at": at} for name, at in (("head", 1.0), ("free", 0.5))
+        ],
+        "obstacles": [BAR, wall],
+        "parameters": ["head.radius", "free.radius", "head.mass"],
+    }
+    with pytest.raises(ExportError) as refused:
+        check_contact(scene(rods=[FLAT], loads=[PUSH], **carried), {})
+    (problem,) = refused.value.problems
+    assert problem.problem == "head.radius is the surface of what touches exactly, which C has in numbers"
     free = scene(rods=[rod("planar")])
     with pytest.raises(ExportError, match="no rod of this scene touches an obstacle exactly"):
         export(build(free, discretise(free, 1, 2)), tmp_path / "folder", load_cases=np.zeros((1, 0)))

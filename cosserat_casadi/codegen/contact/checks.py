@@ -52,11 +52,14 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
 
 
 def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
-    """Problems of parameters that change numbers of the solver in C: surfaces of rods, and ends of elements."""
+    """Problems of parameters that change numbers of the solver in C: surfaces that touch, and ends of elements."""
+    touching = [body.name for body in scene.bodies if any(own.concerns_body(body.name) for own in scene.obstacles)]
     for numbers in scene.named_parameters():
         for own in numbers.all_numbers:
-            if own.holder.table == "rods" and own.keys[0] in ("length", "section"):
-                problem = f"{own.name} is the surface of a rod in exact contact, which C has in numbers"
+            of_rod = own.holder.table == "rods" and own.keys[0] in ("length", "section")
+            of_ball = own.holder.table == "bodies" and own.keys[0] == "radius" and own.holder.record.name in touching
+            if of_rod or of_ball:
+                problem = f"{own.name} is the surface of what touches exactly, which C has in numbers"
                 yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")
     for ends in parameter_layout(scene).moving:
         problem = f"{', '.join(ends.names)} would move ends of elements, which in C contacts alone do"
