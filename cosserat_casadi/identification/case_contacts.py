@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import judged
 from cosserat_casadi.equilibrium.contact.contact_search import (
@@ -22,7 +23,7 @@ from cosserat_casadi.equilibrium.contact.contact_search import (
     next_states,
 )
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, settled_near, solve_contact
-from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in
+from cosserat_casadi.equilibrium.contact.contact_state import ContactState, load_sections, state_in
 from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.equilibrium.contact.pressing_contacts import marginal_contact
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
@@ -194,8 +195,12 @@ class ContactEquilibria(Equilibria):
         """A solution as a case; None where the equations of its contacts do not lead to it."""
         state = state_in(solution.model.scene)
         kept: dict[object, ContactEquations] = kept_with(self.model, "_contact_equations", dict)
-        kind = (state.signature, *(touch.seams for touch in state.touches))
-        for equations in [kept.get(kind), self._equations(state)]:
+        scene = self.model.at(p).scene
+        sections = load_sections(scene)
+        # Parameters may move seams; their order stays.
+        seams = [[sections[touch.owner].index(seam) for seam in touch.seams] for touch in state.touches]
+        kind = (state.signature, *map(tuple, seams))
+        for equations in [kept.get(kind), self._equations(state, scene)]:
             if equations is None:
                 continue
             own = equations.at(inputs, p)
@@ -205,11 +210,19 @@ class ContactEquilibria(Equilibria):
                 return case
         return None
 
-    def _equations(self, state: ContactState) -> ContactEquations:
-        """The equations of a state, in the parameters of the model."""
+    def _equations(self, state: ContactState, scene: scenes.Scene) -> ContactEquations:
+        """The equations of a state, in the parameters of the model.
+
+        Args:
+            state: the contacts.
+            scene: with numbers at which the state holds.
+        """
         model = self.model
-        theta = model.parameters.pack()
-        return ContactEquations(model.scene, model.pack(), Grids(model.discretisation), state, theta)
+        own = model.scene
+        if model.parameters.moving:
+            # What parameters move keeps its order among contacts: it starts where it is now.
+            own = scene.model_copy(update={"parameters": own.parameters})
+        return ContactEquations(own, model.pack(), Grids(model.discretisation), state, model.parameters.pack())
 
     def _settling(self, equations: ContactEquations) -> Settling:
         scene = equations.scene

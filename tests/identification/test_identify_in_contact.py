@@ -85,6 +85,48 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
     assert len(first.misfit.marginal(first.state)) == 1
 
 
+def poked(at: float, **more: Any) -> dict[str, Any]:
+    """The rod with a force on a section, whose place is unknown."""
+    poke = {"name": "poke", "kind": "point_wrench", "rod": "rod", "at": at, "force": [0, 0, -0.02]}
+    scene = tables(MODULUS, -0.02)
+    return {**scene, "loads": [*scene["loads"], poke | more]}
+
+
+def poked_and_measured(scene: dict[str, Any]) -> Scene:
+    """The same with markers that were measured."""
+    positions = {**MARKERS, "inputs": {"weight.force.z": "weight"}}
+    unknowns = [{"parameter": "poke.at", "lower": 0.3, "upper": 0.95}]
+    return scene_from_dict({**scene, "measurements": [positions], "unknowns": unknowns})
+
+
+@pytest.mark.slow
+def test_a_load_moves_past_a_contact() -> None:
+    bar = {"name": "bar", "kind": "capsule", "from": [0.5, -0.5, -0.06], "to": [0.5, 0.5, -0.06], "radius": 0.04}
+    true = solve(build(scene_from_dict({**poked(0.7), "obstacles": [bar]})))
+    (contact,) = true.contacts
+    assert 0.42 < contact.start < 0.7
+    begun = poked_and_measured({**poked(0.42), "obstacles": [bar]})
+    found = identify(build(begun.with_unknowns()), table([-0.02], true.pose(np.array(AT)).position[None]))
+    assert found.converged and not found.unstable and not found.warnings
+    assert_allclose(found.shared, [0.7], rtol=0, atol=1e-6)
+
+
+def test_a_load_moves_inside_a_line_of_contact() -> None:
+    at = 0.9
+    lying = poked(at, force=[0, 0, 0], moment=[0, -0.005, 0])
+    lying["loads"][0]["force"] = [0, 0, -0.3]
+    true = solve(build(scene_from_dict(lying)))
+    assert true.contacts[0].kind == "line" and true.contacts[0].start < at
+    first = started(poked_and_measured(lying), table([-0.3], np.zeros((1, len(AT), 3))))
+    (by_place,) = first.misfit.jacobians(first.state)[0].T
+    sides = []
+    for change in (1e-4, -1e-4):
+        lying["loads"][1]["at"] = at + change
+        solution = solve(build(scene_from_dict(lying)), start=true)
+        sides.append(solution.pose(np.array(AT)).position.ravel() / SIGMA)
+    assert_allclose(by_place, (sides[0] - sides[1]) / 2e-4, rtol=0, atol=1e-6 * np.abs(by_place).max())
+
+
 def test_what_moves_is_refused_in_exact_contact() -> None:
     frequency = {
         "quantity": "frequency",

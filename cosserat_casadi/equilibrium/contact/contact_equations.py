@@ -34,7 +34,7 @@ from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
-from cosserat_casadi.model.element_ends import element_ends
+from cosserat_casadi.model.element_ends import element_ends, places_on
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
@@ -289,6 +289,7 @@ class ContactEquations:
         if self.parameters.size:
             # Unknowns keep their units, those of the scene's own numbers.
             scene = self.parameters.set_in(self.scene, self.parameters.unpack(self.theta))
+            state = self._with_seams(state, scene)
             model = Model(with_numbers(model.discrete, with_contacts(scene, state, modes)))
         return Placed(model, state, self.given if given is None else given, modes)
 
@@ -336,8 +337,17 @@ class ContactEquations:
         # One expression for each place: what ends there is found by it.
         state = self.state.at([p[i] for i in range(count)])
         scene = self.parameters.written(self.scene.baked(), p[count:])
+        state = self._with_seams(state, scene)
         written = with_contacts(scene, state, self.nominal.modes)
         return Model(with_numbers(self.nominal.model.discrete, written, parameters)), state
+
+    def _with_seams(self, state: ContactState, scene: scenes.Scene) -> ContactState:
+        """Contacts whose seams are where a scene with other numbers, or expressions, has what acts there."""
+        places = {}
+        for own in self.parameters.moving:
+            pairs = zip(places_on(self.scene, own.rod), places_on(scene, own.rod), strict=True)
+            places[own.rod] = {float(before): after for before, after in pairs}
+        return state.reseamed(places)
 
     @property
     def model(self) -> Model:
@@ -369,6 +379,16 @@ class ContactEquations:
         places = dict(zip(self._places_on(self.state, rod), self._places_on(moved, rod), strict=True))
         return np.array([places.get(end, end) for end in breaks])
 
+    def _in_order(self, p: FloatArray) -> bool:
+        """Whether the elements of all rods, which places of contact and parameters move, follow each other."""
+        widths = [np.diff(self.ends(rod, p)).min() for rod in self.grids.rods]
+        for own in self.parameters.moving:
+            moved = own.ends(self.theta).full()[:, 0].tolist()
+            places = dict(zip(element_ends(self.scene, own.rod), moved, strict=True))
+            ends = [places.get(end, end) for end in self.ends(own.rod, p).tolist()]
+            widths.append(np.diff(ends).min())
+        return bool(min(widths) >= SHORTEST)
+
     @staticmethod
     def _places_on(state: ContactState, rod: str) -> list[float]:
         return [float(end) for touch in state.along(rod) for end in touch.carriers]
@@ -399,7 +419,7 @@ class ContactEquations:
     def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Balance and gaps for inputs; not a number where elements would not follow each other along the rod."""
         x, f, p = self.parts(z)
-        if any(np.diff(self.ends(rod, p)).min() < SHORTEST for rod in self.grids.rods):
+        if not self._in_order(p):
             return np.full(len(z), np.nan)
         return column(self._functions[0](x, f, np.concatenate([p, self.theta]), given))
 

@@ -46,7 +46,7 @@ class Touch:
         end: abscissa at which it ends; the same for a point.
         is_line: whether a stretch lies on the obstacle.
         of_body: whether it is a body that touches.
-        seams: abscissae inside a line where the force per length may jump, base to tip; they do not move.
+        seams: abscissae inside a line where the force per length may jump, base to tip; they are not sought.
     """
 
     obstacle: str
@@ -55,7 +55,7 @@ class Touch:
     end: Place
     is_line: bool = False
     of_body: bool = False
-    seams: tuple[float, ...] = ()
+    seams: tuple[Place, ...] = ()
 
     @classmethod
     def ball(cls, obstacle: str, body: str) -> Touch:
@@ -218,6 +218,14 @@ class ContactState:
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
         """The same contacts with seams at the sections of each rod, by name, that are inside them."""
         touches = [touch if touch.of_body else touch.split(sections[touch.owner]) for touch in self.touches]
+        return ContactState(tuple(touches))
+
+    def reseamed(self, places: Mapping[str, Mapping[float, Place]]) -> ContactState:
+        """The same contacts with seams at other places, by the places of each rod, by name: numbers, or expressions."""
+        touches = []
+        for touch in self.touches:
+            moved = places.get(touch.owner, {})
+            touches.append(replace(touch, seams=tuple(moved.get(seam, seam) for seam in touch.seams)))
         return ContactState(tuple(touches))
 
     @property
