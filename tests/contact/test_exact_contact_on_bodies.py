@@ -435,5 +435,5 @@ def test_what_is_refused(tmp_path: Path) -> None:
     moving = parse_scene(FINGERS + "[simulation]\nduration = 0.1\n")
     with pytest.raises(SceneError, match="not with those on bodies: disk"):
         simulate(build(moving.with_motion_inputs(), moving=True))
-    with pytest.raises(ExportError, match="bodies in exact contact are not found in C"):
+    with pytest.raises(ExportError, match="exact contact with an obstacle on a body, or of a disk, is not found in C"):
         export(build(parse_scene(FINGERS)), tmp_path / "fingers", "fingers")

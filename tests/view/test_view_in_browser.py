@@ -131,7 +131,8 @@ def test_a_robot_beyond_the_tolerance_is_said_to_be_so_and_refined(page: Any, se
     )
     page.evaluate("window.robot.setInput('front.tension', 4.0)")
     page.wait_for_function("() => window.answerRefined")
-    assert "In equilibrium, stable, beyond the tolerance" in page.inner_text("#status")
+    told_so = "In equilibrium, stable, beyond the tolerance"
+    page.wait_for_function("(text) => document.getElementById('status').innerText.includes(text)", arg=told_so)
     assert "Estimated error 0.04" in page.inner_text("#status")
     assert page.evaluate("document.getElementById('status').className") == "warn"
     page.evaluate(
