@@ -544,8 +544,9 @@ def _interrupted(search: _Search) -> Motion:
     level = search.last
     error = search.space_error + search.time_error
     told = f": its estimated error is {error:.2g} of the length."
-    if np.isfinite(search.space_error) and not np.isfinite(search.time_error):
-        # Nothing was compared that tells it of this motion.
+    controlled = np.isfinite(search.step_tolerance)
+    if np.isfinite(search.space_error) and controlled and not np.isfinite(search.time_error):
+        # Nothing was compared that tells it of this motion; steps of given size have no share of the tolerance.
         foreseen = TIME_SHARE * search.tolerance
         error = search.space_error + foreseen
         modes = f"its modes leave an error of about {search.space_error:.2g} of the length"

@@ -244,6 +244,23 @@ def test_interrupted_search_keeps_the_best_whole_motion() -> None:
     assert apart < motion.error_estimate < 0.1
 
 
+def test_interrupted_search_foresees_no_error_of_given_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps of given size are not chosen by the tolerance: where nothing tells their error, none is named."""
+    monkeypatch.setattr("cosserat_casadi.motion.simulate.MOST_HALVINGS", 0)
+    stages: set[str] = set()
+
+    def tell(progress: MotionProgress) -> None:
+        stages.add(progress.stage)
+        if len(stages) == 3:
+            raise KeyboardInterrupt
+
+    scene = falling(accuracy={}, simulation=asked(start="unloaded", integrator="gauss"))
+    motion = simulate(scene_from_dict(scene), progress=tell)
+    assert motion.outcome is MotionOutcome.INTERRUPTED
+    assert np.isnan(motion.error_estimate)
+    assert "its error is not known" in motion.message
+
+
 def test_steps_whose_error_is_not_known_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """A motion is whole, and yet not the one that was asked for, where nothing says how exact it is."""
     monkeypatch.setattr("cosserat_casadi.motion.simulate.MOST_TIGHTENINGS", 0)
