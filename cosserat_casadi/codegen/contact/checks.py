@@ -8,6 +8,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
@@ -53,11 +54,11 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
 
 def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
     """Problems of parameters that change numbers of the solver in C: surfaces that touch, and ends of elements."""
-    touching = [body.name for body in scene.bodies if any(own.concerns_body(body.name) for own in scene.obstacles)]
+    touching = {scene.bodies.index(body) for body, _ in body_pairs(scene)}
     for numbers in scene.named_parameters():
         for own in numbers.all_numbers:
             of_rod = own.holder.table == "rods" and own.keys[0] in ("length", "section")
-            of_ball = own.holder.table == "bodies" and own.keys[0] == "radius" and own.holder.record.name in touching
+            of_ball = own.holder.table == "bodies" and own.keys[0] == "radius" and own.holder.index in touching
             if of_rod or of_ball:
                 problem = f"{own.name} is the surface of what touches exactly, which C has in numbers"
                 yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")
