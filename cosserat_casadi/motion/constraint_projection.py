@@ -66,22 +66,29 @@ class Closing:
         best = x
         before = np.inf
         answer = None
+        is_here = False
         for _ in range(MOST_CORRECTIONS):
             instant = replace(instant, x=x)
             gaps = equations.residual_at(instant)[self.rows]
             largest = np.abs(gaps).max()
             if largest <= CLOSED:
                 break
+            leads_away = not largest < before
             # Where constraints are about to depend on each other corrections may lead away.
-            if not largest < before:
+            if leads_away and is_here:
                 return best
-            best = x
+            if leads_away:
+                instant = replace(instant, x=best)
+                gaps = equations.residual_at(instant)[self.rows]
+            else:
+                best = x
             if answer is None:
                 answer = self._answer_near(near, equations)
-            elif largest > CONTRACTED * before:
+            elif leads_away or largest > CONTRACTED * before:
                 answer = self._answer(equations.linearised(instant).stiffness)
-            before = largest
-            x = x - answer @ gaps
+                is_here = True
+            before = np.abs(gaps).max()
+            x = best - answer @ gaps
         return x
 
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
