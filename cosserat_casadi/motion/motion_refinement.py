@@ -158,7 +158,7 @@ class _Search:
         tolerance: of the paths, over the length.
         levels: the motions so far.
         step_tolerance: of a step, over the length; nan for steps of given size.
-        time_error: error of the steps on the first level.
+        time_error: error of the steps on the last level that it was told of; nan where none was.
     """
 
     scene: Scene
@@ -417,6 +417,7 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
             search.step_tolerance = min(search.step_tolerance, search.tolerance / TIGHTER)
     elif len(search.levels) == TOLD_AFTER and not given:
         told = told_by_coarser(search.last, search.step_tolerance)
+        search.time_error = told.error
         wanted = TIME_SHARE * search.tolerance
         if told.error > wanted:
             search.step_tolerance /= factor_for(told.error, wanted)
@@ -470,6 +471,9 @@ def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistor
     coarse = simulator.controlled(COARSER * step_tolerance)
     if coarse.outcome is StepOutcome.INTERRUPTED:
         return TimedHistory(coarse, float("nan"))
+    if coarse.completed and coarse.statistics.steps >= level.history.statistics.steps:
+        # Its steps are no longer ones, whatever the tolerance: the two motions say nothing of their error.
+        return simulator.told_by_half(level.history, step_tolerance)
     error = float("inf")
     if coarse.completed:
         error = left_by(COARSER) * path_distance(simulator.paths(coarse), level.paths)

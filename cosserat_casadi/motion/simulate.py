@@ -251,8 +251,8 @@ class Simulator:
                 return replace(timed, error=distance)
             if timed.error <= tolerance:
                 break
-            # Far apart, the next two motions are compared with these: their steps are to differ alike.
-            far = distance > FAR_APART * tolerance
+            # Far apart after impacts, the next two motions are compared with these: their steps are to differ alike.
+            far = hangs_on_rounding(timed.history, distance, 0.0, tolerance)
             before = distance if far else np.inf
             factor = TIGHTER if far else factor_for(timed.error, tolerance)
         return timed
@@ -266,12 +266,19 @@ class Simulator:
 
     def _with_given_step(self, size: float) -> TimedHistory:
         history = self.stepped(size)
-        if not history.completed:
-            return TimedHistory(history, float("nan"))
-        shorter = self.stepped(size / 2.0)
+        return self.told_by_half(history) if history.completed else TimedHistory(history, float("nan"))
+
+    def told_by_half(self, history: History, step_tolerance: float = float("nan")) -> TimedHistory:
+        """A motion with the error of its steps by one whose steps are half of its longest.
+
+        Args:
+            history: the motion.
+            step_tolerance: tolerance of a step, over the length, that it was computed with; nan where steps were given.
+        """
+        shorter = self.stepped(history.statistics.largest_step / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
         error = HALVED * distance if shorter.completed else float("nan")
-        return TimedHistory(history, error, companion=Companion(shorter, HALVED))
+        return TimedHistory(history, error, step_tolerance, Companion(shorter, HALVED))
 
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
         size = self.simulation.duration / FIRST_GAUSS_STEPS

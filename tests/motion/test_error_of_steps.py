@@ -57,6 +57,17 @@ def true_error(simulator: Simulator, found: Any) -> float:
     return path_distance(simulator.paths(found), simulator.paths(exact))
 
 
+def test_error_of_steps_that_no_coarser_motion_makes_longer() -> None:
+    """A rod that is spun up slowly takes six steps at both tolerances: half of them tell the error."""
+    simulator = simulator_of(transients.spin_up(0.1, duration=1.0, times=[0.5, 1.0]))
+    history = simulator.controlled(STEP_TOLERANCE)
+    assert simulator.controlled(COARSER * STEP_TOLERANCE).statistics.steps == history.statistics.steps
+    told = told_by_coarser(ResolvedMotion(simulator, history, simulator.paths(history)), STEP_TOLERANCE)
+    true = true_error(simulator, history)
+    assert true > 1e-6
+    assert 0.8 * true <= told.error <= 4.0 * true
+
+
 def test_error_told_by_a_coarser_motion_is_not_too_small(level: ResolvedMotion) -> None:
     told = told_by_coarser(level, STEP_TOLERANCE)
     error = true_error(level.simulator, level.history)
