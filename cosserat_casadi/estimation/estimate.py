@@ -84,7 +84,7 @@ def estimate_model(
     table.inputs[:, indices[:own]] = expected_values(known, table.inputs[:, indices[:own]])
     solver: RowSolver
     if model.scene.touches_exactly:
-        # Expressions of CasADi are no matter for threads.
+        # Functions are built for contacts as they change, and CasADi may not build in several threads at once.
         solver, cores = RowsInContact(model, sections, indices), 1
     else:
         report("Writing and compiling", 0, 0)

@@ -57,11 +57,13 @@ def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:
     touching = {scene.bodies.index(body) for body, _ in body_pairs(scene)}
     for numbers in scene.named_parameters():
         for own in numbers.all_numbers:
-            of_rod = own.holder.table == "rods" and own.keys[0] in ("length", "section")
-            of_ball = own.holder.table == "bodies" and own.keys[0] == "radius" and own.holder.index in touching
-            if of_rod or of_ball:
+            remedy = "leave it out, or give each obstacle a width, m"
+            if own.holder.table == "rods" and own.keys[0] in ("length", "section"):
+                problem = f"{own.name}: C has lengths and sections of rods in exact contact in numbers"
+                yield Problem("parameters", problem, remedy)
+            if own.holder.table == "bodies" and own.keys[0] == "radius" and own.holder.index in touching:
                 problem = f"{own.name} is the surface of what touches exactly, which C has in numbers"
-                yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")
+                yield Problem("parameters", problem, remedy)
     for ends in parameter_layout(scene).moving:
         problem = f"{', '.join(ends.names)} would move ends of elements, which in C contacts alone do"
         yield Problem("parameters", problem, "leave it out, or give each obstacle a width, m")

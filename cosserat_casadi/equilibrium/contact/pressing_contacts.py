@@ -70,7 +70,8 @@ def marginal_contact(solution: Solution) -> str:
     discrete = solution.model.discrete
     for touch, push in found.pushes():
         if push <= LEAST_TOLERANCE:
-            force = push * found.largest_force * discrete.contact_unit(touch.owner, of_body=touch.of_body)
+            # Below rounding a contact that is just touched pulls.
+            force = max(push, 0.0) * found.largest_force * discrete.contact_unit(touch.owner, of_body=touch.of_body)
             return f"{touch.owner!r} is on {touch.obstacle!r} and presses with {force:.2g} N only."
     for near in found.penetrations(-LEAST_TOLERANCE):
         if not _is_held(near, [touch for touch in found.state.touches if near.is_at(touch)]):
