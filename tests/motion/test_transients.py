@@ -165,11 +165,11 @@ def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
 # Spin-up
 
 
-@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 2e-5 / 16, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 1e-6, marks=pytest.mark.slow)])
 def test_spin_up_vs_independent_galerkin_method(spacing: float, atol: float) -> None:
     """The base turns by a cubic spline: knots twice as close bring it nearer to the angle of the reference by 2⁴."""
     time, lag = transients.SPIN_LAG
-    found = in_turning_frame(transients.spin_up(spacing, duration=7.0, times=[3.0, 6.0, time]))
+    found = in_turning_frame(transients.spin_up(spacing, duration=7.0, times=[3.0, 6.0, time]), 1e-7)
     assert_allclose(found[:2], transients.SPIN_TIP[:2], rtol=0, atol=atol)
     assert_allclose(found[2, 1], lag, rtol=0, atol=atol + 1e-6)
 
@@ -219,7 +219,7 @@ def test_flying_rod_in_a_plane() -> None:
 
 @pytest.mark.slow
 def test_flying_rod_in_a_plane_to_a_tolerance() -> None:
-    motion = simulated(transients.flying_in_plane(), 1e-3)
+    motion = simulated(transients.flying_in_plane(), 5e-4)
     assert_allclose(in_plane(motion), transients.FLYING_LOWER, rtol=0, atol=0.02)
     linear, angular = momenta(motion)
     assert_allclose(linear, [[20.0, 0.0, 0.0]] * 3, rtol=0, atol=1e-3)
