@@ -218,11 +218,11 @@ def test_parts_begin_where_the_inputs_have_moved_to(
 @pytest.mark.parametrize("family", FAMILIES)
 def test_tolerance_zero_is_rounding(motion_library: MotionLibrary, family: str) -> None:
     made = motion_library(family)
-    inputs, rate, _ = next(drive(made.model, 2e-3, 1).steps)
+    path = next(accelerated(made.model, 2e-3, 1).steps)
     start = start_of(made.model)
-    taken = made.compiled.step(start, 2e-3, inputs, rate, options=StepOptions(tolerance=0.0))
+    taken = made.compiled.step(start, 2e-3, *path, options=StepOptions(tolerance=0.0))
     assert taken.done
-    exact = made.compiled.step(start, 2e-3, inputs, rate, options=EXACT)
+    exact = made.compiled.step(start, 2e-3, *path, options=EXACT)
     differential = made.model.discrete.unknowns.differential
     assert_allclose(taken.state.x[differential], exact.state.x[differential], rtol=0, atol=1e-12)
 
