@@ -100,8 +100,9 @@ class _Writer:
         parts = []
         last = -1
         for k, callee in called_functions(function, codes.tolist()).items():
-            taken, made = function.instruction_input(k), function.instruction_output(k)
-            within = self._call(callee, np.array(taken, np.intc), np.array(made, np.intc), work)
+            operands = np.array(function.instruction_input(k), np.intc)
+            results_of_call = np.array(function.instruction_output(k), np.intc)
+            within = self._call(callee, operands, results_of_call, work)
             if within is None:
                 return None
             parts += [lines[last + 1 : k], *within]
@@ -125,9 +126,10 @@ class _Writer:
         if lines is None:
             return None
         own = begin + np.arange(len(operands) + len(results), dtype=np.intc)
-        given, found = own[: len(operands)], own[len(operands) :]
+        arguments = own[: len(operands)]
+        values = own[len(operands) :]
         wanted = results >= 0
-        return [_copied(given, work + operands), lines, _copied(work + results[wanted], found[wanted])]
+        return [_copied(arguments, work + operands), lines, _copied(work + results[wanted], values[wanted])]
 
 
 def _first_and_last(numbers: Iterable[list[int]], count: int) -> tuple[Lines, Lines]:

@@ -74,23 +74,23 @@ class _Row:
         """One block of residuals."""
         return np.array([0, self.table.weights.size])
 
-    def given(self, numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def inputs_and_parameters(self, numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Inputs and parameters for values of the numbers."""
-        given = self.table.inputs[0].copy()
-        given[self.solver.indices] = numbers
+        both = self.table.inputs[0].copy()
+        both[self.solver.indices] = numbers
         inputs = self.solver.model.inputs.size
-        return given[:inputs], given[inputs:]
+        return both[:inputs], both[inputs:]
 
     def first(self, numbers: FloatArray) -> _State | None:
         """The row at the numbers to begin with; None where it has no equilibrium."""
-        inputs, p = self.given(numbers)
+        inputs, p = self.inputs_and_parameters(numbers)
         point, reasons = self.solver.equilibria.started(inputs[None], inputs[None], p, p)
         return None if reasons[0] else self._state(numbers, point.settled[0])
 
     def at(self, shared: FloatArray, own: FloatArray, near: _State) -> _State | None:
         """The row at other numbers; None where its equilibrium cannot be followed there."""
         predicted = near.case.z + near.z_by_numbers @ (shared - near.shared)
-        case = self.solver.equilibria.followed(near.case, predicted, *self.given(shared))
+        case = self.solver.equilibria.followed(near.case, predicted, *self.inputs_and_parameters(shared))
         state = None if case is None else self._state(shared, case)
         return state if state is not None and np.all(np.isfinite(state.by_numbers)) else None
 
