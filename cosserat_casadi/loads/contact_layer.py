@@ -109,7 +109,7 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
             # Parameters move the unloaded rod.
             return GROWTH_INSIDE
         reach = section_radii(site.rod, site.X) if load.at is None else np.array([load.radius + load.thickness])
-        if any_symbolic([positions, reach]):
+        if any_symbolic([positions, reach, load.obstacle.width]):
             return GROWTH_INSIDE
         distances = SURFACES[load.obstacle.kind].function(load.obstacle)(positions)[0].full()[0]
         gap = np.min(distances - known(reach))

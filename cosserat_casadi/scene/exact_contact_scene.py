@@ -5,6 +5,7 @@ from __future__ import annotations
 from cosserat_casadi.scene.obstacle_records import SMOOTH_KEYS
 from cosserat_casadi.scene.reading import scene_from_dict
 from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.values import names_in
 from cosserat_casadi.scene.writing import scene_tables
 
 
@@ -15,7 +16,11 @@ def with_exact_contact(scene: Scene) -> Scene:
         SceneError: exact contact of these rods is not found.
     """
     tables = scene_tables(scene)
+    gone = set()
     for obstacle in tables.get("obstacles", []):
         for key in SMOOTH_KEYS:
             obstacle.pop(key, None)
+            gone.add(f"{obstacle['name']}.{key}")
+    if scene.parameters:
+        tables["parameters"] = [names for names in scene.parameters if not gone.issuperset(names_in(names))]
     return scene_from_dict(tables)

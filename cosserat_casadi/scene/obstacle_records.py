@@ -39,6 +39,9 @@ SHEARS = {3, 4}
 SMOOTH_KEYS = ("width", "stiffness", "damping", "friction", "slip_speed")
 """Keys of an obstacle whose contact is smooth."""
 
+SMOOTH_NUMBERS = ("width", "stiffness")
+"""Keys of these whose numbers may be parameters."""
+
 SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
 """Remedy where exact contact is not found."""
 
@@ -180,6 +183,13 @@ class ObstacleRecord(Entry):
     def concerns_disks(self, row: str | None) -> bool:
         """Whether the disks of the row of this name may not enter it."""
         return self.disks is not None and row in self.disks
+
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """The push of a smooth contact alone may be a parameter: where it is decides which contacts are looked for."""
+        if key in SMOOTH_NUMBERS:
+            return super().parameter_refusal(key)
+        problem = f"{key} of an obstacle decides where contacts are looked for, and is no parameter"
+        return problem, f"take one of {', '.join(SMOOTH_NUMBERS)} of a contact that is smooth, or move what touches it"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

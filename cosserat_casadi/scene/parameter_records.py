@@ -23,7 +23,18 @@ from cosserat_casadi.scene.profiles import ENDS
 from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.spelling import closest
 
-PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "disks", "supports", "measurements", "tubes")
+PARAMETER_LISTS = (
+    "loads",
+    "actuators",
+    "rods",
+    "bodies",
+    "joints",
+    "disks",
+    "supports",
+    "obstacles",
+    "measurements",
+    "tubes",
+)
 """Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""
 
 SPAN = ("start", "end")
@@ -148,7 +159,7 @@ def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
     if first in PARAMETER_LISTS and segments and segments[0].isdigit():
         first = f"{first}[{int(segments.pop(0)[:9])}]"
     if first not in holders:
-        problem = f"no rod, load, actuator, body, joint or support is named {shown(first)}"
+        problem = f"no rod, load, actuator, body, joint, support or obstacle is named {shown(first)}"
         names = [word for word in holders if "[" not in word]
         raise RefusedParameter(problem, closest(first, names))
     if not segments:

@@ -214,6 +214,22 @@ def test_the_jacobian_is_exact_and_symmetric(pressed: Solution) -> None:
 
 
 @pytest.mark.slow
+def test_width_and_stiffness_may_be_parameters() -> None:
+    """The model at other values is that of a scene with them, on the same elements; places are no parameters."""
+    path = EXAMPLES / "rod_over_bar.toml"
+    coarse = ["accuracy.modes=2", "accuracy.nodes=4", "bar.stiffness=4e4"]
+    names = 'parameters=["bar.width", "bar.stiffness"]'
+    model = build(read_scene(path, [*coarse, "bar.width=0.02", names]))
+    other = read_scene(path, [*coarse[:2], "bar.width=0.01", "bar.stiffness=1e5"])
+    wanted = solve(build(other, model.discretisation), estimate_error=False)
+    found = solve(model, parameters={"bar.width": 0.01, "bar.stiffness": 1e5}, estimate_error=False)
+    assert found.converged and found.contacts
+    np.testing.assert_allclose(found.x, wanted.x, rtol=0, atol=1e-10)
+    assert with_exact_contact(model.scene).parameters == ()
+    with pytest.raises(SceneError, match="radius of an obstacle decides where contacts are looked for"):
+        read_scene(path, ['parameters=["bar.radius"]'])
+
+
 def test_smooth_contact_becomes_exact_as_the_width_shrinks() -> None:
     """The error is proportional to the width: the layer holds the rod off by a part of it."""
     modes = ["accuracy.modes=4", "accuracy.nodes=12"]

@@ -88,7 +88,7 @@ def test_other_numbers_stand_where_the_name_says(name: str) -> None:
 
 
 REFUSED = {
-    "wier.length": ("no rod, load, actuator, body, joint or support is named 'wier'", "did you mean 'wire'?"),
+    "wier.length": ("no rod, load, actuator, body, joint, support or obstacle is named 'wier'", "did you mean 'wire'?"),
     "wire.material.youngs_modulu": ("wire.material has no 'youngs_modulu'", "did you mean 'youngs_modulus'?"),
     "wire.material.shear_modulus": ("is not given in the scene", "give it a value: the parameter's default"),
     "wire.material": ("is a table, not a number", "go on with one of its keys: density, law, poisson_ratio, "),
@@ -100,7 +100,7 @@ REFUSED = {
     "wire.intrinsic.curvature.y[2]": ("has no coefficient '2'", "coefficients: 0 to 1"),
     "wire.intrinsic.curvature.x[1]": ("has no part '1'", "give it in the scene: it may be zero"),
     "wire.length[1]": ("has no part '1'", "give it in the scene: it may be zero"),
-    "accuracy.modes": ("no rod, load, actuator, body, joint or support is named 'accuracy'", ""),
+    "accuracy.modes": ("no rod, load, actuator, body, joint, support or obstacle is named 'accuracy'", ""),
     "coil.span.middle": ("has no component 'middle'", "components: start, end"),
     "side.base.quaternion": ("is given by a direction", "give the quaternion instead, and name that"),
     "side.base.tangent.x": ("is given by a direction", ""),
