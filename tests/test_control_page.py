@@ -36,6 +36,7 @@ LONG = {
     'inverse(read_scene("examples/finger_to_point.toml"))': "control/test_inverse.py",
     'compiled_stage(model, "wire_stage"': "codegen/test_stage.py",
     "import rockit": "control/test_rockit.py",
+    "tight = tightened(contact": "control/test_relaxed_contact.py",
     "condensing = Condensing(": "control/test_condensing.py",
     "stage = motion_stage(model, 0.02)  # s": "control/test_motion_stage.py",
     "write_acados(model": "codegen/test_acados.py",

@@ -28,9 +28,10 @@ from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar
+from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.obstacle_checks import RELAXED, WIDTH, refuse_obstacles
 from cosserat_casadi.motion.collocated_stage import algebraic_places, differential_places
 from cosserat_casadi.motion.motion_checks import check_movable
 
@@ -72,7 +73,7 @@ class AcadosExpressions:
                 setattr(target, word, getattr(self, entry.name))
 
 
-def acados_expressions(model: Model, name: str, *, moving: bool = False) -> AcadosExpressions:
+def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> AcadosExpressions:
     """The model as an implicit DAE in SX.
 
     Outputs for a cost in the same symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like;
@@ -81,22 +82,21 @@ def acados_expressions(model: Model, name: str, *, moving: bool = False) -> Acad
     last entries of ``expressions.x`` for its inputs.
 
     Args:
-        model: the model.
+        model: the model; of a scene in exact contact, at rest, that which :func:`relaxed_contact` makes of it.
         name: what acados calls it, a C identifier.
         moving: whether the equations are those of motion. With supports, joints or cables of given length they have the
             index 3, for which acados promises nothing.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
-        SceneError: a rod has no mass.
+        SceneError: a rod has no mass, or contact is exact.
     """
-    refuse_obstacles(model.scene, "an acados model")
     _check(model, name, moving)
     dae = _dae(model, moving)
     return AcadosExpressions(name, dae.x, dae.xdot, dae.u, dae.z, dae.p, dae.value)
 
 
-def acados_functions(model: Model, name: str, *, moving: bool = False) -> list[ca.Function]:
+def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> list[ca.Function]:
     """What acados' integrator IRK evaluates: the DAE and its Jacobians, with the model's own.
 
     Raises:
@@ -122,7 +122,9 @@ def acados_functions(model: Model, name: str, *, moving: bool = False) -> list[c
     return functions
 
 
-def write_acados(model: Model, directory: str | os.PathLike[str], name: str, *, moving: bool = False) -> Path:
+def write_acados(
+    model: Model | RelaxedContact, directory: str | os.PathLike[str], name: str, *, moving: bool = False
+) -> Path:
     """Write the functions as C for ``external_function_param_casadi``, one file and header each.
 
     Args:
@@ -138,7 +140,6 @@ def write_acados(model: Model, directory: str | os.PathLike[str], name: str, *, 
         ExportError: the name or the folder is refused, the model has no inputs or no scalar form; nothing was written.
         SceneError: it is to move, and a rod has no mass; nothing was written.
     """
-    refuse_obstacles(model.scene, "an acados model")
     functions = acados_functions(model, name, moving=moving)
     folder = Path(directory)
     stale = check_folder(folder, MANIFEST)
@@ -175,11 +176,13 @@ class _Dae:
     slopes: dict[str, ca.SX]
 
 
-def _dae(model: Model, moving: bool) -> _Dae:
+def _dae(model: Model | RelaxedContact, moving: bool) -> _Dae:
+    if isinstance(model, RelaxedContact):
+        return _dae_at_rest(model)
     return _dae_in_motion(model) if moving else _dae_at_rest(model)
 
 
-def _dae_at_rest(model: Model) -> _Dae:
+def _dae_at_rest(model: Model | RelaxedContact) -> _Dae:
     count = model.inputs.size
     x = ca.SX.sym("x", count)
     xdot = ca.SX.sym("xdot", count)
@@ -241,8 +244,11 @@ def _dae_in_motion(model: Model) -> _Dae:
     return _Dae(x, xdot, u, z, p, value, slopes)
 
 
-def _check(model: Model, name: str, moving: bool) -> None:
+def _check(given: Model | RelaxedContact, name: str, moving: bool) -> None:
     library_names(name)
+    model = given.model if isinstance(given, RelaxedContact) else given
+    if moving or model is given:
+        refuse_obstacles(model.scene, "an acados model", WIDTH if moving else RELAXED)
     check_scalar(model)
     if not model.inputs.size:
         raise ExportError(Problem("inputs", "none is free: there is nothing to control", "name some in the scene"))

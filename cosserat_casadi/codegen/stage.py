@@ -20,9 +20,11 @@ from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
 from cosserat_casadi.model.section_poses import SectionPoses, section_weights
 from cosserat_casadi.model.system import Arguments, System
 
@@ -31,7 +33,7 @@ PARTS = 4
 
 
 def compiled_stage(
-    model: Model,
+    model: Model | RelaxedContact,
     name: str = "stage",
     *,
     curvature: bool = True,
@@ -45,7 +47,8 @@ def compiled_stage(
     Of a scene with parameters (x, inputs, p): fix them with ``model.at(…)`` where they are none of the problem's.
 
     Args:
-        model: the model.
+        model: the model; of a scene in exact contact that which :func:`relaxed_contact` makes of it, whose poses are
+            those of tips and bodies.
         name: what the function is called, a C identifier.
         curvature: whether second derivatives are exact. If not, those of all outputs count as zero, so that any of
             CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and good
@@ -65,11 +68,19 @@ def compiled_stage(
     Raises:
         ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails; or
             there is no such rod, section or actuator.
+        SceneError: contact is exact.
     """
     library_names(name)
-    check_scalar(model)
     wanted = dict(sections or {})
-    _check_wanted(model, wanted, actuators)
+    if isinstance(model, RelaxedContact):
+        check_scalar(model.model)
+        if wanted or actuators:
+            problem = "a stage in relaxed contact has the poses of tips and bodies alone"
+            raise ExportError(Problem("sections, actuators", problem, "leave them out"))
+    else:
+        refuse_obstacles(model.scene, "a compiled stage", RELAXED)
+        check_scalar(model)
+        _check_wanted(model, wanted, actuators)
     found = find_compiler(compiler)
     made_from = (compiled_stage.__name__, model, name, curvature, wanted, actuators)
     texts = kept_texts(
@@ -140,7 +151,7 @@ def _one_of(names: Mapping[str, object]) -> str:
 
 
 def stage_functions(
-    model: Model,
+    model: Model | RelaxedContact,
     name: str,
     curvature: bool,
     sections: Mapping[str, Sequence[float]] | None = None,
@@ -155,7 +166,7 @@ def stage_functions(
         sections: abscissae of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted.
     """
-    further = _further_outputs(model, sections or {}, actuators)
+    further = {} if isinstance(model, RelaxedContact) else _further_outputs(model, sections or {}, actuators)
     plain = written(_stage(model, name, further), name)
     yield plain
     slopes = written(_slopes(model, plain, further), f"jac_{name}")
@@ -195,7 +206,7 @@ def written(function: ca.Function, name: str) -> ca.Function:
     return ca.Function(name, arguments, function.call(arguments), function.name_in(), function.name_out())
 
 
-def poses_of(model: Model) -> dict[str, ca.Function]:
+def poses_of(model: Model | RelaxedContact) -> dict[str, ca.Function]:
     """The poses of tips and bodies, under the names that they have as results."""
     poses = {f"tip_{rod}": tip for rod, tip in model.tip.items()}
     return poses | {f"body_{body}": pose for body, pose in model.body.items()}
@@ -235,7 +246,7 @@ def _section_poses(model: Model, rod: str, abscissae: Sequence[float]) -> ca.Fun
     return ca.Function("poses", [x, *others], [poses.stacked, poses.by_unknowns, *by_others])
 
 
-def _stage(model: Model, name: str, further: Mapping[str, ca.Function]) -> ca.Function:
+def _stage(model: Model | RelaxedContact, name: str, further: Mapping[str, ca.Function]) -> ca.Function:
     arguments = model.residual.mx_in()
     poses = poses_of(model)
     results = [model.residual(*arguments)]
@@ -246,7 +257,7 @@ def _stage(model: Model, name: str, further: Mapping[str, ca.Function]) -> ca.Fu
     return ca.Function(name, arguments, results, model.residual.name_in(), ["residual", *poses, *further])
 
 
-def _slopes(model: Model, plain: ca.Function, further: Mapping[str, ca.Function]) -> ca.Function:
+def _slopes(model: Model | RelaxedContact, plain: ca.Function, further: Mapping[str, ca.Function]) -> ca.Function:
     """∂ output / ∂ input, output by output, with the model's own Jacobians."""
     arguments = model.residual.mx_in()
     poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]

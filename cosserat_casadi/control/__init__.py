@@ -7,6 +7,8 @@ from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.judgement import judged
 from cosserat_casadi.control.margin import stability_margin
 from cosserat_casadi.control.targets import TargetMiss
+from cosserat_casadi.control.tightening import Tightened, tightened
+from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact, relaxed_contact
 from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations, motion_stage
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 
@@ -18,8 +20,10 @@ __all__ = [
     "Inverse",
     "Lifted",
     "MotionStage",
+    "RelaxedContact",
     "StageEquations",
     "TargetMiss",
+    "Tightened",
     "embedded",
     "gauss",
     "inverse",
@@ -27,5 +31,7 @@ __all__ = [
     "lifted",
     "motion_stage",
     "radau",
+    "relaxed_contact",
     "stability_margin",
+    "tightened",
 ]

@@ -11,11 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
+from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
 from cosserat_casadi.numerics.newton import NewtonSettings
 
 CERTIFIED = NewtonSettings().tolerance
@@ -38,19 +40,26 @@ class Lifted:
 
 
 def lifted(
-    model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None, parameters: Matrix | None = None
+    model: Model | RelaxedContact,
+    x: Matrix,
+    inputs: Matrix,
+    near: Solution | None = None,
+    parameters: Matrix | None = None,
 ) -> Lifted:
     """A state of a model whose unknowns are variables of the problem.
 
     Args:
-        model: the model.
+        model: the model; of a scene in exact contact that which :func:`relaxed_contact` makes of it.
         x: variables for its unknowns, shape (model.size,): ``MX.sym`` or ``opti.variable``.
         inputs: stacked inputs, any expressions, shape (model.inputs.size,).
         near: an equilibrium to start from; the unloaded rods by default.
         parameters: stacked parameters, any expressions, shape (model.parameters.size,): variables or parameters of the
-            problem; by default the scene's values.
+            problem; by default the scene's values. Of relaxed contact the smoothing and the abscissae.
     """
-    refuse_obstacles(model.scene, "an embedded model")
+    if isinstance(model, RelaxedContact):
+        p = model.defaults if parameters is None else parameters
+        return Lifted(x, model.residual(x, inputs, p), np.zeros(model.size) if near is None else model.near(near))
+    refuse_obstacles(model.scene, "an embedded model", RELAXED)
     start = model.unloaded() if near is None else near.x
     if parameters is None:
         residual = model.at().residual(x, inputs)
@@ -59,13 +68,15 @@ def lifted(
     return Lifted(x, residual, start)
 
 
-def embedded(model: Model, near: Solution, iterations: int = 50, *, parameters: bool = False) -> ca.Function:
+def embedded(
+    model: Model | RelaxedContact, near: Solution, iterations: int = 50, *, parameters: bool = False
+) -> ca.Function:
     """The equilibrium as a function of the inputs, on the branch of a solution.
 
     Newton's method from the unknowns of that solution, whatever the inputs: exact first and second derivatives.
 
     Args:
-        model: the model.
+        model: the model; of a scene in exact contact that which :func:`relaxed_contact` makes of it.
         near: the equilibrium that it starts from.
         iterations: most steps.
         parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
@@ -76,9 +87,13 @@ def embedded(model: Model, near: Solution, iterations: int = 50, *, parameters: 
         Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
         the residual is. A problem holds it by a constraint; ``lifted`` needs none.
     """
-    refuse_obstacles(model.scene, "an embedded model")
-    if not parameters:
-        model = model.at()
+    if isinstance(model, RelaxedContact):
+        start = model.near(near)
+    else:
+        refuse_obstacles(model.scene, "an embedded model", RELAXED)
+        start = near.x
+        if not parameters:
+            model = model.at()
     options = {
         # A decimal below what the excess certifies, so that Newton's last step does not decide.
         "abstol": CERTIFIED / 10,
@@ -88,7 +103,7 @@ def embedded(model: Model, near: Solution, iterations: int = 50, *, parameters: 
     }
     finder = ca.rootfinder("equilibrium", "newton", model.residual, options)
     given = model.residual.mx_in()[1:]
-    x = finder(ca.DM(near.x), *given)
+    x = finder(ca.DM(start), *given)
     residual = model.residual(x, *given)
     # Squares, since the norm has no derivative where the residual is zero.
     scale = CERTIFIED**2 * (1 + ca.sumsqr(x))

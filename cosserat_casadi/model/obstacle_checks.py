@@ -34,19 +34,26 @@ def check_obstacles(discrete: DiscreteScene) -> None:
         raise SceneError(*problems)
 
 
-def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
+WIDTH = "give each a width, m, for a contact that is smooth; or solve the scene, or leave them out"
+"""Remedy where contact that is exact is not looked for."""
+
+RELAXED = "take relaxed_contact(model) for the model; or give each a width, m, for a contact that is smooth"
+"""The same in problems at rest."""
+
+
+def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> None:
     """Refuse a scene with obstacles that are touched exactly where such contact is not looked for.
 
     Args:
         scene: the scene.
         what: the request in words, such as "a motion".
+        remedy: what to do about it.
 
     Raises:
         SceneError: the scene has obstacles without a width.
     """
     if scene.touches_exactly:
         problem = f"{what} does not look for contact that is exact: its rods would pass through them"
-        remedy = "give each a width, m, for a contact that is smooth; or solve the scene, or leave them out"
         raise SceneError(Problem("obstacles", problem, remedy))
 
 

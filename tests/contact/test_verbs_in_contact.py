@@ -30,7 +30,8 @@ from cosserat_casadi import (
 from cosserat_casadi.codegen.acados import acados_expressions
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.codegen.fmu import write_fmu
-from cosserat_casadi.control import embedded, motion_stage
+from cosserat_casadi.codegen.stage import compiled_stage
+from cosserat_casadi.control import embedded, motion_stage, relaxed_contact
 from cosserat_casadi.errors import CosseratError
 from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.mjcf.export import mjcf_of
@@ -217,12 +218,17 @@ VERBS: dict[str, Verb] = {
     "`export --page`": lambda contact, folder: export_page(rest(contact), folder / "page.html"),
     "`view`": lambda contact, _: opened(rest(contact)),
     "`embedded`": lambda contact, _: embedded(model(contact), rest(contact)),
+    "`relaxed_contact`, `embedded`": lambda contact, _: embedded(relaxed_contact(model(contact), 2), rest(contact)),
+    "`relaxed_contact`, `acados_expressions`": lambda contact, _: acados_expressions(
+        relaxed_contact(model(contact), 2), "robot"
+    ),
+    "`compiled_stage`": lambda contact, _: compiled_stage(model(contact), "verb", curvature=False),
     "`motion_stage`": lambda contact, _: motion_stage(model(contact, moving=True), 1e-2).equations,
     "`acados_expressions`": lambda contact, _: acados_expressions(model(contact), "robot"),
 }
 """The cheapest use of each row of the table; what it returns has the sentences that the user is told."""
 
-QUICK = ("`solve`", "stability", "`export --mjcf`", "`embedded`")
+QUICK = ("`solve`", "stability", "`export --mjcf`", "`embedded`", "`relaxed_contact`, `embedded`")
 """Rows that are tried with the quick tests where they work."""
 
 REFUSED_LATE = ("`export --batches`",)

@@ -44,6 +44,7 @@ def solve_contact(
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
     start: Solution | None = None,
+    contacts: ContactState | None = None,
     newton: NewtonSettings | None = None,
     progress: Progress | None = None,
 ) -> Solution:
@@ -55,6 +56,7 @@ def solve_contact(
         values: inputs by name.
         start: a solution of the same rods and obstacles whose contacts are tried first, where that takes no rod through
             an obstacle; by default, and else, those of the unloaded rods under growing loads.
+        contacts: tried first from the start; by default the contacts of that.
         newton: limits of the solve of each state.
         progress: told the share of the load path that is done.
     """
@@ -64,7 +66,7 @@ def solve_contact(
     tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
-        near = settled_near(settling, start)
+        near = settled_near(settling, start, contacts)
         if near is not None:
             return judged(near, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
@@ -87,11 +89,15 @@ def solve_contact(
     return solution
 
 
-def settled_near(settling: Settling, start: Solution) -> ContactEquilibrium | None:
-    """The equilibrium to which the contacts of a solution lead; None where none holds, or rods would pass through."""
-    found, holds = _held(
-        settling, [(state_in(start.model.scene), start)], admits=lambda shape: not passes_through(start, shape)
-    )
+def settled_near(
+    settling: Settling, start: Solution, contacts: ContactState | None = None
+) -> ContactEquilibrium | None:
+    """The equilibrium to which contacts lead, those of a solution if none are named, from its shape.
+
+    None where none holds, or rods would pass through.
+    """
+    state = state_in(start.model.scene) if contacts is None else contacts
+    found, holds = _held(settling, [(state, start)], admits=lambda shape: not passes_through(start, shape))
     return found if holds else None
 
 

@@ -1,0 +1,118 @@
+"""Optimisation problems in exact contact: solved again and again as relaxed contacts become exact.
+
+The smoothing of the pairs goes to zero in a few solves, each from the optimum before it, and the sections that may
+touch move to the places of the exact contacts. Each end is held against the exact law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.equilibrium.answer_error import with_notes
+from cosserat_casadi.equilibrium.contact.contact_answer_error import estimated_in_contact
+from cosserat_casadi.equilibrium.contact.relaxed_contact import FIRST_SMOOTHING, RelaxedContact
+from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+
+SMOOTHINGS = (FIRST_SMOOTHING, 1e-3, 1e-4)
+"""Values of ε of one solve after the other: at the last, gap times force is 5e-9 of the length and of EI/ℓ²."""
+
+CLOSER = 4
+"""Solves at most after these, in which sections move to the contacts."""
+
+Optimum = Callable[[FloatArray], tuple[npt.ArrayLike, npt.ArrayLike]]
+"""Parameters of all stages, shape (stages, parameters.size) ↦ their unknowns and inputs at the optimum."""
+
+
+@dataclass(frozen=True)
+class Tightened:
+    """An optimum in exact contact.
+
+    Attributes:
+        z: unknowns and forces of the last solve of each stage, shape (stages, size).
+        inputs: stacked inputs of each, shape (stages, inputs.size).
+        p: smoothing and abscissae of each, shape (stages, parameters).
+        equilibria: of the exact law at these inputs, with estimates of their errors.
+        difference: largest distance of a tip or body between the two, over the length, or angle, rad.
+        tolerance: wanted of the difference and these errors together.
+    """
+
+    z: FloatArray
+    inputs: FloatArray
+    p: FloatArray
+    equilibria: tuple[Solution, ...]
+    difference: float
+    tolerance: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether the exact law has equilibria at all inputs that are, to the tolerance, where the problem has them."""
+        found = all(solution.converged for solution in self.equilibria)
+        return found and self.difference + self.error_estimate <= self.tolerance
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest estimate of the errors of the equilibria; infinite where one is not known."""
+        known = [solution.error_estimate for solution in self.equilibria]
+        return max(np.inf if error is None else error for error in known)
+
+    @property
+    def message(self) -> str:
+        """A sentence for the user."""
+        for number, solution in enumerate(self.equilibria):
+            if not solution.converged:
+                return f"Stage {number} has no equilibrium in exact contact that was found: {solution.message}"
+        known = f"rods in exact contact, known to {self.error_estimate:.2g},"
+        told = f"{known} are within {self.difference:.2g} of the problem's"
+        unstable = [str(number) for number, solution in enumerate(self.equilibria) if solution.stable is False]
+        note = f" Not stable: stages {', '.join(unstable)}." if unstable else ""
+        if self.converged:
+            return f"Optimum found: {told}.{note}"
+        remedy = "sections" if self.difference > self.error_estimate else "modes of the model"
+        return f"Not tight: {told}, where {self.tolerance:.2g} was asked for: take more {remedy}.{note}"
+
+
+def tightened(
+    contact: RelaxedContact,
+    optimum: Optimum,
+    stages: int = 1,
+    *,
+    near: Solution | None = None,
+    tolerance: float | None = None,
+) -> Tightened:
+    """Solve a problem again and again as its relaxed contacts become exact, and hold its end against the exact law.
+
+    The smoothing ε goes to zero in a few solves. After each the exact contacts are found at the inputs of each stage,
+    and its sections move there; that goes on until the two agree.
+
+    Args:
+        contact: the model of the problem.
+        optimum: solves the problem for given parameters of its stages, from its last optimum.
+        stages: equilibria in the problem.
+        near: an equilibrium of the scene at whose contacts there are sections from the beginning.
+        tolerance: of the difference and the errors of the equilibria; by default that of the scene.
+    """
+    wanted = contact.model.scene.accuracy.tolerance if tolerance is None else tolerance
+    first = contact.defaults if near is None else contact.moved_to(near, contact.defaults)
+    moved = np.tile(first, (stages, 1))
+    smoothings = (*SMOOTHINGS, *[SMOOTHINGS[-1]] * CLOSER)
+    for smoothing in smoothings:
+        p = moved
+        p[:, 0] = smoothing
+        z, inputs = (np.asarray(part, dtype=float).reshape(stages, -1) for part in optimum(p))
+        found = list(zip(z, inputs, p, strict=True))
+        equilibria = [contact.exact(*stage) for stage in found]
+        difference = np.inf
+        if all(solution.converged for solution in equilibria):
+            relaxed = [contact.solution(*stage) for stage in found]
+            difference = max(map(pose_distance, relaxed, equilibria))
+        moved = np.array([contact.moved_to(solution, own) for solution, own in zip(equilibria, p, strict=True)])
+        if smoothing == SMOOTHINGS[-1] and (difference <= wanted or np.array_equal(moved, p)):
+            break
+    judged = [with_notes(estimated_in_contact(solution)) if solution.converged else solution for solution in equilibria]
+    return Tightened(z, inputs, p, tuple(judged), difference, wanted)

@@ -1,0 +1,330 @@
+"""Exact contact as equations that stay as contacts come and go: relaxed pairs of force and gap at sections.
+
+An optimiser goes on from contacts to others, and its equations must not change. So each of a number of sections has
+a force N without unit, with the gap g over the length the pair of a cable that may go slack,
+
+    N + g − √(N² + g² + ε²) = 0,    which is N g = ε²/2 with N, g > 0.
+
+Forces and gaps are those of the exact law: a section is a contact at a point, where an element ends. The smoothing ε
+and the abscissae of the sections are parameters of the equations. As ε goes to zero each section obeys the exact law;
+rods may enter obstacles between sections, so that sections which touch move to the places of the exact contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.constraints.cable_length import pair_kernel
+from cosserat_casadi.equilibrium.contact.contact_equations import BehindPlaces, ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
+from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, given_inputs, without_contacts
+from cosserat_casadi.equilibrium.contact.gap_rows import force_widths
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.shape_projection import projected
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
+from cosserat_casadi.numerics.outcome import Outcome
+
+SECTIONS = 8
+"""Sections of a rod that may touch an obstacle."""
+
+MODES = 2
+"""Polynomials of each strain between two of them: without other loads the moment is linear there."""
+
+NODES = 4
+"""Intervals of their integration."""
+
+FIRST_SMOOTHING = 1e-2
+"""Smoothing ε to begin with: gap times force is 5e-5 of the length and of EI/ℓ²."""
+
+
+@dataclass(frozen=True)
+class RelaxedContact:
+    """A scene in exact contact as functions of its unknowns z = (x, N), its inputs, and p = (ε, abscissae).
+
+    Attributes:
+        model: of the scene, on whose modes the exact contacts are found.
+        equations: those of the sections that may touch.
+    """
+
+    model: Model
+    equations: ContactEquations
+
+    @property
+    def inputs(self) -> InputLayout:
+        """Names, order and default values of the inputs: those of the model."""
+        return self.model.inputs
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns and of forces."""
+        return int(self._written.z.shape[0])
+
+    @property
+    def parameters(self) -> BehindPlaces:
+        """The smoothing and the abscissae, of which the scene has no names: their number."""
+        return BehindPlaces((), places=len(self.defaults))
+
+    @property
+    def defaults(self) -> FloatArray:
+        """The first smoothing, and abscissae that are evenly spread, shape (1 + sections,)."""
+        return np.concatenate([[FIRST_SMOOTHING], self.equations.state.places])
+
+    @cached_property
+    def residual(self) -> ca.Function:
+        """(z, inputs, p) ↦ balance and pairs."""
+        return self._function("residual", self._written.residual)
+
+    @cached_property
+    def jacobian(self) -> ca.Function:
+        """(z, inputs, p) ↦ their derivative with z, and the residual."""
+        return self._function("jacobian", self._written.jacobian, self._written.residual)
+
+    @cached_property
+    def input_jacobian(self) -> ca.Function:
+        """(z, inputs, p) ↦ derivative of the residual with the inputs."""
+        return self._function("input_jacobian", ca.jacobian(self._written.residual, self._written.inputs))
+
+    @cached_property
+    def parameter_jacobian(self) -> ca.Function:
+        """(z, inputs, p) ↦ derivative of the residual with p."""
+        return self._function("parameter_jacobian", ca.jacobian(self._written.residual, self._written.p))
+
+    @cached_property
+    def tip(self) -> dict[str, ca.Function]:
+        """(z, inputs, p) ↦ position, m, quaternion and rotation of the tip, by rod."""
+        return {name: self._pose(pose) for name, pose in self.equations.model.tip.items()}
+
+    @cached_property
+    def body(self) -> dict[str, ca.Function]:
+        """The same of bodies."""
+        return {name: self._pose(pose) for name, pose in self.equations.model.body.items()}
+
+    @cached_property
+    def tip_jacobian(self) -> dict[str, ca.Function]:
+        """(z, inputs, p) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with each of them, by rod."""
+        return {name: self._slopes(pose) for name, pose in self.tip.items()}
+
+    @cached_property
+    def body_jacobian(self) -> dict[str, ca.Function]:
+        """The same of bodies."""
+        return {name: self._slopes(pose) for name, pose in self.body.items()}
+
+    def near(self, solution: Solution, p: npt.ArrayLike | None = None) -> FloatArray:
+        """Unknowns and forces in relaxed balance near an equilibrium of the scene, at its inputs, shape (size,).
+
+        Newton's method goes there; where it does not end the shape is that of the equilibrium.
+
+        Args:
+            solution: of :attr:`model`, or of another model of the scene.
+            p: smoothing and abscissae; by default :attr:`defaults`.
+        """
+        at = np.asarray(self.defaults if p is None else p, dtype=float)
+        equations = replace(self.equations, state=self.equations.state.at(at[1:].tolist()))
+        given = given_inputs(solution.model, solution.inputs)
+        z = equations.start_from(projected(solution, equations.nominal.model), given)
+        x, forces, places = equations.parts(z)
+        start = np.concatenate([self.equations.moved_strains(places) * x, np.maximum(forces, 0.0)])
+        relaxed = newton(
+            Equations(
+                lambda z: column(self.residual(z, given, at)),
+                lambda z: np.asarray(self.jacobian(z, given, at)[0].full()),
+            ),
+            start,
+            NewtonSettings(),
+        )
+        return relaxed.x if relaxed.outcome is Outcome.CONVERGED else start
+
+    def solution(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
+        """The shape of unknowns of a problem, not judged, whose contacts are those of all sections."""
+        return self._equilibrium(z, inputs, p)[0]
+
+    def exact(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
+        """The equilibrium at these inputs whose contacts obey the exact law, looked for from the sections that press.
+
+        Args:
+            z: unknowns and forces of a problem, shape (size,).
+            inputs: stacked inputs, shape (inputs.size,).
+            p: smoothing and abscissae.
+        """
+        relaxed, contacts = self._equilibrium(z, inputs, p)
+        scene = self.equations.scene
+        values = self.model.inputs.unpack(inputs)
+        grids = Grids(self.model.discretisation)
+        return solve_contact(scene, grids, values, start=relaxed, contacts=contacts)
+
+    def moved_to(self, solution: Solution, p: FloatArray) -> FloatArray:
+        """The parameters with the sections nearest to contacts of a solution at their places."""
+        state = self.equations.state.at(p[1:].tolist())
+        touches = list(state.touches)
+        for contact in solution.contacts:
+            for place in {contact.start, contact.end}:
+                own = [
+                    i
+                    for i, touch in enumerate(touches)
+                    if (touch.owner, touch.obstacle) == (contact.owner, contact.obstacle) and any(touch.moves)
+                ]
+                if place < TIP and own:
+                    nearest = min(own, key=lambda i: abs(touches[i].start - place))
+                    touches[nearest] = touches[nearest].moved([place])
+        moved = ContactState(tuple(touches))
+        return np.concatenate([p[:1], moved.places]) if moved.in_order else p
+
+    def _equilibrium(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[Solution, ContactState]:
+        found = contact_equilibrium(self.equations, np.concatenate([z, p[1:]]), inputs)
+        return found.solution, _pressing(found.state, found.forces, p[0] / np.sqrt(2))
+
+    @cached_property
+    def _written(self) -> _Written:
+        return _Written.of(self.equations)
+
+    def _function(self, name: str, *results: Matrix) -> ca.Function:
+        arguments = self._written.arguments
+        outputs = [f"{name}_{i}" for i in range(len(results))]
+        return ca.Function(name, arguments, list(results), ["x", "inputs", "p"], outputs)
+
+    def _pose(self, function: ca.Function) -> ca.Function:
+        return self._function("pose", *function.call(self._written.at))
+
+    def _slopes(self, function: ca.Function) -> ca.Function:
+        arguments = self._written.arguments
+        position, quaternion, _ = function(*arguments)
+        pose = ca.vertcat(position, quaternion)
+        return self._function("slopes", *[ca.densify(ca.jacobian(pose, argument)) for argument in arguments])
+
+
+@dataclass(frozen=True)
+class _Written:
+    """The equations as expressions of z, inputs and p.
+
+    Attributes:
+        z: unknowns and forces.
+        inputs: of the scene.
+        p: smoothing and abscissae.
+        at: arguments of the functions of the model whose elements end at the sections.
+        residual: balance, then pairs.
+        jacobian: its derivative with z.
+    """
+
+    z: ca.MX
+    inputs: ca.MX
+    p: ca.MX
+    at: list[Matrix]
+    residual: Matrix
+    jacobian: Matrix
+
+    @property
+    def arguments(self) -> list[ca.MX]:
+        """Arguments of all functions."""
+        return [self.z, self.inputs, self.p]
+
+    @classmethod
+    def of(cls, equations: ContactEquations) -> _Written:
+        """The equations of sections that may touch."""
+        written = equations.written
+        x, forces, places = written.unknowns
+        size, count = x.shape[0], forces.shape[0]
+        # Slopes of gaps ask where contact is: here sections are given.
+        widths = force_widths(equations.state, written.modes)
+        gap_rows = [size + number for number, width in enumerate(widths) if width is not None]
+        smoothing = ca.MX.sym("smoothing")
+        kernel = pair_kernel(slack=True, softness=1.0).map(count)
+        row = written.residual[gap_rows].T
+        residuals, by_gap, by_force = kernel(row, forces.T, ca.repmat(smoothing, 1, count))
+        whole = written.jacobian[:, : size + count]
+        by_forces = ca.horzcat(ca.MX(count, size), ca.diag(by_force.T))
+        pairs_by_z = ca.diag(by_gap.T) @ whole[gap_rows, :] + by_forces
+        z = ca.MX.sym("z", size + count)
+        p = ca.MX.sym("p", 1 + places.shape[0])
+        at = [x, equations.nominal.written_inputs(written.given, forces)]
+        if places.shape[0]:
+            at.append(places)
+        expressions = [
+            ca.vertcat(written.residual[:size], residuals.T),
+            ca.vertcat(whole[:size, :], pairs_by_z),
+            *at,
+        ]
+        old = [x, forces, smoothing, places]
+        new = [*ca.vertsplit(z, [0, size, size + count]), *ca.vertsplit(p, [0, 1, p.shape[0]])]
+        residual, jacobian, *at = ca.graph_substitute(expressions, old, new)
+        return cls(z, written.given, p, at, residual, jacobian)
+
+
+def _pressing(state: ContactState, forces: FloatArray, least: float) -> ContactState:
+    """The contacts that forces of sections look like: neighbours that press are one point, or a line.
+
+    Args:
+        state: all sections.
+        forces: of each, without unit.
+        least: force that equals the gap of its pair; more of it is a contact.
+    """
+    kept: list[Touch] = []
+    run: list[tuple[Touch, float]] = []
+    for touch, force in zip(state.touches, forces.tolist(), strict=True):
+        if run and (force < least or (touch.owner, touch.obstacle) != (run[0][0].owner, run[0][0].obstacle)):
+            kept.append(_as_one(run))
+            run = []
+        if force >= least:
+            run.append((touch, force))
+    if run:
+        kept.append(_as_one(run))
+    return ContactState.of(kept)
+
+
+def _as_one(run: Sequence[tuple[Touch, float]]) -> Touch:
+    """One contact of neighbours that press."""
+    first, last = run[0][0], run[-1][0]
+    if first.of_body or len(run) == 1:
+        return first
+    if len(run) > 2:
+        return Touch.line(first.obstacle, first.owner, first.start, last.start)
+    place = sum(touch.start * force for touch, force in run) / sum(force for _, force in run)
+    return Touch.point(first.obstacle, first.owner, place)
+
+
+def relaxed_contact(
+    model: Model, sections: int = SECTIONS, *, modes: int = MODES, nodes: int = NODES
+) -> RelaxedContact:
+    """The model of a scene in exact contact for an optimisation problem, whose equations are the same in all contacts.
+
+    Args:
+        model: of a scene with obstacles without a width; parameters have the scene's values.
+        sections: of each rod that may touch each obstacle, of which the last is the tip.
+        modes: polynomials of each strain of such a rod between two of them; other rods keep theirs.
+        nodes: intervals of their integration.
+
+    Raises:
+        SceneError: nothing touches exactly, or fewer than one section is asked for.
+    """
+    scene = model.at().scene.baked()
+    if not scene.touches_exactly:
+        problem = "none is touched exactly: there is no pair to relax"
+        raise SceneError(Problem("obstacles", problem, "take the model itself"))
+    if sections < 1:
+        raise SceneError(Problem("sections", f"must be 1 or more, got {sections}"))
+    of_rods = list(pairs(scene))
+    touches = [Touch.ball(obstacle.name, body.name) for body, obstacle in body_pairs(scene)]
+    for rod in scene.rods:
+        own = [obstacle for name, obstacle in of_rods if name == rod.name]
+        for number, obstacle in enumerate(own):
+            # No two obstacles have a section in common but the tip.
+            late = number / len(own)
+            inner = [(i + 1 - late) / sections for i in range(sections - (late == 0.0))]
+            touches += [Touch.point(obstacle.name, rod.name, X) for X in (*inner, TIP)]
+    grids = dict(model.discretisation)
+    for name in {rod for rod, _ in of_rods}:
+        grids[name] = replace(grids[name], modes=(modes,) * len(grids[name].modes), nodes=nodes)
+    equations = ContactEquations(without_contacts(scene), model.pack(), Grids(grids), ContactState.of(touches))
+    return RelaxedContact(model.at(), equations)
