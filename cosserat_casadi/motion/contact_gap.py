@@ -145,18 +145,6 @@ class Facing(ABC):
         """Derivative of a gap with the inputs, shape (m,)."""
         return self.points.by_inputs(x, inputs, self.weights(gap))
 
-    def hessian(self, x: FloatArray, inputs: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
-        """Second derivative of a gap with the unknowns, shape (n, n).
-
-        Args:
-            x: unknowns, shape (n,).
-            inputs: stacked inputs, shape (m,).
-            gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
-        """
-        by_nodes = self.points.jacobian(x, inputs)
-        return self.points.hessian(x, inputs, self.weights(gap)) + self.turning(by_nodes, gap, slides=slides)
-
     def turning(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
         """Second derivative of a gap with the unknowns without that of the points, shape (n, n).
 

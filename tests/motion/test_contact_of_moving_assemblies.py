@@ -150,7 +150,8 @@ def test_derivatives_of_gaps_of_assemblies_are_those_of_differences(name: str, s
 
     (here,) = follower.gaps(x, inputs)[1]
     gradient = facing.gradient(x, inputs, here)
-    hessian = facing.hessian(x, inputs, here, slides=slides)
+    turning = facing.turning(facing.points.jacobian(x, inputs), here, slides=slides)
+    hessian = facing.points.hessian(x, inputs, facing.weights(here)) + turning
     step = 1e-4
     for direction in (v, rng.normal(size=model.size)):
         ahead, behind = gap(x + step * direction), gap(x - step * direction)

@@ -75,7 +75,8 @@ def test_derivatives_of_the_least_gap_are_those_of_differences(slides: bool) -> 
 
     (here,) = follower.gaps(x, inputs)[1]
     gradient = facing.gradient(x, inputs, here)
-    hessian = facing.hessian(x, inputs, here, slides=slides)
+    turning = facing.turning(facing.points.jacobian(x, inputs), here, slides=slides)
+    hessian = facing.points.hessian(x, inputs, facing.weights(here)) + turning
     step = 1e-4
     for direction in (v, *np.eye(3)):
         ahead, behind = gap(x + step * direction), gap(x - step * direction)
