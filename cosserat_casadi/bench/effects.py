@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, fields
+from functools import partial
 
 import numpy as np
 
@@ -12,40 +12,18 @@ from cosserat_casadi.bench.measurement import best_time
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.operation_cost import MotionPrice, price_of_motion, without_load
+from cosserat_casadi.model.operation_cost import without_load
+from cosserat_casadi.model.operations import Count, count
 
 TURNS = 5
 """Times that each model is timed beside others."""
 
 
-@dataclass(frozen=True)
-class MotionTimes:
-    """Best times of a call in CasADi's virtual machine, µs.
+MotionCost = dict[str, tuple[Count, float]]
+"""Scalar operations of functions of a model, and best times of a call in CasADi's virtual machine, µs, by name."""
 
-    Attributes:
-        residual: of statics.
-        jacobian: of statics, with the residual.
-        inverse_dynamics: residual of the equations of motion.
-        dynamics_jacobian: that with its derivatives with positions, velocities and accelerations.
-    """
-
-    residual: float
-    jacobian: float
-    inverse_dynamics: float
-    dynamics_jacobian: float
-
-
-@dataclass(frozen=True)
-class MotionCost:
-    """Times of the equations of motion of a model.
-
-    Attributes:
-        price: their scalar operations.
-        times: of a call, of the equations of statics too.
-    """
-
-    price: MotionPrice
-    times: MotionTimes
+FUNCTIONS = ("residual", "jacobian", "inverse_dynamics", "dynamics_jacobian")
+"""Functions of a model that are timed: residual of statics, that with its Jacobian, and the same of a motion."""
 
 
 def motion_costs(*models: Model) -> list[MotionCost]:
@@ -53,27 +31,24 @@ def motion_costs(*models: Model) -> list[MotionCost]:
 
     They are timed in turn, and the best of several turns counts: what else the machine does comes to all of them.
     """
-    turns = [[motion_times(model) for model in models] for _ in range(TURNS)]
+    turns = [[_motion_times(model) for model in models] for _ in range(TURNS)]
     costs = []
     for model, of_model in zip(models, zip(*turns, strict=True), strict=True):
-        best = {entry.name: min(getattr(times, entry.name) for times in of_model) for entry in fields(MotionTimes)}
-        costs.append(MotionCost(price_of_motion(model), MotionTimes(**best)))
+        best = {name: min(times[name] for times in of_model) for name in FUNCTIONS}
+        costs.append({name: (count(getattr(model, name)), time) for name, time in best.items()})
     return costs
 
 
-def motion_times(model: Model) -> MotionTimes:
+def _motion_times(model: Model) -> dict[str, float]:
     """Times of a model built for a motion, at rest in the unloaded shape: they are the same everywhere."""
     x = model.unloaded()
     inputs = model.pack()
     still = np.zeros(model.size)
     held = np.zeros(model.inputs.size)
+    at_rest = (x, inputs)
     in_motion = (x, still, still, inputs, held, held)
-    return MotionTimes(
-        residual=best_time(lambda: model.residual(x, inputs)),
-        jacobian=best_time(lambda: model.jacobian(x, inputs)),
-        inverse_dynamics=best_time(lambda: model.inverse_dynamics(*in_motion)),
-        dynamics_jacobian=best_time(lambda: model.dynamics_jacobian(*in_motion)),
-    )
+    arguments = zip(FUNCTIONS, (at_rest, at_rest, in_motion, in_motion), strict=True)
+    return {name: best_time(partial(getattr(model, name), *given)) for name, given in arguments}
 
 
 def effect_times(

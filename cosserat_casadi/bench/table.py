@@ -13,7 +13,6 @@ from cosserat_casadi.bench.effects import MotionCost
 from cosserat_casadi.bench.measurement import Measurement, front
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
-from cosserat_casadi.model.operation_cost import Price
 
 NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
 """Columns that are always shown."""
@@ -40,6 +39,14 @@ COLUMNS = (
 
 WIDE = tuple(heading for heading in COLUMNS if heading != "pose error")
 """Columns where there is room: the pose error is the larger of two of them."""
+
+LABELS = {
+    "residual": "residual at rest",
+    "jacobian": "residual and Jacobian at rest",
+    "inverse_dynamics": "inverse dynamics",
+    "dynamics_jacobian": "inverse dynamics with K, C and M",
+}
+"""Labels of the functions of a model."""
 
 OF_DAMPING = "  of which damping"
 """Label of what damping adds to the row above."""
@@ -161,38 +168,25 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
     console.print(table)
 
 
-def print_motion_times(
-    console: Console, unknowns: int, statics: Price, motion: MotionCost, undamped: MotionCost | None = None
-) -> None:
+def print_motion_times(console: Console, unknowns: int, motion: MotionCost, undamped: MotionCost | None = None) -> None:
     """Time that inertia and damping add to a residual and to a Jacobian.
 
     Args:
         console: where to print.
         unknowns: of the model in motion.
-        statics: operations of the model at rest.
         motion: cost of the model in motion.
         undamped: cost of the model without its damping; None where the scene names none.
     """
-    price = motion.price
-    times = motion.times
     table = Table(title=f"In motion, {unknowns} unknowns, in CasADi's virtual machine (not compiled)")
     table.add_column("function")
     for heading in ("operations", "µs", "over statics"):
         table.add_column(heading, justify="right")
-    table.add_row("residual at rest", str(statics.residual), _digits(times.residual), "")
-    share = times.inverse_dynamics / times.residual
-    table.add_row("inverse dynamics", str(price.inverse_dynamics), _digits(times.inverse_dynamics), f"{share:.1f} ×")
-    if undamped is not None:
-        operations = price.inverse_dynamics - undamped.price.inverse_dynamics
-        spent = times.inverse_dynamics - undamped.times.inverse_dynamics
-        table.add_row(OF_DAMPING, str(operations), f"{spent:+.2f}", "")
-    table.add_row("residual and Jacobian at rest", str(statics.jacobian), _digits(times.jacobian), "")
-    share = times.dynamics_jacobian / times.jacobian
-    table.add_row(
-        "inverse dynamics with K, C and M", str(price.jacobian), _digits(times.dynamics_jacobian), f"{share:.1f} ×"
-    )
-    if undamped is not None:
-        operations = price.jacobian - undamped.price.jacobian
-        spent = times.dynamics_jacobian - undamped.times.dynamics_jacobian
-        table.add_row(OF_DAMPING, str(operations), f"{spent:+.2f}", "")
+    for at_rest, moving in (("residual", "inverse_dynamics"), ("jacobian", "dynamics_jacobian")):
+        operations, time_at_rest = motion[at_rest]
+        table.add_row(LABELS[at_rest], str(operations), _digits(time_at_rest), "")
+        operations, time = motion[moving]
+        table.add_row(LABELS[moving], str(operations), _digits(time), f"{time / time_at_rest:.1f} ×")
+        if undamped is not None:
+            fewer, shorter = undamped[moving]
+            table.add_row(OF_DAMPING, str(operations - fewer), f"{time - shorter:+.2f}", "")
     console.print(table)

@@ -38,27 +38,6 @@ def _sum(of_rods: list[Count]) -> Count:
     return Count(number, exact)
 
 
-@dataclass(frozen=True)
-class MotionPrice:
-    """Scalar operations of the equations of motion.
-
-    Attributes:
-        inverse_dynamics: of the residual.
-        jacobian: of the residual with its derivatives with positions, velocities and accelerations.
-    """
-
-    inverse_dynamics: Count
-    jacobian: Count
-
-
-def price_of_motion(model: Model) -> MotionPrice:
-    """Operations of a model's equations of motion."""
-    return MotionPrice(
-        inverse_dynamics=count(model.inverse_dynamics),
-        jacobian=count(model.dynamics_jacobian),
-    )
-
-
 def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None) -> dict[str, Count]:
     """Operations that each load, actuator, obstacle with a width and contact of rods adds to the residual, by name.
 

@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Motion, SceneError, build, follow, scene_from_dict, simulate, solve
-from cosserat_casadi.model.operation_cost import is_damped, price, price_of_motion, without_damping
+from cosserat_casadi.model.operation_cost import is_damped, price, without_damping
+from cosserat_casadi.model.operations import count
 from tests.model.test_base_joints import link, scene
 from tests.model.test_joint_coordinates import ALONG, HINGE, SLIDE
 from tests.model.test_joint_stops import INERTIA, WEIGHT, lever
@@ -126,5 +127,5 @@ def test_joint_that_rubs_costs_in_motion_alone() -> None:
     assert not bare.parameters
     rubbing, sliding = (build(one, moving=True) for one in (rubs, bare))
     assert rubbing.size == sliding.size
-    assert price_of_motion(rubbing).inverse_dynamics.number > price_of_motion(sliding).inverse_dynamics.number
+    assert count(rubbing.inverse_dynamics).number > count(sliding.inverse_dynamics).number
     assert price(rubbing).residual.number == price(sliding).residual.number

@@ -111,9 +111,8 @@ def _print_motion_times(scene: Scene) -> None:
     with Console(stderr=True).status("Counting and timing the equations of motion"):
         model = build(scene.with_motion_inputs(), moving=True)
         check_simulation(model, scene.simulation)
-        statics = price(model)
         models = [model]
         if is_damped(scene):
             models.append(build(without_damping(scene.with_motion_inputs()), moving=True))
         motion, *undamped = motion_costs(*models)
-    print_motion_times(Console(), model.size, statics, motion, *undamped)
+    print_motion_times(Console(), model.size, motion, *undamped)
