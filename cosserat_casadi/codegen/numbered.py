@@ -90,11 +90,6 @@ class Step:
         """The results for these arguments."""
         return list(self.function.call(arguments, not self.called, self.called))
 
-    @property
-    def small(self) -> bool:
-        """Whether it is written without a loop."""
-        return self.instructions <= SMALL
-
 
 class Origins:
     """Entries that numbers stand for: of arguments, constants and results of steps, one after another.

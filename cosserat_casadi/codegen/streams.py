@@ -110,16 +110,6 @@ class Stream:
         return cls(ca.Function(function.name(), whole, [entries], function.name_in(), function.name_out()))
 
     @property
-    def x(self) -> list[int]:
-        """Unknowns that are read, the first argument."""
-        return self.reads[0]
-
-    @property
-    def inputs(self) -> list[int]:
-        """Inputs that are read, the second argument."""
-        return self.reads[1]
-
-    @property
     def key(self) -> Key:
         """What streams share that compute alike: their lines, and what they call."""
         contents = {hash(callee): Stream(callee).content for callee in self.called}

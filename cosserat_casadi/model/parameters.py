@@ -100,11 +100,6 @@ class ParameterLayout(StackedLayout[Parameter]):
         """p, size×1: one symbol for all functions of a model."""
         return ca.MX.sym("p", self.size)
 
-    @cached_property
-    def units(self) -> list[str]:
-        """Unit of every entry of p."""
-        return [entry.unit for entry in self.entries for _ in range(entry.size)]
-
     @property
     def turning_axes(self) -> list[tuple[str, int]]:
         """Parameters that turn the axis of a joint, by name, with the joint's place in the scene's list."""

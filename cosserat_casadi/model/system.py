@@ -293,10 +293,6 @@ class System:
         rod_shape = self.shapes[rod]
         return Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node])
 
-    def tip(self, rod: str) -> Pose:
-        """Pose of a rod's tip in its base frame."""
-        return self.section(rod, -1)
-
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
         frame = self.discrete.unloaded.floating_base(rod)

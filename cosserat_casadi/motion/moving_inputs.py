@@ -126,11 +126,6 @@ class MovingInputs:
             if motion.is_table:
                 self._constant[self._slices[motion.input]] = 0.0
 
-    @property
-    def moves(self) -> bool:
-        """Whether any input changes at all."""
-        return any(path.moves for path in self._paths)
-
     def at(self, t: float) -> InputState:
         """The inputs at a time; where they jump, their limits from later times."""
         return self._piece(t, np.inf, slack=0.0).at(t)
@@ -205,11 +200,6 @@ class _Path(ABC):
 
     @property
     @abstractmethod
-    def moves(self) -> bool:
-        """Whether it changes with time."""
-
-    @property
-    @abstractmethod
     def breaks(self) -> tuple[tuple[float, int], ...]:
         """Times at which it is not smooth (s), each with the order of the first derivative that jumps."""
 
@@ -240,10 +230,6 @@ class _Wave(_Path):
     cosine: FloatArray
     angular_frequency: float
     phase: float
-
-    @property
-    def moves(self) -> bool:
-        return bool(np.any(self.sine) or np.any(self.cosine))
 
     @property
     def breaks(self) -> tuple[tuple[float, int], ...]:
@@ -285,10 +271,6 @@ class _Table(_Path):
     breaks_at: tuple[tuple[float, int], ...]
     first: int
     last: int
-
-    @property
-    def moves(self) -> bool:
-        return bool(np.any(np.ptp(self.coefficients[:, 0], axis=0)))
 
     @property
     def breaks(self) -> tuple[tuple[float, int], ...]:

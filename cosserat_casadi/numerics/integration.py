@@ -101,14 +101,6 @@ class Integration:
             return self.start
         return self.steps[-1].end
 
-    @property
-    def message(self) -> str:
-        """The sentence of the outcome, with time and size of the step where it ended early."""
-        sentence = str(self.outcome.value)
-        if self.outcome is StepOutcome.COMPLETED:
-            return sentence
-        return f"{sentence} Reached: t = {self.end.time:.9g} s, with a step of {self.next_size:.3g} s."
-
 
 def stalled_at(start: Instant) -> Integration:
     """A piece without a step: there are no equations to go on with."""

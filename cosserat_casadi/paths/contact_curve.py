@@ -90,11 +90,6 @@ class Arrangement:
         return self.equations.scene
 
     @property
-    def touches(self) -> tuple[Touch, ...]:
-        """The contacts, where the equations start from."""
-        return self.equations.state.touches
-
-    @property
     def tolerance(self) -> float:
         """Depth, pull and the like, relative, up to which it is valid."""
         return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)

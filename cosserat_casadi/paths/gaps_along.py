@@ -38,11 +38,6 @@ class GapsAlong:
     length: float
 
     @property
-    def pair(self) -> tuple[str, str]:
-        """Names of rod and obstacle."""
-        return self.rod, self.obstacle.name
-
-    @property
     def _intervals(self) -> int:
         count: int = self.positions.shape[1]
         return count - 1

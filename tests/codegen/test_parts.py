@@ -26,7 +26,7 @@ def function(expression: str) -> ca.Function:
 
 def test_lines_of_the_example() -> None:
     stream = Stream(function("3*x[0] + x[4]"))
-    assert (stream.x, stream.inputs, stream.constants) == ([0, 4], [], [3.0])
+    assert (stream.reads[:2], stream.constants) == ([[0, 4], []], [3.0])
     assert stream.lines == [
         (ca.OP_INPUT, (0, 0), 1),
         (ca.OP_MUL, (CONSTANT, 0), 1),

@@ -545,7 +545,6 @@ def test_functions_take_parameters_behind_the_inputs() -> None:
     assert model.energies.name_in() == ["x", "v", "inputs", "p", "inputs_rate"]
     assert model.igm["wire"].name_in() == ["q", "base_position", "base_quaternion", "inputs", "p"]
     assert model.parameters.names == ("wire.section.outer_radius", "wire.section.inner_radius")
-    assert model.parameters.units == ["m", "m", "m"]
     assert [parameter.shape for parameter in model.parameters.entries] == [(1, 2), (1, 1)]
 
 

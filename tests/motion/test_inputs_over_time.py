@@ -52,14 +52,8 @@ def test_without_motions_the_inputs_stay() -> None:
     assert_array_equal(piece.at(0.3).value, [0.3, -0.2, -2.0, *FORCE])
     assert_array_equal(piece.at(0.3).rate, np.zeros(6))
     assert_array_equal(piece.at(0.3).acceleration, np.zeros(6))
-    assert not still.moves
+    assert not piece.moves
     assert still.breaks(0.7) == []
-
-
-def test_only_what_changes_moves() -> None:
-    assert not moving(table([0.0, 1.0], [FORCE, FORCE]), {"amplitude": [0, 0, 0], "frequency": 1.0}).moves
-    assert moving(table([0.0, 1.0], [FORCE, 2 * FORCE], "cubic")).moves
-    assert moving(SINE).moves
 
 
 @pytest.mark.parametrize("t", [0.0, 0.0371, 1.9])

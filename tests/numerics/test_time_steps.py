@@ -50,7 +50,7 @@ def fixed(
     """Equal steps, their equations solved to rounding."""
     tolerance = np.full(equations.size, error)
     integration = integrate(equations, start, end, method, StepSettings(tolerance, size=size, newton=1.0))
-    assert integration.outcome is StepOutcome.COMPLETED, integration.message
+    assert integration.outcome is StepOutcome.COMPLETED
     return integration
 
 
@@ -59,7 +59,7 @@ def controlled(
 ) -> Integration:
     settings = StepSettings(np.full(equations.size, tolerance))
     integration = integrate(equations, start, end, method or radau(3), settings)
-    assert integration.outcome is StepOutcome.COMPLETED, integration.message
+    assert integration.outcome is StepOutcome.COMPLETED
     return integration
 
 
@@ -459,7 +459,6 @@ def test_motion_without_continuation_names_the_time() -> None:
     integration = integrate(equations, start, 2.0, radau(3), settings)
     assert integration.outcome is StepOutcome.STEP_TOO_SMALL
     assert_allclose(integration.end.time, 1.0, rtol=0, atol=1e-3)
-    assert f"t = {integration.end.time:.9g} s" in integration.message
     assert integration.next_size < 2e-7
 
 
@@ -497,7 +496,6 @@ def test_given_step_too_long_to_be_solved_is_told() -> None:
     start = start_at(equations, np.ones(1), np.full(1, 2.0))
     integration = integrate(equations, start, 2.0, radau(3), StepSettings(np.full(1, 1e-6), size=0.25))
     assert integration.outcome is StepOutcome.NOT_SOLVED
-    assert "use smaller steps" in integration.message
 
 
 def test_interruption_keeps_what_was_computed() -> None:

@@ -169,10 +169,6 @@ class ContactEquilibrium:
         X = (np.array(ends)[:, None] + beside).ravel() if ends else np.zeros(0)
         return X[(X > 0.0) & (X < 1.0)]
 
-    def depth(self) -> float:
-        """How deep any rod is inside an obstacle, relative to its length."""
-        return max((penetrated.depth for penetrated in self.penetrations(0.0)), default=0.0)
-
     def unmet(self) -> float:
         """How far poses, places and forces may be off because contacts hold up to a tolerance alone.
 
