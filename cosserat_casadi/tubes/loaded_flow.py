@@ -26,28 +26,21 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import cross, quaternion_conjugate, quaternion_product, rotate
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.tubes.stages import Staged, composed
+from cosserat_casadi.tubes.tube_flow import Bending, FlowState
 
 TANGENT = ca.DM([0, 0, 1])
 """Of the centre line, in the axes of the frame."""
 
 
 @dataclass(frozen=True)
-class LoadedState:
-    """State that is integrated along a robot that bears loads.
+class LoadedState(FlowState):
+    """State that is integrated along a robot that bears loads; its pose is in world axes, from the tip's position on.
 
     Attributes:
-        angles: of the tubes against the frame, n×1, rad.
-        torques: in the tubes, n×1, N m.
-        pose: of the frame, its position from the tip of the robot on, in world axes.
-        energy: from the tip on, 1×1, J.
         moment: in the section, world axes, 3×1, N m.
         place: distance from the plate along the centre line, 1×1, m.
     """
 
-    angles: Matrix
-    torques: Matrix
-    pose: Pose
-    energy: Matrix
     moment: Matrix
     place: Matrix
 
@@ -69,23 +62,15 @@ class LoadedState:
 
 
 @dataclass(frozen=True)
-class LoadedSection:
+class LoadedSection(Bending):
     """Constants of a piece of a robot that bears loads.
 
     Attributes:
-        torsion: GJ of every tube, n×1, N m².
-        moments: EI κ of the tubes that are curved here, zero of the others, n×1, N m.
-        bending: EI of all tubes that are here, 1×1, N m².
-        own: Σ EI κ²/2 of the tubes that are curved here, 1×1, N.
         force: what the force in a section would be at the plate, world axes, 3×1, N.
         weight: force per length, world axes, 3×1, N/m; None in a robot without weight.
         potential: whether the work of the loads counts in the energy.
     """
 
-    torsion: Matrix
-    moments: Matrix
-    bending: Matrix
-    own: Matrix
     force: Matrix
     weight: Matrix | None
     potential: bool
@@ -129,10 +114,7 @@ class LoadedSection:
 
     def bent(self, state: LoadedState, length: Matrix) -> LoadedState:
         """Along a length the pre-curvature turns the frame, and the torques change."""
-        cosines = self.moments * ca.cos(state.angles)
-        sines = self.moments * ca.sin(state.angles)
-        x = ca.sum1(cosines) / self.bending
-        y = ca.sum1(sines) / self.bending
+        cosines, sines, x, y = self.resting(state.angles)
         # To bend towards x is to turn about y, towards y is to turn back about x.
         arc = increment(length * ca.vertcat(-y, x, 0))
         back = quaternion_conjugate(state.pose.quaternion)

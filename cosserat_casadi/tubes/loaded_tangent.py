@@ -79,10 +79,7 @@ class LoadedTangent:
     def bent(self, section: LoadedSection, state: LoadedState, length: Matrix) -> LoadedTangent:
         """Along a length, from a state, on which the pre-curvature turns the frame and changes the torques."""
         bending = section.bending
-        cosines = section.moments * ca.cos(state.angles)
-        sines = section.moments * ca.sin(state.angles)
-        x = ca.sum1(cosines) / bending
-        y = ca.sum1(sines) / bending
+        cosines, sines, x, y = section.resting(state.angles)
         change_x = -sines.T @ self.angles / bending
         change_y = cosines.T @ self.angles / bending
         arc = increment(length * ca.vertcat(-y, x, 0))

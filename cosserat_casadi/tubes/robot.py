@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -24,6 +24,7 @@ from cosserat_casadi.spelling import closest
 from cosserat_casadi.tubes.tube_loads import COMPONENTS, TubeLoad, loads_of
 
 Inputs = TypeVar("Inputs", FloatArray, ca.MX)
+Entries = TypeVar("Entries", FloatArray, Numbers)
 
 Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 """Inputs by name, all in order, or None for the inputs of the scene."""
@@ -33,7 +34,7 @@ SLACK = 1e-12
 
 
 @dataclass(frozen=True)
-class TubeNumbers:
+class TubeNumbers(Generic[Entries]):
     """Numbers of tubes, one entry a tube in the order of the scene: known, or expressions of parameters.
 
     Attributes:
@@ -45,49 +46,37 @@ class TubeNumbers:
         loads: what acts on the tubes, m inputs of three numbers.
     """
 
-    bending: Numbers
-    torsion: Numbers
-    curvature: Numbers
-    straight: Numbers
-    curved: Numbers
+    bending: Entries
+    torsion: Entries
+    curvature: Entries
+    straight: Entries
+    curved: Entries
     loads: tuple[TubeLoad, ...]
 
     @property
-    def length(self) -> Numbers:
+    def length(self) -> Entries:
         """Lengths of the tubes, shape (n,), m."""
         return self.straight + self.curved
 
 
 @dataclass(frozen=True)
-class Robot:
+class Robot(TubeNumbers[FloatArray]):
     """Tubes as arrays with one entry a tube, in the order of the scene; parameters have the scene's values.
 
     Attributes:
         scene: where the tubes are from.
         names: of the tubes.
-        bending: EI, shape (n,), N m².
-        torsion: GJ, shape (n,), N m².
-        curvature: of the curved part of the unloaded tube, shape (n,), 1/m.
-        straight: length of the straight part, shape (n,), m.
-        curved: length of the curved part behind it, shape (n,), m.
-        loads: what acts on the tubes, m inputs of three numbers.
         layout: the inputs: rotation and translation of each tube, then the loads, 2 n + 3 m numbers.
         parameters: numbers that are arguments of the model's functions; often none.
     """
 
     scene: scenes.Scene
     names: tuple[str, ...]
-    bending: FloatArray
-    torsion: FloatArray
-    curvature: FloatArray
-    straight: FloatArray
-    curved: FloatArray
-    loads: tuple[TubeLoad, ...]
     layout: InputLayout
     parameters: ParameterLayout = NO_PARAMETERS
 
     @cached_property
-    def numbers(self) -> TubeNumbers:
+    def numbers(self) -> TubeNumbers[Numbers]:
         """The numbers of the tubes, expressions where parameters change them."""
         return tube_numbers(self.parameters.written(self.scene, self.parameters.symbol))
 
@@ -110,11 +99,6 @@ class Robot:
     def size(self) -> int:
         """Number of tubes."""
         return len(self.names)
-
-    @property
-    def length(self) -> FloatArray:
-        """Lengths of the tubes, shape (n,), m."""
-        return self.straight + self.curved
 
     @property
     def has_energy(self) -> bool:
@@ -237,7 +221,7 @@ def parametric_robot(scene: scenes.Scene) -> Robot:
     return replace(robot_of(scene), scene=scene, parameters=parameter_layout(scene))
 
 
-def tube_numbers(scene: scenes.Scene) -> TubeNumbers:
+def tube_numbers(scene: scenes.Scene) -> TubeNumbers[Numbers]:
     """The numbers of the tubes of a scene, some of which may be expressions of parameters."""
     stiffness = [_stiffness(tube) for tube in scene.tubes]
     return TubeNumbers(

@@ -3,33 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import casadi as ca
 
 from cosserat_casadi.maths.composition import SHARES
-from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import Matrix
-
-
-class AnyState(Protocol):
-    """Common part of all states along a robot: angles and torques of the tubes, pose of the frame, energy."""
-
-    @property
-    def angles(self) -> Matrix:
-        """Of the tubes against the frame, n×1, rad."""
-
-    @property
-    def torques(self) -> Matrix:
-        """In the tubes, n×1, N m."""
-
-    @property
-    def pose(self) -> Pose:
-        """Of the frame."""
-
-    @property
-    def energy(self) -> Matrix:
-        """From the tip on, 1×1, J."""
 
 
 @dataclass(frozen=True)

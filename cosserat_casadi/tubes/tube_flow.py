@@ -63,8 +63,8 @@ class FlowState:
 
 
 @dataclass(frozen=True)
-class PieceConstants:
-    """Constants of a piece of the robot.
+class Bending:
+    """What the tubes of a piece of the robot bend with.
 
     Attributes:
         torsion: GJ of every tube, n×1, N m².
@@ -78,6 +78,17 @@ class PieceConstants:
     bending: Matrix
     own: Matrix
 
+    def resting(self, angles: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+        """EI κ cos α and EI κ sin α of every tube, n×1, and the curvature where the energy is least, 1×1 each, 1/m."""
+        cosines = self.moments * ca.cos(angles)
+        sines = self.moments * ca.sin(angles)
+        return cosines, sines, ca.sum1(cosines) / self.bending, ca.sum1(sines) / self.bending
+
+
+@dataclass(frozen=True)
+class PieceConstants(Bending):
+    """Constants of a piece of a robot without loads."""
+
     def turned(self, state: FlowState, length: Matrix) -> FlowState:
         """Along a length the torques turn the tubes."""
         rates = state.torques / self.torsion
@@ -87,10 +98,7 @@ class PieceConstants:
 
     def bent(self, state: FlowState, length: Matrix) -> FlowState:
         """Along a length the angles bend the centre line, and change the torques."""
-        cosines = self.moments * ca.cos(state.angles)
-        sines = self.moments * ca.sin(state.angles)
-        x = ca.sum1(cosines) / self.bending
-        y = ca.sum1(sines) / self.bending
+        cosines, sines, x, y = self.resting(state.angles)
         # The energy per length is own − (x² + y²) bending / 2; its derivative with an angle is what the torque gains.
         torques = state.torques + length * (x * sines - y * cosines)
         energy = state.energy + length * (self.own - self.bending * (x**2 + y**2) / 2)

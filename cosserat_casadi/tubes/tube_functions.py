@@ -27,7 +27,8 @@ from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
-from cosserat_casadi.tubes.stages import AnyState, March, Staged
+from cosserat_casadi.tubes.stages import March, Staged
+from cosserat_casadi.tubes.tube_flow import FlowState
 from cosserat_casadi.tubes.variations import TipVariations
 
 NEWTON_TOLERANCE = 1e-12
@@ -143,7 +144,7 @@ class TubeFunctions(WithParameters):
         """States with the frame of the centre line and the energy."""
 
     @abstractmethod
-    def _state(self, stacked: Matrix) -> AnyState:
+    def _state(self, stacked: Matrix) -> FlowState:
         """The state of stacked entries of `_whole`."""
 
     @property
