@@ -7,6 +7,7 @@ words of report (2.15), (2.16) the stress against the elastic one is Λ_ad = τ 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -39,23 +40,30 @@ class SectionMotions(Protocol):
         """[δr; δθ] of the sections of k nodes, stacked component by component, 6k×n, m and rad."""
 
 
-class Conjugate(Protocol):
-    """A length or volume that an effort works on, for a rod of known strain."""
+class Conjugate(ABC):
+    """A length or volume that an effort works on, for a rod of known strain.
+
+    Unless a kind of it says otherwise the effort reaches every section undiminished: the pull is the gradient.
+    """
 
     @property
+    @abstractmethod
     def value(self) -> Matrix:
         """L, 1×1."""
 
     @property
+    @abstractmethod
     def gradient(self) -> Matrix:
         """∂L/∂q, n×1."""
+
+    @abstractmethod
+    def curvature(self, a: int, b: int) -> Matrix | None:
+        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
 
     @property
     def pull(self) -> Matrix:
         """Generalised force of a unit of effort, n×1: the gradient ∂L/∂q, less the losses by friction along the rod."""
-
-    def curvature(self, a: int, b: int) -> Matrix | None:
-        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
+        return self.gradient
 
     @property
     def wrench(self) -> LineWrench | None:
@@ -63,62 +71,30 @@ class Conjugate(Protocol):
 
         They balance. The rod takes them among its loads, in the same sweeps.
         """
+        return None
 
     @property
     def wrench_nodes(self) -> list[int]:
         """The k nodes that the wrenches act on."""
-
-    @property
-    def further_stiffness(self) -> Matrix | None:
-        """Part of ∂ pull/∂q that the curvature and wrenches do not hold, n×n; None where they hold all of it."""
-
-    @property
-    def section_stiffness(self) -> Matrix | None:
-        """Change of minus the wrench with the motions [δr; δθ] of its nodes, stacked by component, 6k×6k; as there."""
-
-    @property
-    def conservative(self) -> bool:
-        """Whether the pull is the gradient of L."""
-
-    def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
-        """Rate of what a unit of effort works on, from the rate of any value, 1×1."""
-
-
-class Lossless:
-    """Quantities whose effort reaches every section undiminished: the pull is the gradient of the quantity."""
-
-    @property
-    def pull(self: Conjugate) -> Matrix:
-        """Generalised force of a unit of effort, n×1."""
-        return self.gradient
-
-    @property
-    def wrench(self) -> LineWrench | None:
-        """None: the pull is formed from strains alone."""
-        return None
-
-    @property
-    def wrench_nodes(self) -> list[int]:
-        """None."""
         return []
 
     @property
     def further_stiffness(self) -> Matrix | None:
-        """None: the curvature is all of ∂ pull/∂q."""
+        """Part of ∂ pull/∂q that the curvature and wrenches do not hold, n×n; None where they hold all of it."""
         return None
 
     @property
     def section_stiffness(self) -> Matrix | None:
-        """None: no wrench acts on sections."""
+        """Change of minus the wrench with the motions [δr; δθ] of its nodes, stacked by component, 6k×6k; as there."""
         return None
 
     @property
     def conservative(self) -> bool:
-        """Whether the pull is a gradient."""
+        """Whether the pull is the gradient of L."""
         return True
 
-    def rate(self: Conjugate, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
-        """Rate of the quantity from the rate of any value, 1×1."""
+    def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
+        """Rate of what a unit of effort works on, from the rate of any value, 1×1."""
         return rate_of(self.value)
 
 
@@ -167,7 +143,7 @@ class StrainSum:
 
 
 @dataclass(frozen=True)
-class StrainSumOnRod(Lossless):
+class StrainSumOnRod(Conjugate):
     """A quantity that is linear in the strains, on a rod: its gradient is constant.
 
     Attributes:

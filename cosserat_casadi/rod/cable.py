@@ -9,7 +9,6 @@ docs/theory.md section 6.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,7 +17,7 @@ import casadi as ca
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_zero, rows_of
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
-from cosserat_casadi.rod.actuation import Lossless
+from cosserat_casadi.rod.actuation import Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 
 Row = Matrix | None
@@ -50,7 +49,7 @@ class Routing:
 
 
 @dataclass(frozen=True)
-class Cable(Lossless, ABC):
+class Cable(Conjugate):
     """A cable through a deformed rod, whose quantity is its length.
 
     Attributes:
@@ -58,20 +57,6 @@ class Cable(Lossless, ABC):
     """
 
     shape: Shape
-
-    @property
-    @abstractmethod
-    def value(self) -> Matrix:
-        """Length L, 1×1, m."""
-
-    @property
-    @abstractmethod
-    def gradient(self) -> Matrix:
-        """∂L/∂q, n×1, m."""
-
-    @abstractmethod
-    def curvature(self, a: int, b: int) -> Row:
-        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes."""
 
     @property
     def mean_share(self) -> Matrix | None:

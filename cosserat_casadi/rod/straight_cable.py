@@ -86,11 +86,9 @@ class StraightCable(Cable):
     """A cable straight between holes of a deformed rod.
 
     Attributes:
-        shape: the rod's shape.
         routing: its holes.
     """
 
-    shape: Shape
     routing: HoleRouting
 
     @property

@@ -17,7 +17,7 @@ import numpy as np
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, reciprocal
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.rod.actuation import Lossless
+from cosserat_casadi.rod.actuation import Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 
 Density = Callable[[Matrix, Matrix], Matrix]
@@ -46,7 +46,7 @@ class StrainDensity:
 
 
 @dataclass(frozen=True)
-class StrainDensityOnRod(Lossless):
+class StrainDensityOnRod(Conjugate):
     """A quantity given by its density, on a rod.
 
     Attributes:
