@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -152,29 +152,6 @@ class _Given:
     inputs_rate: npt.ArrayLike | None
     inputs_acceleration: npt.ArrayLike | None
     parameters: ArgumentValues
-
-
-@dataclass(frozen=True)
-class _Columns:
-    """Derivatives by what is given, one column after the other."""
-
-    by_inputs: FloatArray
-    by_inputs_rate: FloatArray
-    by_inputs_acceleration: FloatArray
-    by_parameters: FloatArray
-
-    @property
-    def in_order(self) -> list[FloatArray]:
-        """The same as functions in C take them; a scene without parameters has no derivative with them."""
-        of_motion = [self.by_inputs_rate, self.by_inputs_acceleration]
-        if len(self.by_parameters) == 0:
-            return [self.by_inputs, *of_motion]
-        return [self.by_inputs, self.by_parameters, *of_motion]
-
-    @property
-    def as_matrices(self) -> dict[str, FloatArray]:
-        """The same with a column for each number that is given, by name."""
-        return {field.name: getattr(self, field.name).T for field in fields(self)}
 
 
 class _Options(ctypes.Structure):
@@ -364,19 +341,24 @@ class CompiledMotion(ABC):
         """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
         size = 2 * self.size
         by_start = np.zeros((size, size))
-        columns = self._columns(size)
-        results = [by_start, *columns.in_order]
+        derivatives, columns = self._input_derivatives(size)
+        results = [by_start, *columns]
         given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
         taken, status = self._take("step_sensitivity", state, dt, given, memory, options, results)
         if status is not MotionStatus.DONE:
             return taken, None
-        return taken, StepSensitivity(by_start.T, **columns.as_matrices)
+        return taken, StepSensitivity(by_start.T, **derivatives)
 
-    def _columns(self, size: int) -> _Columns:
-        """Room for columns of so many entries."""
-        count = self.inputs.size
-        by_inputs, by_rate, by_acceleration = (np.zeros((count, size)) for _ in range(3))
-        return _Columns(by_inputs, by_rate, by_acceleration, np.zeros((self.parameters.size, size)))
+    def _input_derivatives(self, rows: int) -> tuple[dict[str, FloatArray], list[FloatArray]]:
+        """Room for derivatives by what is given, by name, and their columns in the order of the functions in C."""
+        words = ("by_inputs", "by_parameters", "by_inputs_rate", "by_inputs_acceleration")
+        counts = (self.inputs.size, self.parameters.size, self.inputs.size, self.inputs.size)
+        columns = {word: np.zeros((count, rows)) for word, count in zip(words, counts, strict=True)}
+        derivatives = {word: by_one.T for word, by_one in columns.items()}
+        if not self.parameters.size:
+            # A scene without parameters has no derivative with them to be passed.
+            del columns["by_parameters"]
+        return derivatives, list(columns.values())
 
     def inverse_dynamics(
         self,
@@ -412,8 +394,8 @@ class CompiledMotion(ABC):
     ) -> LinearMotion:
         """Derivatives of the equations of motion at a state."""
         stiffness, damping, mass = (np.zeros((self.size, self.size)) for _ in range(3))
-        columns = self._columns(self.size)
-        results = [stiffness, damping, mass, *columns.in_order]
+        derivatives, columns = self._input_derivatives(self.size)
+        results = [stiffness, damping, mass, *columns]
         p = self.parameters.passed(parameters)
         arguments = [
             pointer(self._packed(state)),
@@ -422,7 +404,7 @@ class CompiledMotion(ABC):
             self._changing(inputs_rate),
         ]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
-        return LinearMotion(stiffness.T, damping.T, mass.T, **columns.as_matrices)
+        return LinearMotion(stiffness.T, damping.T, mass.T, **derivatives)
 
     def _take(
         self,
