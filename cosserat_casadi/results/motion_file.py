@@ -24,7 +24,7 @@ from cosserat_casadi.motion.pose_series import Poses, evaluated
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry, rubbing_entries
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, plain
-from cosserat_casadi.results.named_arrays import NamedArrays
+from cosserat_casadi.results.presentation import NamedArrays
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
 

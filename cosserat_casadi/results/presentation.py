@@ -18,8 +18,8 @@ from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import MESHES, write_atomically
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, json_text, plain
-from cosserat_casadi.results.named_arrays import NamedArrays
 
 PICTURES = (".png", ".pdf", ".svg")
 """Suffixes of figures."""
@@ -58,6 +58,25 @@ class Presentation:
         """Suffixes of all files that the result can be written to."""
         table = (".csv",) if self.table else ()
         return tuple(dict.fromkeys((".json", *table, *self.writers, *PICTURES)))
+
+
+@dataclass(frozen=True)
+class NamedArrays:
+    """Arrays whose axes have names.
+
+    Attributes:
+        variables: by name the axes, the array, and its attributes such as ``units``.
+        coordinates: values along axes, by the name of the axis.
+        attributes: of the whole.
+    """
+
+    variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = field(default_factory=dict)
+    coordinates: dict[str, Any] = field(default_factory=dict)
+    attributes: dict[str, Any] = field(default_factory=dict)
+
+    def add(self, name: str, axes: tuple[str, ...], array: FloatArray, units: str = "") -> None:
+        """Add an array, shaped as its axes, under a name that is new; units are left out where they are not known."""
+        self.variables.setdefault(name, (axes, array, {"units": units} if units else {}))
 
 
 class FramesUnavailableError(CosseratError):

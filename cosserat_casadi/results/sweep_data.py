@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.results.named_arrays import NamedArrays
+from cosserat_casadi.results.presentation import NamedArrays
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.sobol import CONFIDENCE, Estimates, SobolIndices
 
