@@ -16,7 +16,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.joint_ends import end_faults
-from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented, orientation_faults
+from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
 from cosserat_casadi.scene.records import Entry, refusal, sound
 from cosserat_casadi.scene.values import (
@@ -92,17 +92,6 @@ quaternion = [1, 0, 0, 0]
 
     kind: Literal["clamped"] = Field(description="pose of the tip prescribed")
     quaternion: Quaternion = Field(description="prescribed orientation of the tip w, x, y, z, of norm 1, without unit")
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The orientation is given once."""
-        yield from super().conflicts(given)
-        yield from orientation_faults(given)
-
-    @property
-    def orientation(self) -> Quadruple:
-        """The prescribed orientation of the tip, w, x, y, z."""
-        return self.quaternion
 
 
 @SUPPORTS.register
@@ -231,11 +220,6 @@ between = [{ rod = "finger", at = 0.5 }, { body = "platform", position = [0, 0, 
         (1.0, 0.0, 0.0, 0.0), description="orientation of the other end in the body or in the world, of norm 1"
     )
 
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The orientation is given once."""
-        yield from orientation_faults(given)
-
 
 class CarriedBody(Oriented):
     """The body that another body, or the world, carries by a joint, with its place in that body."""
@@ -254,16 +238,6 @@ carries = { body = "platform", position = [0, 0, 0.1] }     # instead of rod
     quaternion: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="orientation of the joint in that body, of norm 1, without unit"
     )
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The orientation is given once."""
-        yield from orientation_faults(given)
-
-    @property
-    def orientation(self) -> Quadruple:
-        """Orientation of the joint in the body, w, x, y, z."""
-        return self.quaternion
 
 
 class JointPlace(NamedTuple):
@@ -316,7 +290,7 @@ class JointRecord(Oriented, Entry):
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The place of a base is said by its rod, that of a joint in the world by the joint; an orientation once."""
-        yield from orientation_faults(given)
+        yield from super().conflicts(given)
         if "between" in given:
             for fault in end_faults(given["between"]):
                 yield fault.below(("between",))
@@ -385,11 +359,6 @@ class JointRecord(Oriented, Entry):
         if self.carries is None:
             return places
         return (*places, JointPlace(self.carries.body, self.carries.position))
-
-    @property
-    def orientation(self) -> Quadruple:
-        """Orientation of the section in the axes of the body, w, x, y, z."""
-        return self.quaternion
 
     @property
     def has_coordinate(self) -> bool:

@@ -6,7 +6,7 @@ The record of a table that has an orientation keeps it as its quaternion, whiche
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 from pydantic import AfterValidator, Field
@@ -15,7 +15,7 @@ from cosserat_casadi.maths.rotation import quaternion_from_tangent, quaternion_p
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.records import Record, refusal, sound
-from cosserat_casadi.scene.values import Direction, Number, Vector
+from cosserat_casadi.scene.values import Direction, Number, Quadruple, Vector
 
 WAYS = ("tangent", "rotation_vector", "euler")
 """Keys that say an orientation in place of a quaternion."""
@@ -68,6 +68,19 @@ class Oriented(Record):
         None, description="axis of a rotation times its angle, rad; instead of quaternion"
     )
     euler: Euler | None = Field(None, description="turns about three axes; instead of quaternion")
+    if TYPE_CHECKING:
+        quaternion: Quadruple  # each record declares its own, where it stands among its keys
+
+    @property
+    def orientation(self) -> Quadruple:
+        """The orientation, w, x, y, z."""
+        return self.quaternion
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The orientation is given once."""
+        yield from super().conflicts(given)
+        yield from orientation_faults(given)
 
     @classmethod
     def settled(cls, given: Table) -> Table:

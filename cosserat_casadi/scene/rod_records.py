@@ -16,7 +16,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.material_records import ElasticMaterial
-from cosserat_casadi.scene.orientations import Oriented, orientation_faults
+from cosserat_casadi.scene.orientations import Oriented
 from cosserat_casadi.scene.profiles import ends_of
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import (
@@ -280,7 +280,7 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The tangent is an orientation already; a section has a rod; what a rod carries is not free."""
-        yield from orientation_faults(given)
+        yield from super().conflicts(given)
         if "at" in given and "rod" not in given:
             yield Fault(("at",), "stands without rod", "name the rod that carries this one, or leave it out")
         if given.get("free") is True and "rod" in given:

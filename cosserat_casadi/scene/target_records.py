@@ -12,7 +12,7 @@ from pydantic import Field
 
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Table, frame_faults
-from cosserat_casadi.scene.orientations import Oriented, orientation_faults
+from cosserat_casadi.scene.orientations import Oriented
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaternion, Share, Vector, numbers_of
 
@@ -59,12 +59,6 @@ quaternion = [1, 0, 0, 0]
     kind: Literal["pose"] = Field(description="position and orientation")
     position: Vector = Field(description="wanted position in world axes, m")
     quaternion: Quaternion = Field(description="wanted orientation w, x, y, z, of norm 1, without unit")
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The orientation is given once."""
-        yield from super().conflicts(given)
-        yield from orientation_faults(given)
 
 
 @TARGETS.register
