@@ -25,7 +25,7 @@ from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
 from cosserat_casadi.codegen.names import FUNCTIONS, Names
-from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
+from cosserat_casadi.codegen.parameter_values import listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.codegen.status import OUTCOMES
@@ -129,11 +129,6 @@ class Compiled(LoadedLibrary, CompiledMotion):
     def size(self) -> int:
         """Number of unknowns."""
         return sum(int(entry["count"]) for entry in self.manifest["unknowns"])
-
-    @cached_property
-    def parameters(self) -> ListedParameters:
-        """Names, units and default values of the parameters; often none."""
-        return listed_parameters(self.manifest.get("parameters", []), self.scene)
 
     def solve(
         self,

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs, listed_values
+from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -63,6 +64,11 @@ class LoadedLibrary(ABC):
     def inputs(self) -> ListedInputs:
         """Names, units and default values of the inputs."""
         return ListedInputs(listed_values(self.manifest["inputs"]))
+
+    @cached_property
+    def parameters(self) -> ListedParameters:
+        """Names, units and default values of the parameters; often none."""
+        return listed_parameters(self.manifest.get("parameters", []), self.scene)
 
     @property
     def defaults(self) -> FloatArray:

@@ -6,7 +6,6 @@ import ctypes
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +21,6 @@ from cosserat_casadi.codegen.compiled_results import (
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
-from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
@@ -128,11 +126,6 @@ class CompiledContact(LoadedLibrary):
         if described.get("parameters"):
             sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
         return sizes
-
-    @cached_property
-    def parameters(self) -> ListedParameters:
-        """Names, units and default values of the parameters; often none."""
-        return listed_parameters(self.manifest.get("parameters", []), self.scene)
 
     @property
     def rods(self) -> list[str]:
