@@ -64,7 +64,7 @@ class FlowState:
 
 @dataclass(frozen=True)
 class Bending:
-    """What the tubes of a piece of the robot bend with.
+    """Stiffnesses and curvatures of the tubes of a piece of a robot.
 
     Attributes:
         torsion: GJ of every tube, n×1, N m².
