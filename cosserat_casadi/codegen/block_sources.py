@@ -40,22 +40,24 @@ def dense_words(render: Render, basics: Words) -> Words:
 def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
     """Words of a solver that eliminates rod after rod."""
     split = partition.blocks
+    order = split.by_fronts
+    tables, listed = front_tables(order.fronts)
     parteds = {"residual": partition.residual, "jacobian": partition.jacobian, "input": partition.input_jacobian}
     words = {
         "part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
         "part_tables": "".join(part_tables("part", word, parted) for word, parted in parteds.items()),
-        "front_tables": _fronts(split.fronts),
-        "front_indices": numbers(split.front_indices),
+        "front_tables": f"{tables}static const front FRONTS[FRONT_COUNT] = {{\n{listed},\n}};\n",
+        "front_indices": numbers(order.indices),
         "dense_indices": numbers(split.dense_indices),
-        "interface_members": numbers(split.interface),
+        "interface_members": numbers(order.interface),
     }
     sizes = {
         "entries": split.pattern.nnz(),
-        "front_count": len(split.fronts),
-        "fronts_size": split.fronts_size,
-        "interface": len(split.interface),
-        "interface_start": split.interface_start,
-        "max_order": max(front.order for front in split.fronts),
+        "front_count": len(order.fronts),
+        "fronts_size": order.size,
+        "interface": len(order.interface),
+        "interface_start": order.interface_start,
+        "max_order": max(front.order for front in order.fronts),
     }
     most_entries = max(len(part.entries) for parted in parteds.values() for part in parted.parts)
     work = [sizes["entries"], basics["unknowns"], basics["input_room"], most_entries]
@@ -75,7 +77,7 @@ def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
         "linear_members": MEMBERS.format(**members),
         "linear_reals": sum(work),
         # The fallback eliminates the matrix as a whole in the same room.
-        "factor_count": max(split.pattern.size1() ** 2, split.fronts_size),
+        "factor_count": max(split.pattern.size1() ** 2, order.size),
     }
 
 
@@ -117,15 +119,16 @@ def part_tables(kind: str, word: str, parted: Parted) -> str:
     return "".join(lines) + f"static const {kind} {stem}_PARTS[] = {{\n{listed},\n}};\n{count}"
 
 
-def _fronts(fronts: Sequence[Front]) -> str:
-    lines = list[str]()
+def front_tables(fronts: Sequence[Front], stem: str = "") -> tuple[str, str]:
+    """Tables of the unknowns of fronts, whose names begin with a stem, and the records in C that name them."""
+    tables = ""
     rows = list[str]()
     for i, front in enumerate(fronts):
-        lines += [table(f"MEMBERS_{i}", front.members), table(f"TOUCHED_{i}", front.interface)]
-        touched = f"TOUCHED_{i}" if front.interface else "0"
-        rows.append(f"  {{MEMBERS_{i}, {touched}, {len(front.members)}, {len(front.interface)}, {front.start}}}")
-    listed = ",\n".join(rows)
-    return "".join(lines) + f"static const front FRONTS[FRONT_COUNT] = {{\n{listed},\n}};\n"
+        tables += table(f"{stem}MEMBERS_{i}", front.members) + table(f"{stem}TOUCHED_{i}", front.interface)
+        touched = f"{stem}TOUCHED_{i}" if front.interface else "0"
+        counts = f"{len(front.members)}, {len(front.interface)}, {front.start}"
+        rows.append(f"  {{{stem}MEMBERS_{i}, {touched}, {counts}}}")
+    return tables, ",\n".join(rows)
 
 
 def table(name: str, values: Sequence[float]) -> str:

@@ -41,6 +41,43 @@ class Front:
 
 
 @dataclass(frozen=True)
+class Elimination:
+    """An order of elimination as tables.
+
+    Attributes:
+        fronts: one after the other.
+        interface: unknowns of the interface, which is eliminated last.
+        entry_fronts: of each entry its front, or the number of fronts for those of the interface.
+        entry_rows: of each entry the row there.
+        entry_columns: of each entry the column there.
+    """
+
+    fronts: list[Front]
+    interface: list[int]
+    entry_fronts: list[int]
+    entry_rows: list[int]
+    entry_columns: list[int]
+
+    @property
+    def interface_start(self) -> int:
+        """First entry of the interface's own matrix, behind those of the fronts."""
+        return sum(front.order**2 for front in self.fronts)
+
+    @property
+    def size(self) -> int:
+        """Numbers in the matrices of all fronts and of the interface."""
+        return self.interface_start + len(self.interface) ** 2
+
+    @property
+    def indices(self) -> list[int]:
+        """For each entry its index among those of all matrices."""
+        starts = [*(front.start for front in self.fronts), self.interface_start]
+        orders = [*(front.order for front in self.fronts), len(self.interface)]
+        places = zip(self.entry_fronts, self.entry_rows, self.entry_columns, strict=True)
+        return [starts[front] + row + column * orders[front] for front, row, column in places]
+
+
+@dataclass(frozen=True)
 class Blocks:
     """Blocks of a Jacobian.
 
@@ -86,32 +123,31 @@ class Blocks:
             start += front.order**2
         return fronts
 
-    @property
-    def interface_start(self) -> int:
-        """First entry of the interface's own matrix, behind those of the fronts."""
-        return sum(front.order**2 for front in self.fronts)
-
-    @property
-    def fronts_size(self) -> int:
-        """Numbers in the matrices of all fronts and of the interface."""
-        return self.interface_start + len(self.interface) ** 2
-
     @cached_property
-    def front_indices(self) -> list[int]:
-        """For each entry of the Jacobian its index among the entries of the fronts."""
-        number = {unknown: i for i, unknown in enumerate(self.interface)}
+    def by_fronts(self) -> Elimination:
+        """Front after front."""
+        interface = {unknown: i for i, unknown in enumerate(self.interface)}
         local = list[dict[int, int]]()
         for front in self.fronts:
             unknowns = [*front.members, *(self.interface[i] for i in front.interface)]
             local.append({unknown: i for i, unknown in enumerate(unknowns)})
-        indices = []
-        for i, j, owner in zip(*self.pattern.get_triplet(), self.entry_owners, strict=True):
-            if owner == INTERFACE:
-                indices.append(self.interface_start + number[i] + number[j] * len(self.interface))
-            else:
-                front = self.fronts[owner]
-                indices.append(front.start + local[owner][i] + local[owner][j] * front.order)
-        return indices
+        local.append(interface)
+        fronts = [len(self.fronts) if owner == INTERFACE else owner for owner in self.entry_owners]
+        rows, columns = self.pattern.get_triplet()
+        return Elimination(
+            fronts=self.fronts,
+            interface=self.interface,
+            entry_fronts=fronts,
+            entry_rows=[local[front][i] for front, i in zip(fronts, rows, strict=True)],
+            entry_columns=[local[front][j] for front, j in zip(fronts, columns, strict=True)],
+        )
+
+    @property
+    def as_a_whole(self) -> Elimination:
+        """All unknowns as one front."""
+        rows, columns = self.pattern.get_triplet()
+        whole = Front(list(range(len(self.owners))), [], 0)
+        return Elimination([whole], [], [0] * len(rows), [*rows], [*columns])
 
     @cached_property
     def dense_indices(self) -> list[int]:

@@ -7,8 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.block_sources import Render, Words, numbers, part_functions, part_tables, table
-from cosserat_casadi.codegen.motion_parts import MATRICES, Elimination, MotionInC, as_a_whole, by_fronts
+from cosserat_casadi.codegen.block_sources import (
+    Render,
+    Words,
+    front_tables,
+    numbers,
+    part_functions,
+    part_tables,
+    table,
+)
+from cosserat_casadi.codegen.blocks import Elimination
+from cosserat_casadi.codegen.motion_parts import MATRICES, MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import motion_status_words
 from cosserat_casadi.model.build import Model
@@ -44,8 +53,8 @@ STAGES = 2
 
 def motion_words(render: Render, basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
     """Words of a library with motions."""
-    fronts = by_fronts(motion.order)
-    whole = as_a_whole(motion.blocks)
+    fronts = motion.order.by_fronts
+    whole = motion.blocks.as_a_whole
     parteds = {
         "motion_residual": motion.residual,
         "motion_matrix": motion.matrices,
@@ -60,7 +69,7 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         **motion_status_words(names),
         "stage_entries": motion.blocks.pattern.nnz(),
         "stage_matrix": max(fronts.size, whole.size),
-        "front_room": max(sum(fronts.orders), model.size),
+        "front_room": max(sum(front.order for front in fronts.fronts), model.size),
         "interface_room": max(len(fronts.interface), 1),
         "most_motion_entries": max(len(part.entries) for parted in parteds.values() for part in parted.parts),
         "displacements": numbers(lengths.tolist()),
@@ -172,27 +181,22 @@ def _acceleration_table(model: Model) -> str:
 
 def _elimination_tables(fronts: Elimination, whole: Elimination) -> str:
     """Both orders; a scene with one front has but one."""
-    if len(fronts.members) == 1:
+    if len(fronts.fronts) == 1:
         return _elimination("WHOLE", ["BY_FRONTS", "AS_A_WHOLE"], whole)
     return _elimination("FRONT", ["BY_FRONTS"], fronts) + _elimination("WHOLE", ["AS_A_WHOLE"], whole)
 
 
 def _elimination(stem: str, names: Sequence[str], order: Elimination) -> str:
     """The tables of an order, and records of these names."""
-    lines = list[str]()
-    rows = list[str]()
-    for i, (members, touched) in enumerate(zip(order.members, order.touched, strict=True)):
-        lines += [table(f"{stem}_MEMBERS_{i}", members), table(f"{stem}_TOUCHED_{i}", touched)]
-        shared = f"{stem}_TOUCHED_{i}" if touched else "0"
-        rows.append(f"  {{{stem}_MEMBERS_{i}, {shared}, {len(members)}, {len(touched)}, {order.starts[i]}}}")
+    of_fronts, listed = front_tables(order.fronts, f"{stem}_")
+    lines = [of_fronts]
     of_entries = {"FRONTS": order.entry_fronts, "ROWS": order.entry_rows, "COLUMNS": order.entry_columns}
     lines += [table(f"{stem}_ENTRY_{word}", values) for word, values in of_entries.items()]
     lines.append(table(f"{stem}_INTERFACE", order.interface))
-    listed = ",\n".join(rows)
     lines.append(f"static const stage_front {stem}_FRONTS[] = {{\n{listed},\n}};\n")
     interface = f"{stem}_INTERFACE" if order.interface else "0"
     entries = ", ".join(f"{stem}_ENTRY_{word}" for word in of_entries)
-    counts = f"{len(order.members)}, {len(order.interface)}, {order.interface_start}"
+    counts = f"{len(order.fronts)}, {len(order.interface)}, {order.interface_start}"
     record = f"{{{stem}_FRONTS, {interface}, {entries}, {counts}}}"
     lines += [f"static const elimination {name} = {record};\n" for name in names]
     return "".join(lines)
