@@ -92,8 +92,8 @@ def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool
         SceneError: a rod has no mass, or contact is exact.
     """
     _check(model, name, moving)
-    dae = _dae(model, moving)
-    return AcadosExpressions(name, dae.x, dae.xdot, dae.u, dae.z, dae.p, dae.value)
+    expressions, _ = _dae(model, name, moving)
+    return expressions
 
 
 def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> list[ca.Function]:
@@ -104,8 +104,8 @@ def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool =
         SceneError: it is to move, and a rod has no mass.
     """
     _check(model, name, moving)
-    dae = _dae(model, moving)
-    blocks = {"fun": dae.value, **dae.slopes}
+    dae, slopes = _dae(model, name, moving)
+    blocks = {"fun": dae.f_impl_expr, **slopes}
     wanted = {
         "fun": ("fun",),
         "fun_jac_x_xdot_z": ("fun", "jac_x", "jac_xdot", "jac_z"),
@@ -153,36 +153,17 @@ def write_acados(
     return folder
 
 
-@dataclass(frozen=True)
-class _Dae:
-    """An implicit DAE in its symbols.
-
-    Attributes:
-        x: states.
-        xdot: their derivatives.
-        u: controls.
-        z: algebraic states.
-        p: parameters.
-        value: what is held at zero.
-        slopes: its derivatives with x, ẋ, u and z under the names that they have in acados' functions.
-    """
-
-    x: ca.SX
-    xdot: ca.SX
-    u: ca.SX
-    z: ca.SX
-    p: ca.SX
-    value: ca.SX
-    slopes: dict[str, ca.SX]
+Dae = tuple[AcadosExpressions, dict[str, ca.SX]]
+"""An implicit DAE, and its derivatives with x, ẋ, u and z under the names that they have in acados' functions."""
 
 
-def _dae(model: Model | RelaxedContact, moving: bool) -> _Dae:
+def _dae(model: Model | RelaxedContact, name: str, moving: bool) -> Dae:
     if isinstance(model, RelaxedContact):
-        return _dae_at_rest(model)
-    return _dae_in_motion(model) if moving else _dae_at_rest(model)
+        return _dae_at_rest(model, name)
+    return _dae_in_motion(model, name) if moving else _dae_at_rest(model, name)
 
 
-def _dae_at_rest(model: Model | RelaxedContact) -> _Dae:
+def _dae_at_rest(model: Model | RelaxedContact, name: str) -> Dae:
     count = model.inputs.size
     x = ca.SX.sym("x", count)
     xdot = ca.SX.sym("xdot", count)
@@ -199,10 +180,10 @@ def _dae_at_rest(model: Model | RelaxedContact) -> _Dae:
         "jac_z": ca.vertcat(ca.SX(count, model.size), by_z),
     }
     value = ca.vertcat(xdot - u, ca.cse(model.residual(*at)))
-    return _Dae(x, xdot, u, z, p, value, slopes)
+    return AcadosExpressions(name, x, xdot, u, z, p, value), slopes
 
 
-def _dae_in_motion(model: Model) -> _Dae:
+def _dae_in_motion(model: Model, name: str) -> Dae:
     places = differential_places(model)
     held = algebraic_places(model)
     count = model.inputs.size
@@ -241,7 +222,7 @@ def _dae_in_motion(model: Model) -> _Dae:
         "jac_u": ca.vertcat(ca.SX(size, count), by_rate, -one_input),
         "jac_z": ca.vertcat(ca.SX(size, z.numel()), stiffness @ held, ca.SX(count, z.numel())),
     }
-    return _Dae(x, xdot, u, z, p, value, slopes)
+    return AcadosExpressions(name, x, xdot, u, z, p, value), slopes
 
 
 def _check(given: Model | RelaxedContact, name: str, moving: bool) -> None:
