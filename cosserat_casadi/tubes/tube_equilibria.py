@@ -223,13 +223,13 @@ def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
     """Every equilibrium of tubes without loads, looked for with a model to begin with."""
     robot = model.robot
     while True:
-        search = _searched(model, at)
+        angles, settled = _searched(model, at)
         finer = TubeModel(robot, 2 * model.steps)
-        solutions = [_refined(model, finer, at, x) for x in search.angles]
+        solutions = [_refined(model, finer, at, x) for x in angles]
         # More steps would find the same ones again, and no others.
         resolved = all(solution.converged for solution in solutions)
         if resolved or finer.steps >= MOST_STEPS:
-            complete = search.settled and resolved and _is_whole(solutions)
+            complete = settled and resolved and _is_whole(solutions)
             by_energy = sorted(solutions, key=lambda solution: solution.energy)
             return TubeEquilibria(robot, tuple(by_energy), complete)
         model = finer
@@ -254,24 +254,15 @@ def _degree(determinants: Iterator[float]) -> int:
     return int(sum(np.sign(determinant) for determinant in determinants))
 
 
-@dataclass(frozen=True)
-class _Search:
-    """The end of a search of a model.
-
-    Attributes:
-        angles: at the tips of each equilibrium, shape (n,), rad.
-        settled: whether it ended by itself, and not because its work ran out.
-    """
-
-    angles: list[FloatArray]
-    settled: bool
+Search = tuple[list[FloatArray], bool]
+"""Angles at the tips of each equilibrium of a model, shape (n,), rad, and whether the search ended by itself."""
 
 
-def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
+def _searched(model: TubeModel, inputs: FloatArray) -> Search:
     """Look for every equilibrium of a model."""
     if model.tube_count == 1:
         # One tube does not twist.
-        return _Search([model.robot.rotations(inputs).copy()], settled=True)
+        return [model.robot.rotations(inputs).copy()], True
     if model.tube_count == PAIR:
         return _of_two_tubes(model, inputs)
     return _of_more_tubes(model, inputs)
@@ -316,13 +307,13 @@ class _Pair:
         return np.asarray(together - residual[0])
 
 
-def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
+def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> Search:
     pair = _Pair(model, inputs)
     readings, settled = _readings(pair)
     found: list[FloatArray] = []
     for before, after in itertools.pairwise(readings):
         found += [pair.tips(angle) for angle in _roots(pair, before, after)]
-    return _Search(found, settled)
+    return found, settled
 
 
 def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:
@@ -387,7 +378,7 @@ def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> floa
 # More tubes
 
 
-def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
+def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> Search:
     found: list[FloatArray] = []
     for points in GRIDS[model.tube_count]:
         before = len(found)
@@ -397,8 +388,8 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
                 found.append(end.x)
         determinants = (float(np.linalg.det(model.jacobian(x, inputs)[0].full())) for x in found)
         if len(found) == before and _degree(determinants) == 1:
-            return _Search(found, settled=True)
-    return _Search(found, settled=False)
+            return found, True
+    return found, False
 
 
 def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
