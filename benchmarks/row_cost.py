@@ -73,15 +73,15 @@ def drawn_parameters(model: Model) -> FloatArray:
 
 def microseconds(model: Model, library: RowLibrary) -> float:
     """Processor time of a row."""
-    arguments = [drawn_inputs(model)]
+    given = drawn_inputs(model)
     if model.parameters.size:
-        arguments.append(drawn_parameters(model))
-    results = library.solve(*arguments)
+        given = np.hstack([given, drawn_parameters(model)])
+    results = library.solve(given)
     assert np.all(results[:, 0] == 0), "a row has no equilibrium"
     best = np.inf
     for _ in range(REPEATS):
         began = time.process_time()
-        library.solve(*arguments)
+        library.solve(given)
         best = min(best, time.process_time() - began)
     return 1e6 * best / ROWS
 

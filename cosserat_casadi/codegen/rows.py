@@ -97,29 +97,24 @@ class RowLibrary:
     results: int
     in_lanes: bool = False
 
-    def solve(self, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs and of parameters.
+    def solve(self, given: FloatArray) -> FloatArray:
+        """Rows of results, shape (count, results), for rows of inputs with parameters behind them.
 
         Other threads run meanwhile. A row depends on its inputs alone, in exact contact on the rows before it too.
 
         Args:
-            inputs: shape (count, inputs).
-            parameters: shape (count, parameters); needed where there are any.
+            given: shape (count, inputs + parameters).
 
         Raises:
             ExportError: there is no C compiler, or it fails.
             MemoryError: there is none for the workspace.
         """
-        given = np.ascontiguousarray(inputs, dtype=np.float64)
-        if given.ndim != 2 or given.shape[1] != self.inputs:
-            raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
-        tables = [given]
-        if self.parameters:
-            wanted = (len(given), self.parameters)
-            p = np.ascontiguousarray(np.empty((0, 0)) if parameters is None else parameters, dtype=np.float64)
-            if p.shape != wanted:
-                raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
-            tables.append(p)
+        width = self.inputs + self.parameters
+        if given.ndim != 2 or given.shape[1] != width:
+            raise ValueError(f"inputs and parameters must have shape (count, {width}), got {given.shape}")
+        tables = [np.ascontiguousarray(own, dtype=np.float64) for own in np.split(given, [self.inputs], axis=1)]
+        if not self.parameters:
+            del tables[1]
         results = np.empty((len(given), self.results))
         if self.compiled()[f"{NAME}_rows"](len(given), *map(pointer, tables), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.errors import SceneError
+from cosserat_casadi.codegen.contact.checks import check_contact
+from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.parameters import parameter_layout
-from cosserat_casadi.scene import scene_from_dict
+from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.sweeps.sampling import column_ends, farthest_rows
 from cosserat_casadi.sweeps.scratch import Scratch
 
@@ -23,6 +24,11 @@ COMPILED_FROM = 1000
 To generate and compile one took 13 s for a rod of 12 unknowns where building its model in Python took 0.07 s and a
 solve there 5 to 20 ms: the two break even at about a thousand rows. Both costs grow with the size of the equations.
 """
+
+IN_CONTACT_FROM = 512
+"""Rows of one scene in exact contact from which a library is compiled for them. To find its contacts, to generate and
+to compile it took 60 to 90 s of processor time for a rod of 15 unknowns, and a row in Python 0.25 s, in C 1 ms
+(``benchmarks/contact_rows.py``)."""
 
 
 def argument_columns(
@@ -37,8 +43,10 @@ def argument_columns(
         values: of the table, shape (rows, columns).
         scratch: where they lie.
     """
-    # Rows of scenes with obstacles, and of tubes, are not compiled.
-    if len(values) < COMPILED_FROM or tables.get("obstacles") or tables.get("tubes"):
+    in_contact = any("width" not in obstacle for obstacle in tables.get("obstacles", []))
+    compiled_from = IN_CONTACT_FROM if in_contact else COMPILED_FROM
+    # Rows of tubes are not compiled.
+    if len(values) < compiled_from or tables.get("tubes"):
         return []
     # A column of one value is a constant, which costs nothing.
     low, high = column_ends(values, scratch)
@@ -47,7 +55,7 @@ def argument_columns(
     rest = [k for k in chosen if k not in arguments]
     if rest:
         _, counts = np.unique(values[:, rest], axis=0, return_counts=True)
-        if counts.min() < COMPILED_FROM:
+        if counts.min() < compiled_from:
             return []
     names = [columns[k] for k in arguments]
     if not names or not accepts_parameters(tables, names):
@@ -58,7 +66,17 @@ def argument_columns(
     except SceneError:
         # A load may be bound to where the unloaded rod was.
         return []
-    return arguments
+    return arguments if touches_in_c(scene) or not scene.touches_exactly else []
+
+
+def touches_in_c(scene: Scene) -> bool:
+    """Whether a scene is in exact contact, and C knows all that it has."""
+    try:
+        check_contact(scene, {})
+    except ExportError:
+        return False
+    # Errors of rods that carry bodies are those of sections between, of which C knows nothing.
+    return scene.touches_exactly and not scene.bodies
 
 
 def accepts_parameters(tables: Mapping[str, Any], names: Sequence[str]) -> bool:

@@ -18,7 +18,7 @@ def rows_with_potential(variants: Variants, work: Sequence[Chunk], scratch: Scra
     """Which rows have loads with a potential, shape (rows,).
 
     Whether they have depends on which inputs and parameters are zero, and on nothing else of them: one row of each
-    pattern is asked about. Rows that are solved in Python have been judged there, and count as having one.
+    pattern is asked about. Chunks that are solved in Python have been judged there, and count as having one.
 
     Args:
         variants: scenes and inputs of the rows.
@@ -27,7 +27,9 @@ def rows_with_potential(variants: Variants, work: Sequence[Chunk], scratch: Scra
     """
     judged: npt.NDArray[np.bool_] = scratch.array((len(variants.inputs),), np.bool_)
     judged[:] = True
-    compiled = dict.fromkeys(variant for chunk in work if chunk.compiled for variant, _ in chunk.pieces)
+    compiled = dict.fromkeys(
+        variant for chunk in work if chunk.compiled or chunk.in_contact for variant, _ in chunk.pieces
+    )
     for variant in compiled:
         rows_of_variant = variants.entries[variant].rows
         verdicts: dict[bytes, bool] = {}

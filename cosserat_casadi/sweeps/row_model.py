@@ -10,7 +10,12 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.rows import JUDGED, row_results
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_judgement import judged
+from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
+from cosserat_casadi.equilibrium.contact.contact_state import with_contacts
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
+from cosserat_casadi.equilibrium.judge import correct
 from cosserat_casadi.equilibrium.solution import Contact, Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import SceneError
@@ -19,6 +24,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.load_assembly import check_loads
+from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.scene import Scene, parse_scene
 from cosserat_casadi.sweeps.outcome_table import ENDINGS
 from cosserat_casadi.tubes.robot import robot_of
@@ -43,7 +49,7 @@ class RowModel:
     estimate_errors: bool = False
 
     def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
+        """Rows of results, shape (count, results), for rows of inputs, with parameters behind them if there are any."""
         scene = _scene(self.scene)
         columns = row_results(scene, estimate_errors=self.estimate_errors, stability=self.stability)
         width = len(columns)
@@ -66,9 +72,16 @@ class RowModel:
         for row in inputs:
             # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
             # that takes too long, and the contacts of the row before are tried first; a chunk always has the same rows.
-            values = model.inputs.unpack(row)
-            solution = solve(model, values, start=near, estimate_error=self.estimate_errors)
-            if model.scene.touches_exactly and solution.converged:
+            values, p = np.split(row, [model.inputs.size])
+            solution = solve(
+                model,
+                model.inputs.unpack(values),
+                parameters=model.parameters.unpack(p),
+                start=near,
+                estimate_error=self.estimate_errors,
+            )
+            # With other parameters what rods touch may be elsewhere, and the way there through it.
+            if model.scene.touches_exactly and solution.converged and not p.size:
                 near = solution
             yield solution
 
@@ -76,9 +89,12 @@ class RowModel:
         """The same equilibrium with the unknowns that it has under the scaling of the measure."""
         if isinstance(solution, TubeSolution):
             return solution
-        measured = _measured(self.scene, self.measure) if self.measure else None
-        # What rods touch is among the unknowns of a solution in contact: those of the measure are others.
-        if measured is None or not solution.converged or solution.model.scene.touches_exactly:
+        if not self.measure or not solution.converged:
+            return solution
+        if solution.model.scene.touches_exactly:
+            return solution if self.measure == self.scene else _in_units_of(_scene(self.measure), solution)
+        measured = _measured(self.scene, self.measure)
+        if measured is None:
             return solution
         again = solve(measured, solution.inputs, start=solution.x, estimate_error=False)
         if not again.converged:
@@ -170,11 +186,28 @@ def contact_numbers(contacts: Sequence[Contact]) -> list[float]:
     return [float(len(contacts)), first, last, *_resultant(contacts)]
 
 
+def _in_units_of(measure: Scene, solution: Solution) -> Solution:
+    """An equilibrium in contact with the eigenvalue that it has under the scaling of another scene."""
+    unknown = replace(solution, smallest_eigenvalue=None)
+    found = equilibrium_in(solution)
+    touched = with_contacts(measure, found.state, found.placed.modes)
+    scaling = build(touched, Grids(solution.model.discretisation).discretisation(touched))
+    model = _scaled(solution.model.scene, scaling)
+    corrected = None if model is None else correct(model, solution.inputs, solution.x, NewtonSettings())
+    if model is None or corrected is None:
+        return unknown
+    again = equilibrium_in(replace(unknown, model=model, x=corrected.x))
+    return judged(again, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
+
+
 @lru_cache(maxsize=2)
 def _measured(scene: str, measure: str) -> Model | None:
     """The model of a scene under the scaling of another; None where its loads or its places do not allow that."""
-    own = parse_scene(scene)
-    scaling = _model(measure)
+    return _scaled(parse_scene(scene), _model(measure))
+
+
+def _scaled(own: Scene, scaling: Model) -> Model | None:
+    """The same of a model."""
     if any(len(element_ends(own, rod.name)) != len(element_ends(scaling.scene, rod.name)) for rod in own.rods):
         return None
     discrete = with_numbers(scaling.discrete, own)

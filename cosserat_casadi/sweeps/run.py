@@ -26,7 +26,7 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM
 from cosserat_casadi.sweeps.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweeps.cluster import Cluster
 from cosserat_casadi.sweeps.device_rows import DEVICE_ROWS, device_problems, device_rows
@@ -43,12 +43,10 @@ from cosserat_casadi.sweeps.table import Table, read_table, table_of
 from cosserat_casadi.sweeps.variants import Variants, variants_of
 from cosserat_casadi.sweeps.work import (
     COMPILED_ROWS,
-    IN_CONTACT_FROM,
     MODELLED_ROWS,
     Answer,
     Chunk,
     InContact,
-    Parametrised,
     Part,
     chunks,
 )
@@ -522,20 +520,19 @@ def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
     model = build(choice.scene(entry.scene))
     if plan.device is not None:
         return device_rows(model, plan.device, estimate_errors=plan.estimate_errors)
-    library = row_library(
+    return row_library(
         model,
         estimate_errors=plan.estimate_errors,
         stability=plan.stability,
         lanes=len(entry.rows) >= IN_LANES_FROM,
     )
-    return Parametrised(library) if plan.variants.arguments else library
 
 
 def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:
     """The library of a variant in exact contact; Python alone where C does not know what the scene has."""
     entry = plan.variants.entries[variant]
-    inputs = plan.variants.inputs[entry.rows]
-    cases = inputs[representative_rows(inputs, plan.samples, plan.scratch)]
+    given = plan.variants.given(entry.rows)
+    cases = given[representative_rows(given, plan.samples, plan.scratch)]
     in_python = _row_model(plan, choice, variant)
     try:
         model = build(choice.scene(entry.scene))
@@ -549,7 +546,7 @@ def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """Solver of a chunk in Python: a model for each variant that it has rows of."""
-    return [(_row_model(plan, choice, variant), plan.variants.inputs[rows]) for variant, rows in chunk.pieces]
+    return [(_row_model(plan, choice, variant), plan.variants.given(rows)) for variant, rows in chunk.pieces]
 
 
 def _row_model(plan: Plan, choice: Choice, variant: int) -> RowModel:

@@ -9,23 +9,15 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.rows import RowLibrary
-from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene import Scene
-from cosserat_casadi.sweeps.arguments import COMPILED_FROM
+from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM, touches_in_c
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import from_neighbour_to_neighbour
 from cosserat_casadi.sweeps.variants import Variants
 
 COMPILED_ROWS = 512
 """Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""
-
-IN_CONTACT_FROM = 512
-"""Rows of one scene in exact contact from which a library is compiled for them. To find its contacts, to generate and
-to compile it took 60 to 90 s of processor time for a rod of 15 unknowns, and a row in Python 0.25 s, in C 1 ms
-(``benchmarks/contact_rows.py``)."""
 
 MODELLED_ROWS = 16
 """Rows of a chunk that is solved in Python."""
@@ -35,20 +27,8 @@ class Answer(Protocol):
     """Solves rows."""
 
     def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs."""
+        """Rows of results for rows of inputs, with parameters behind them where there are any."""
         ...
-
-
-@dataclass(frozen=True)
-class Parametrised:
-    """A library that takes parameters, as one that takes rows of inputs with parameters behind them."""
-
-    library: RowLibrary
-
-    def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs and parameters."""
-        split = self.library.inputs
-        return self.library.solve(inputs[:, :split], inputs[:, split:])
 
 
 @dataclass(frozen=True)
@@ -64,7 +44,7 @@ class InContact:
     model: RowModel
 
     def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs, which are solved from neighbour to neighbour."""
+        """Rows of results for rows of inputs and parameters, which are solved from neighbour to neighbour."""
         order = from_neighbour_to_neighbour(inputs)
         results = np.empty((len(inputs), self.library.results))
         results[order] = self.library.solve(inputs[order])
@@ -118,7 +98,7 @@ def chunks(
     modelled = []
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
-        in_contact = len(entry.rows) >= IN_CONTACT_FROM and _touches_in_c(entry.scene)
+        in_contact = len(entry.rows) >= IN_CONTACT_FROM and touches_in_c(entry.scene)
         # Tubes choose their steps row by row.
         if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
@@ -130,16 +110,6 @@ def chunks(
         pieces = _pieces(modelled[first : first + MODELLED_ROWS])
         listed.append(Chunk(len(listed), tuple(pieces), compiled=False))
     return listed
-
-
-def _touches_in_c(scene: Scene) -> bool:
-    """Whether a scene is in exact contact, and C knows all that it has."""
-    try:
-        check_contact(scene, {})
-    except ExportError:
-        return False
-    # Errors of rods that carry bodies are those of sections between, of which C knows nothing.
-    return scene.touches_exactly and not scene.bodies and not scene.parameters
 
 
 def solve_parts(parts: Sequence[Part]) -> FloatArray:

@@ -201,8 +201,9 @@ def test_rows_of_a_sweep_vs_rows_in_c(monkeypatch: pytest.MonkeyPatch) -> None:
     inputs = np.outer(np.linspace(0.3, 1.2, 5), model.inputs.pack())
     inputs[3] = np.nan
     p = np.linspace(0.8, 1.2, 5)[:, None]
-    expected = row_library(model, estimate_errors=True).solve(inputs, p)
-    rows = device_rows(model, HOST, estimate_errors=True).solve(np.hstack([inputs, p]))
+    given = np.hstack([inputs, p])
+    expected = row_library(model, estimate_errors=True).solve(given)
+    rows = device_rows(model, HOST, estimate_errors=True).solve(given)
     assert_allclose(rows, expected, rtol=1e-12, atol=1e-14)
     assert np.isnan(rows[3, 3:]).all()
 

@@ -1,7 +1,8 @@
 """Which arrangements of contacts a library in C holds: those that its scene meets, and no contact.
 
 The scene is solved at its own inputs, and followed from there to each load case, one after the other, along straight
-lines of inputs, as the solver in C moves them too. What is met on the way is collected.
+lines of inputs, as the solver in C moves them too, each at the parameters of its load case. What is met on the way is
+collected.
 """
 
 from __future__ import annotations
@@ -110,7 +111,7 @@ def chosen_arrangements(
 
     Args:
         model: of a scene with obstacles.
-        load_cases: stacked inputs, a row for each case, shape (k, m).
+        load_cases: stacked inputs, a row for each case, shape (k, m), or with parameters behind them, (k, m + p).
         estimate_errors: whether the library estimates the errors of its answers.
         leave_out: whether load cases without an equilibrium are left out, instead of refused.
         stability: whether the library says which solutions are stable.
@@ -120,8 +121,10 @@ def chosen_arrangements(
             inside a line of contact.
     """
     parameters = model.parameters
-    # All is found for the scene's own numbers; equations that take parameters are written at the end.
-    scene = without_contacts(model.scene).model_copy(update={"parameters": ()})
+    named = without_contacts(model.scene)
+    theta = parameters.pack()
+    # Contacts are found for numbers; equations that take parameters are written at the end.
+    scene = named.model_copy(update={"parameters": ()})
     grids = Grids(model.discretisation)
     layout = input_layout(scene)
     given = layout.pack(None)
@@ -133,15 +136,19 @@ def chosen_arrangements(
     free = build(scene, grids.discretisation(scene))
     before = given
     for number, row in enumerate(np.zeros((0, layout.size)) if load_cases is None else load_cases, start=1):
+        inputs, own_theta = np.split(row, [layout.size])
+        if own_theta.size:
+            own_scene = parameters.set_in(named, parameters.unpack(own_theta)).baked()
+            free = build(own_scene, grids.discretisation(own_scene))
         # Where a path ends early, at a fold or a change that it does not find, the load case is solved all the same.
-        case = solve_contact(scene, grids, layout.unpack(row))
+        case = solve_contact(free.scene, grids, layout.unpack(inputs))
         if leave_out and not case.converged:
             continue
         _check(case, f"load case {number}")
-        if not np.array_equal(row, before):
-            met.add_path(follow_contact_path(free, free.inputs.names[0], before, row - before))
+        if not np.array_equal(inputs, before):
+            met.add_path(follow_contact_path(free, free.inputs.names[0], before, inputs - before))
         met.add(state_in(case.model.scene))
-        before = row
+        before = inputs
     met.add(ContactState(()))
     _refuse_lines_from_the_base(list(met.states.values()))
     _refuse_split_lines(list(met.states.values()))
@@ -150,7 +157,6 @@ def chosen_arrangements(
         problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
         raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
     start = list(met.states).index(met.key(first))
-    named, theta = without_contacts(model.scene), parameters.pack()
     answers, finer = (
         [ContactEquations(named, given, own_grids, state, theta) for state in met.states.values()]
         for own_grids in (grids, richer(grids, scene))

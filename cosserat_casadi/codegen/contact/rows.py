@@ -30,10 +30,10 @@ def contact_row_library(
     """Sources of the solver of a scene in exact contact with a function for rows.
 
     Args:
-        model: on the discretisation of all rows, without parameters.
-        load_cases: stacked inputs, a row for each case, shape (k, m): the library knows the arrangements of contacts
-            that it meets on the way from the scene's own inputs to each of them that has an equilibrium, one after
-            the other.
+        model: on the discretisation of all rows.
+        load_cases: stacked inputs with parameters behind them, a row for each case, shape (k, m): the library knows the
+            arrangements of contacts that it meets on the way from the scene's own inputs to each of them that has an
+            equilibrium, one after the other.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
         stability: whether they end with :data:`cosserat_casadi.codegen.rows.STABILITY`.
 
@@ -47,7 +47,7 @@ def contact_row_library(
     names = scene_names(NAME, without_contacts(model.scene))
     files = contact_files(model, chosen, names, None)
     files[f"{NAME}_rows.c"] = _rows_source(chosen, names, columns)
-    return RowLibrary(to_compile(files), model.inputs.size, 0, len(columns))
+    return RowLibrary(to_compile(files), model.inputs.size, model.parameters.size, len(columns))
 
 
 def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
@@ -71,6 +71,7 @@ def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
         "pair_entries": ", ".join(entries),
         "estimates_errors": int(estimate in columns),
         "estimate": columns.index(estimate) if estimate in columns else 0,
+        "with_parameters": chosen.parameters.size > 0,
         "stability": chosen.judges_stability,
         "verdict": columns.index(STABILITY[0]) if chosen.judges_stability else 0,
     }
