@@ -8,7 +8,7 @@ section A.3; the Gaussian approximation of Laplace.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -124,7 +124,21 @@ def estimate_model(
         shared=shared,
         consistency=_consistency(found, told.determined, table, layout, shared, sensors),
     )
-    return replace(result, warnings=tuple(_remarks(result, known, drawn)))
+    remarks = list(_remarks(result, known, drawn))
+    if isinstance(solver, RowsInContact) and drawn is None:
+        report("Looking for contacts that change", 0, 0)
+        remarks += _on_contacts(result.cases, solver.contact_changes(table, inputs[:, indices], covariance))
+    return replace(result, warnings=tuple(remarks))
+
+
+def _on_contacts(cases: Sequence[str], changes: Mapping[int, str]) -> Iterator[str]:
+    """A remark on contacts that change next to estimates, so that deviations to one side are others."""
+    if changes:
+        rows = named([f"{cases[row]} ({change})" for row, change in changes.items()])
+        yield (
+            f"Within a standard deviation contacts come, go or change in {rows}: deviations there are of changes that "
+            "leave contacts as they are. Draws see both sides: give [estimation] draws."
+        )
 
 
 def _units(entries: Sequence[UnknownEntry]) -> tuple[str, ...]:

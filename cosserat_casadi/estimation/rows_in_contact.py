@@ -57,6 +57,11 @@ class _State:
     z_by_numbers: FloatArray
 
 
+def _kinked(state: _State, other: _State) -> npt.NDArray[np.bool_]:
+    """Whether contacts, and with them derivatives, differ between two states, shape (1,)."""
+    return np.array([state.case.touches_otherwise(other.case)])
+
+
 @dataclass(frozen=True)
 class _Row:
     """One row as a problem of least squares.
@@ -146,6 +151,28 @@ class RowsInContact:
         rows = [self._estimated(cases.part(slice(i, i + 1)), known) for i in range(len(cases.inputs))]
         return Estimates.joined(rows)
 
+    def contact_changes(self, cases: MeasuredCases, numbers: FloatArray, covariance: FloatArray) -> dict[int, str]:
+        """What comes, goes or changes within a standard deviation of estimates, in words, by the number of the row.
+
+        Args:
+            cases: all rows.
+            numbers: their estimates, shape (cases, k); NaN where there is none.
+            covariance: of the first j of them, the others held, shape (cases, j, j).
+        """
+        changes = {}
+        for i in np.flatnonzero(np.isfinite(numbers).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))).tolist():
+            row = _Row(self, cases.part(slice(i, i + 1)))
+            state = row.first(numbers[i])
+            squares, axes = np.linalg.eigh(covariance[i])
+            deviations = np.zeros((len(squares), numbers.shape[1]))
+            deviations[:, : len(squares)] = np.sqrt(np.maximum(squares, 0.0))[:, None] * axes.T
+            for step in [*deviations, *-deviations]:
+                beside = None if state is None else row.at(numbers[i] + step, np.zeros((1, 0)), state)
+                if state is not None and beside is not None and state.case.touches_otherwise(beside.case):
+                    changes[i] = state.case.difference(beside.case)
+                    break
+        return changes
+
     def _estimated(self, table: MeasuredCases, known: Knowledge) -> Estimates:
         row = _Row(self, table)
         numbers = np.clip(table.inputs[0, self.indices], known.lower, known.upper)
@@ -157,8 +184,8 @@ class RowsInContact:
         limits = Limits(known.lower, known.upper, known.mean, known.weight, np.zeros(len(numbers), dtype=bool))
         none = np.zeros(0)
         nothing = Limits(none, none, none, none, np.zeros(0, dtype=bool))
-        fit = ArrowFit(row, limits, nothing).run(numbers, state.own, state)
-        ending = "found" if fit.outcome is FitOutcome.CONVERGED else "not_found"
+        fit = ArrowFit(row, limits, nothing, kinked=_kinked).run(numbers, state.own, state)
+        ending = "found" if fit.outcome in (FitOutcome.CONVERGED, FitOutcome.AT_KINK) else "not_found"
         ended = self._ended(ending, table, fit.shared, fit.iterations)
         by_numbers, residual = fit.state.by_numbers, fit.state.residual
         ended.cost[0] = fit.cost

@@ -8,6 +8,7 @@ its derivatives jump: they are those of the contacts on this side.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -60,6 +61,22 @@ class CaseInContact:
     def solution(self) -> Solution:
         """The equilibrium with its contacts by name and its stability."""
         return judged(self.found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
+
+    def touches_otherwise(self, other: CaseInContact) -> bool:
+        """Whether another equilibrium has other contacts, so that derivatives jump between both."""
+        return self.found.state.signature != other.found.state.signature
+
+    def difference(self, other: CaseInContact) -> str:
+        """What touches in one of two equilibria alone, or in another way, in words; empty of nothing."""
+        if not self.touches_otherwise(other):
+            return ""
+        kinds = [
+            Counter((touch.owner, touch.obstacle, touch.kind) for touch in own.touches)
+            for own in (self.found.state, other.found.state)
+        ]
+        alone = sorted({*(kinds[0] - kinds[1]), *(kinds[1] - kinds[0])})
+        places = [f"a {kind} of {owner!r} on {obstacle!r}" for owner, obstacle, kind in alone]
+        return " and ".join(places) if places else "a contact that reaches the tip"
 
 
 @dataclass(frozen=True)
@@ -269,6 +286,16 @@ class ContactMisfit(Misfit):
             if sentence:
                 sentences.append(f"{where}: {sentence} Intervals are of changes that leave contacts as they are.")
         return sentences
+
+    def kinked(self, state: MisfitState, other: MisfitState) -> Flags:
+        """Cases with other contacts in one state than in the other, shape (cases,)."""
+        pairs = zip(_settled(state.point), _settled(other.point), strict=True)
+        return np.array([case.touches_otherwise(beside) for case, beside in pairs])
+
+    def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
+        """What touches in one state alone, in words."""
+        triples = zip(self.cases, _settled(state.point), _settled(other.point), strict=True)
+        return [f"{own.where}: {case.difference(beside)}" for own, case, beside in triples if case.difference(beside)]
 
     def _told(self, state: MisfitState) -> Iterator[tuple[str, Solution]]:
         """Each case with its equilibrium."""

@@ -38,6 +38,7 @@ class Ending:
         unresolved: cases that the nodes do not resolve.
         beyond: cases that are beyond a limit of a path or a law, and which limit that is.
         joint_modes: measured modes of one frequency.
+        kinks: contacts that come or go, or change, where the search ended.
         warnings: sentences on what looks wrong.
     """
 
@@ -48,6 +49,7 @@ class Ending:
     unresolved: list[str] = field(default_factory=list)
     beyond: list[tuple[str, BeyondLimit]] = field(default_factory=list)
     joint_modes: list[JointModes] = field(default_factory=list)
+    kinks: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     def without_equilibrium(self, *, stopped: bool) -> Identification:
@@ -140,8 +142,8 @@ class Ending:
 
     def _outcome(self, fit: Fit[MisfitState], known: Statistics) -> tuple[str, str]:
         """How it ended, in a word and in sentences."""
-        if fit.outcome is not FitOutcome.CONVERGED:
-            return fit.outcome.name.lower(), f"Not found: {fit.outcome.value}"
+        if fit.outcome not in (FitOutcome.CONVERGED, FitOutcome.AT_KINK):
+            return fit.outcome.name.lower(), f"Not found: {fit.outcome.value}{self._unfollowed}"
         if self.unresolved:
             cases = named(self.unresolved)
             return "unresolved", f"Not found: the nodes do not resolve the rods in {cases}; allow more of them."
@@ -158,9 +160,21 @@ class Ending:
         numbers = counted(len(fit.state.residual), "number")
         return "converged", f"Found: {unknowns} from {numbers}."
 
+    @property
+    def _unfollowed(self) -> str:
+        """What to do where the search ended beside contacts that change; nothing where none do."""
+        if not self.kinks:
+            return ""
+        return f" Contacts change there ({named(self.kinks)}): begin nearer to the answer, or leave these cases out."
+
     def _remarks(self, found: Identification) -> list[str]:
         """Remarks on the fit, for the user."""
         remarks = []
+        if found.converged and self.kinks:
+            remarks.append(
+                f"The misfit is least just where contacts come, go or change: {named(self.kinks)}. Its derivatives "
+                "jump there, and intervals are of changes to one side: measure where they press, or nothing touches."
+            )
         rms = found.rms()
         if rms is not None and rms > POOR:
             remarks.append(

@@ -21,7 +21,7 @@ from cosserat_casadi.identification.misfit import Misfit, MisfitState, inputs_of
 from cosserat_casadi.identification.statistics import NoiseFrom, Statistics, statistics
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.sections import sizes_of
-from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, ArrowStep, Fit, Limits
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, ArrowStep, Fit, FitOutcome, Limits
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.tubes.tube_functions import AnyModel
@@ -130,7 +130,10 @@ class Task:
         ending.unstable += misfit.unstable(fit.state)
         ending.unresolved += misfit.unresolved(fit.state)
         ending.beyond += misfit.beyond_limits(fit.state)
-        ending.warnings += misfit.marginal(fit.state)
+        if fit.beyond is not None and fit.outcome is not FitOutcome.CONVERGED:
+            ending.kinks += misfit.at_kink(fit.state, fit.beyond)
+        else:
+            ending.warnings += misfit.marginal(fit.state)
         found = ending.concluded(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
         if not misfit.motions.times:
             return found
@@ -221,7 +224,7 @@ class Task:
 
     def _arrow_fit(self, misfit: Misfit, shared: Limits | None = None) -> ArrowFit[MisfitState]:
         limits = self.layout.shared_limits if shared is None else shared
-        return ArrowFit(misfit, limits, self.layout.own_limits, self.loss)
+        return ArrowFit(misfit, limits, self.layout.own_limits, self.loss, kinked=misfit.kinked)
 
     def _best(self, misfit: Misfit, first: MisfitState) -> tuple[Fit[MisfitState], int]:
         """The best fit of all starts, and how many of them ended there."""

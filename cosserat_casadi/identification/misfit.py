@@ -164,6 +164,14 @@ class Misfit:
         """Sentences on contacts that the changes of the unknowns to one side alone meet."""
         return []
 
+    def kinked(self, state: MisfitState, other: MisfitState) -> Flags:
+        """Cases whose derivatives jump between two states, as they do where contacts change, shape (cases,)."""
+        return np.zeros(len(self.cases), dtype=bool)
+
+    def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
+        """What changes in these cases, in words."""
+        return []
+
     def unstable(self, state: MisfitState) -> list[str]:
         """Cases whose equilibrium is unstable, where that has a meaning."""
         flags = self.equilibria.unstable(state.point)

@@ -6,6 +6,9 @@ complement of the normal equations without their squared condition; the remainin
 J. J. Moré, *The Levenberg–Marquardt algorithm*, Lecture Notes in Mathematics 630, 1978 (scaling by the columns); H. B.
 Nielsen, *Damping parameter in Marquardt's method*, DTU 1999 (damping); C. Kanzow, N. Yamashita, M. Fukushima, J.
 Comput. Appl. Math. 172, 2004 (projection on bounds).
+
+Where derivatives jump between a state and the one that a step leads to, a step that fails is followed by one along the
+kink (numerics/kinks.py). Where none along it lessens the sum, and both sides rise from it, the sum is least.
 """
 
 from __future__ import annotations
@@ -20,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.kinks import kink_row
 from cosserat_casadi.numerics.robust_loss import Loss
 
 FIRST_DAMPING = 1e-3
@@ -45,6 +49,9 @@ MOST_SETS = 100
 
 ROUNDING = 1e-9
 """Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
+
+MEETING = 1e-4
+"""Difference of both sides of a kink, relative to one more than half the sum of squares, up to which it is known."""
 
 
 class FitState(Protocol):
@@ -129,6 +136,7 @@ class FitOutcome(Enum):
     """How a fit ends."""
 
     CONVERGED = "No step lessens the misfit any more."
+    AT_KINK = "The misfit is least where its derivatives jump."
     MAX_ITERATIONS = "The iterations ran out before the misfit was least."
     STALLED = "No step that can be followed lessens the misfit, though its gradient is not zero."
 
@@ -160,6 +168,7 @@ class Fit(Generic[StateType]):
         cost: half the sum of what residuals and priors cost.
         iterations: steps tried.
         outcome: how it ended.
+        beyond: the state on the other side of the last kink that steps have met; None where they met none.
     """
 
     shared: FloatArray
@@ -168,6 +177,7 @@ class Fit(Generic[StateType]):
     cost: float
     iterations: int
     outcome: FitOutcome
+    beyond: StateType | None = None
 
 
 @dataclass
@@ -303,6 +313,31 @@ class ArrowStep:
             shared_held=shared_held,
             own_held=own_held,
         )
+
+    def along_kinks(self, other: ArrowStep, changes: Pair, scales: Pair, blocks: npt.NDArray[np.bool_]) -> ArrowStep:
+        """The problem with a row for each kink that parts it from another one, which keeps steps on the kink.
+
+        Args:
+            other: on the other side.
+            changes: from the unknowns here to those there.
+            scales: sizes of the derivatives by the unknowns, shapes (n,) and (k,).
+            blocks: which of them have a kink in between, shape (blocks,).
+        """
+        n, k = self.sizes
+        rows = []
+        for block, is_kinked in enumerate(blocks):
+            span = slice(self.offsets[block], self.offsets[block + 1])
+            here, there = (
+                np.hstack([own.residual[span, None], own.by_shared[span], own.by_own[span]]) for own in (self, other)
+            )
+            rows.append(here)
+            if is_kinked:
+                change = np.concatenate([changes[0], changes[1][block, :k]])
+                rows[-1] = np.vstack([here, kink_row(here, there, change, np.concatenate(scales))])
+        whole = np.vstack(rows)
+        offsets = np.cumsum([0, *map(len, rows)])
+        by_shared, by_own = np.split(whole[:, 1:], [n], axis=1)
+        return replace(self, residual=whole[:, 0], by_shared=by_shared, by_own=by_own, offsets=offsets)
 
     def decrease(self, shared: FloatArray, own: FloatArray) -> float:
         """How much half the sum of squares falls, by the linear model, where the unknowns change."""
@@ -455,6 +490,8 @@ class _Search(Generic[StateType]):
         cost: half the sum of all that residuals and priors cost.
         damping: relative to the squares of the columns.
         growth: factor on the damping where the next step fails.
+        along: damping of steps along kinks.
+        beyond: the state on the other side of the last kink that steps have met; None where they met none.
         shared_scale: largest norms of the columns so far, shape (n,).
         own_scale: likewise, shape (k,).
     """
@@ -467,6 +504,19 @@ class _Search(Generic[StateType]):
     own_scale: FloatArray
     damping: float = FIRST_DAMPING
     growth: float = 2.0
+    along: float = FIRST_DAMPING
+    beyond: StateType | None = None
+
+    @property
+    def scales(self) -> Pair:
+        """Scales of the unknowns; what no datum sees has the scale 1."""
+        shared = np.where(self.shared_scale > 0, self.shared_scale, 1.0)
+        return shared, np.where(self.own_scale > 0, self.own_scale, 1.0)
+
+    def take(self, shared: FloatArray, own: FloatArray, state: StateType, cost: float) -> None:
+        """Go on from another state."""
+        self.shared, self.own, self.state, self.cost = shared, own, state, cost
+        self.growth = 2.0
 
 
 @dataclass(frozen=True)
@@ -479,6 +529,7 @@ class ArrowFit(Generic[StateType]):
         own: limits of the unknowns of the blocks, each of shape (k,), the same for all blocks.
         loss: what residuals cost.
         settings: limits of the search.
+        kinked: blocks whose derivatives jump between two states, shape (blocks,); by default none.
     """
 
     problem: BlockResiduals[StateType]
@@ -486,6 +537,7 @@ class ArrowFit(Generic[StateType]):
     own: Limits
     loss: Loss = field(default_factory=Loss)
     settings: FitSettings = field(default_factory=FitSettings)
+    kinked: Callable[[StateType, StateType], npt.NDArray[np.bool_]] | None = None
 
     def run(
         self,
@@ -519,7 +571,7 @@ class ArrowFit(Generic[StateType]):
             elif isinstance(ended, FitOutcome):
                 outcome = ended
                 break
-        return Fit(search.shared, search.own, search.state, search.cost, tried, outcome)
+        return Fit(search.shared, search.own, search.state, search.cost, tried, outcome, search.beyond)
 
     def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> ArrowStep:
         """The problem in the changes of the unknowns, its rows weighted by the loss."""
@@ -560,10 +612,7 @@ class ArrowFit(Generic[StateType]):
 
     def _try_step(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool | None:
         """Try a step; None where it was taken, an outcome where the search ends, False where it failed."""
-        root = np.sqrt(search.damping)
-        shared_damping = root * np.where(search.shared_scale > 0, search.shared_scale, 1.0)
-        own_damping = root * np.where(search.own_scale > 0, search.own_scale, 1.0)
-        shared, own = self._stepped(search, arrow, shared_damping, own_damping)
+        shared, own = self._stepped(search, arrow, search.damping)
         predicted = arrow.decrease(shared - search.shared, own - search.own)
         if predicted <= self._least_decrease(search):
             return self._ended(search, arrow)
@@ -572,25 +621,69 @@ class ArrowFit(Generic[StateType]):
             cost = self._cost(shared, own, state)
             gain = (search.cost - cost) / predicted
             if gain > SUFFICIENT:
-                search.shared, search.own, search.state, search.cost = shared, own, state, cost
+                search.take(shared, own, state, cost)
                 search.damping *= max(0.1, 1 - (2 * gain - 1) ** 3)
                 search.damping = max(search.damping, 1e-15)
-                search.growth = 2.0
                 return None
+            if self.kinked is not None:
+                blocks = self.kinked(search.state, state)
+                ended = self._try_along(search, arrow, (shared, own), state, blocks) if np.any(blocks) else False
+                if ended is not False:
+                    return ended
         elif search.damping < BACK_OFF * LARGEST_DAMPING:
             # Far beyond what the linear model can say: come back in fewer tries.
             search.damping *= BACK_OFF
         return self._more_damping(search, arrow)
 
-    def _stepped(
-        self, search: _Search[StateType], arrow: ArrowStep, shared_damping: FloatArray, own_damping: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def _try_along(
+        self,
+        search: _Search[StateType],
+        arrow: ArrowStep,
+        there: Pair,
+        beyond: StateType,
+        blocks: npt.NDArray[np.bool_],
+    ) -> FitOutcome | bool | None:
+        """Try a step along kinks, of which a state is known on the other side; as :meth:`_try_step`.
+
+        Args:
+            search: on this side.
+            arrow: there.
+            there: unknowns on the other side.
+            beyond: the state there.
+            blocks: which have a kink in between, shape (blocks,).
+        """
+        search.beyond = beyond
+        other = self.linear(*there, beyond)
+        changes = (there[0] - search.shared, there[1] - search.own)
+        kinked = arrow.along_kinks(other, changes, search.scales, blocks)
+        shared, own = self._stepped(search, kinked, HARDLY_DAMPED)
+        if arrow.decrease(shared - search.shared, own - search.own) <= max(ROUNDING, self._least_decrease(search)):
+            back = (shared - there[0], own - there[1])
+            parted = self._cost(*there, beyond) - other.decrease(*back) - search.cost
+            rises = -sum(float(np.sum(part * change)) for part, change in zip(other.gradient(*back), back, strict=True))
+            meets = abs(parted) <= MEETING * (1.0 + search.cost)
+            return FitOutcome.AT_KINK if meets and rises >= 0.0 else False
+        shared, own = self._stepped(search, kinked, search.along)
+        predicted = arrow.decrease(shared - search.shared, own - search.own)
+        state = self.problem.at(shared, own, search.state)
+        cost = np.inf if state is None else self._cost(shared, own, state)
+        # What is not finite is no decrease.
+        if state is None or not search.cost - cost > SUFFICIENT * predicted:
+            search.along *= BACK_OFF
+            return False
+        search.take(shared, own, state, cost)
+        search.along = max(search.along / BACK_OFF, 1e-15)
+        return None
+
+    def _stepped(self, search: _Search[StateType], arrow: ArrowStep, damping: float) -> tuple[FloatArray, FloatArray]:
         """Shared unknowns, (n,), and the blocks' unknowns, (blocks, k), after the step with the least damped sum."""
+        shared_scale, own_scale = search.scales
+        root = np.sqrt(damping)
         step = BoundedStep(
             arrow,
             (search.shared, search.own),
             (self.shared.within_step(search.shared), self.own.within_step(search.own)),
-            (shared_damping, own_damping),
+            (root * shared_scale, root * own_scale),
         )
         return step.run()
 
@@ -608,10 +701,7 @@ class ArrowFit(Generic[StateType]):
 
     def _ended(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome:
         """How a search ends whose steps bring nothing: by what a step within the bounds would bring."""
-        shared_scale = np.where(search.shared_scale > 0, search.shared_scale, 1.0)
-        own_scale = np.where(search.own_scale > 0, search.own_scale, 1.0)
-        hardly = np.sqrt(HARDLY_DAMPED)
-        shared, own = self._stepped(search, arrow, hardly * shared_scale, hardly * own_scale)
+        shared, own = self._stepped(search, arrow, HARDLY_DAMPED)
         left = arrow.decrease(shared - search.shared, own - search.own)
         bound = max(ROUNDING, self._least_decrease(search))
         return FitOutcome.CONVERGED if left <= bound else FitOutcome.STALLED

@@ -88,7 +88,9 @@ def few_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let searches end after two steps."""
     init = ArrowFit.__init__
     settings = FitSettings(iterations=2)
-    monkeypatch.setattr(ArrowFit, "__init__", lambda self, *given: init(self, *given, settings=settings))
+    monkeypatch.setattr(
+        ArrowFit, "__init__", lambda self, *given, **more: init(self, *given, settings=settings, **more)
+    )
 
 
 def no_way_on(monkeypatch: pytest.MonkeyPatch) -> None:

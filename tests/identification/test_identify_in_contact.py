@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
 
 from cosserat_casadi import Identification, Scene, Solution, build, identify, scene_from_dict, solve
 from cosserat_casadi.equilibrium.contact import pressing_contacts
@@ -83,6 +84,30 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
     assert not first.misfit.marginal(first.state)
     monkeypatch.setattr(pressing_contacts, "LEAST_TOLERANCE", 1e3)
     assert len(first.misfit.marginal(first.state)) == 1
+
+
+def test_the_least_misfit_may_be_where_a_contact_comes_or_goes() -> None:
+    """Its place is that of a rod without a floor whose tip comes to the height of the floor."""
+
+    def shape(modulus: float, *, floor: bool) -> Solution:
+        scene = tables(modulus, WEIGHTS[1]) | ({} if floor else {"obstacles": []})
+        return solve(build(scene_from_dict(scene)), estimate_error=False)
+
+    modulus = brentq(lambda own: shape(own, floor=False).tip().position[2] + 0.09, MODULUS, 4 * MODULUS, xtol=1e-3)
+    steps = [1e-3 * modulus, -1e-3 * modulus]
+    at_kink = shape(modulus, floor=False).pose(np.array(AT)).position
+    moved = [shape(modulus + step, floor=step < 0).pose(np.array(AT)).position - at_kink for step in steps]
+    slopes = [way / np.linalg.norm(way) for way in moved]
+    # Away from the kink, either way, the markers go farther from where they were measured.
+    places = at_kink - 3 * SIGMA * (slopes[0] + slopes[1])
+    unknowns = [{"parameter": "rod.material.youngs_modulus", "lower": 5e5, "upper": 2e7}]
+    scene = measured(1.05 * modulus, unknowns=unknowns)
+    found = identify(build(scene.with_unknowns()), table([WEIGHTS[1]], places[None]))
+    assert found.converged and found.iterations < 30, found.message
+    # Contacts hold to the tolerance of the scene.
+    assert_allclose(found.shared, [modulus], rtol=1e-4, atol=0)
+    (warning,) = [own for own in found.warnings if "just where contacts come" in own]
+    assert "a point of 'rod' on 'floor'" in warning
 
 
 def poked(at: float, **more: Any) -> dict[str, Any]:

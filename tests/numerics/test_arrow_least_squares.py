@@ -294,3 +294,47 @@ def test_the_step_of_own_unknowns_keeps_bounds_too() -> None:
     expected = scipy.optimize.lsq_linear(matrix, measured, (-ends, ends), method="bvls", tol=1e-15)
     assert found.outcome is FitOutcome.CONVERGED
     assert_allclose(found.cost, expected.cost, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("slope", [3.0, 0.2])
+def test_the_least_sum_may_be_at_a_kink(slope: float) -> None:
+    """A curved surface in shared unknowns and those of one block; with a small slope the least sum is beyond it."""
+
+    def beyond(unknowns: FloatArray) -> float:
+        x, y, own, _ = unknowns
+        return float(x + y + 0.3 * x**2 + 0.5 * np.sin(own) - 1.0)
+
+    def residual(unknowns: FloatArray) -> FloatArray:
+        x, y, own, other = unknowns
+        over = max(beyond(unknowns), 0.0)
+        return np.array([2.0 - x, 1.5 - y * x, own - 0.3, 0.4 + slope * over, other - x, 0.5 * other - 0.1])
+
+    class Kinked:
+        offsets = np.array([0, 4, 6])
+
+        def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point:
+            return Point(shared, own, residual(np.concatenate([shared, own[:, 0]])))
+
+        def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+            (x, y), (own, _) = state.shared, state.own[:, 0]
+            is_over = slope * (beyond(np.array([x, y, own, 0.0])) > 0.0)
+            by_shared = np.array([[-1, 0], [-y, -x], [0, 0], [is_over * (1 + 0.6 * x), is_over], [-1, 0], [0, 0]])
+            return by_shared, np.array([[0.0, 0.0, 1.0, is_over * 0.5 * np.cos(own), 1.0, 0.5]]).T
+
+    def kinked(state: Point, other: Point) -> npt.NDArray[np.bool_]:
+        sides = [beyond(np.concatenate([point.shared, point.own[:, 0]])) > 0.0 for point in (state, other)]
+        return np.array([sides[0] != sides[1], False])
+
+    problem = Kinked()
+    start, own = np.zeros(2), np.zeros((2, 1))
+    fit = ArrowFit(problem, free(2), free(1), kinked=kinked).run(start, own, problem.at(start, own, None))
+    found = np.concatenate([fit.shared, fit.own[:, 0]])
+    constraint = {"type": "eq" if slope == 3.0 else "ineq", "fun": beyond}
+    expected = scipy.optimize.minimize(
+        lambda unknowns: residual(unknowns) @ residual(unknowns) / 2, found + 0.1, constraints=constraint, tol=1e-14
+    )
+    assert fit.outcome is (FitOutcome.AT_KINK if slope == 3.0 else FitOutcome.CONVERGED)
+    assert_allclose(fit.cost, expected.fun, rtol=0, atol=1e-8)
+    assert_allclose(found, expected.x, rtol=0, atol=1e-4)
+    assert (abs(beyond(found)) < 1e-8) == (slope == 3.0)
+    assert fit.iterations < 40
