@@ -11,6 +11,9 @@ import pytest
 from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.estimation.estimate_outcome import Estimate
+from cosserat_casadi.estimation.rows_in_contact import RowsInContact
+from cosserat_casadi.estimation.stacking import sections_of, stacked
+from cosserat_casadi.identification.measured_cases import read_cases
 from tests.identification.over_floor import MARKERS, MODULUS, WEIGHTS, markers, tables
 
 
@@ -43,3 +46,18 @@ def test_draws_are_as_wide_as_the_linear_model_where_contacts_stay() -> None:
     linear = estimated([1])
     np.testing.assert_allclose(drawn.sigma, linear.sigma, rtol=0.15, atol=0)
     np.testing.assert_allclose(drawn.values, linear.values, rtol=1e-12, atol=0)
+
+
+@pytest.mark.slow
+def test_contacts_that_change_within_a_deviation_are_named() -> None:
+    weight = {"input": "weight.force.z", "per_row": True, "lower": -0.5, "upper": 0.1}
+    unknowns = [weight | {"prior": {"mean": -0.012, "sigma": 0.1}}]
+    scene = scene_from_dict({**tables(MODULUS, -0.012), "measurements": [MARKERS], "unknowns": unknowns})
+    model = build(scene.with_unknowns())
+    cases = read_cases(model.scene, model.inputs, markers())
+    sections = sections_of(model, cases)
+    rows = RowsInContact(model, sections, [model.inputs.slices["weight.force"].stop - 1])
+    table = stacked(model, cases, sections)
+    narrow, wide = ([[sigma**2]] for sigma in (1e-5, 5e-3))
+    changes = rows.contact_changes(table, np.array([[-0.006], [np.nan], [-0.014]]), np.array([narrow, wide, wide]))
+    assert changes == {2: "a point of 'rod' on 'floor'"}

@@ -86,6 +86,7 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
     assert len(first.misfit.marginal(first.state)) == 1
 
 
+@pytest.mark.slow
 def test_the_least_misfit_may_be_where_a_contact_comes_or_goes() -> None:
     """Its place is that of a rod without a floor whose tip comes to the height of the floor."""
 
