@@ -1,4 +1,4 @@
-"""Bars, balls and other rods that no step may take a rod through, where contact is smooth.
+"""Bars, balls and other rods that no step may take a rod, a disk or a body through, where contact is smooth.
 
 A smooth obstacle pushes where a rod is in it: a step that ends behind it has not felt it. The ends of a step are judged
 by their depth; here the straight way between them is. So it is with rods that push each other.
@@ -13,8 +13,16 @@ from math import isfinite
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.passing_through import DEEP, LookedAt, is_inside_between
+from cosserat_casadi.equilibrium.contact.passing_through import (
+    DEEP,
+    SECTIONS,
+    LookedAt,
+    ball_is_inside_between,
+    is_inside_between,
+    seen_from,
+)
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
+from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import ContactPair
@@ -36,13 +44,20 @@ class SmoothBarriers:
         smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
         return [(rod.name, obstacle) for rod in scene.rods for obstacle in smooth if obstacle.concerns(rod.name)]
 
+    @cached_property
+    def watched_bodies(self) -> list[ContactLayer]:
+        """The layers of such obstacles for bodies and disks."""
+        layers = [load for load in self.model.discrete.loads if isinstance(load, ContactLayer)]
+        of_bodies = [layer for layer in layers if layer.body is not None or layer.at is not None]
+        return [layer for layer in of_bodies if isfinite(layer.obstacle.thickness)]
+
     @property
     def any(self) -> bool:
         """Whether there is anything to watch."""
-        return bool(self.watched or self.model.discrete.pairs)
+        return bool(self.watched or self.watched_bodies or self.model.discrete.pairs)
 
     def are_between(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
-        """Whether a rod is deep inside one on the straight way between two shapes, and at neither of its ends.
+        """Whether a rod or body is deep inside one on the straight way between two shapes, and at neither of its ends.
 
         Args:
             before: unknowns at the start, shape (model.size,).
@@ -57,7 +72,28 @@ class SmoothBarriers:
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
-        return self.rods_pass(before, after, inputs)
+        return any(self._is_inside_between(layer, before, after, inputs) for layer in self.watched_bodies) or (
+            self.rods_pass(before, after, inputs)
+        )
+
+    def _is_inside_between(
+        self, layer: ContactLayer, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]
+    ) -> bool:
+        """Whether the largest ball in a body or a disk is deep inside an obstacle on the way, as above."""
+        discrete = self.model.discrete
+        rod = layer.rod
+        length = discrete.body_frame(layer.body).length if rod is None else discrete.rods[rod].properties.length
+        ways = []
+        for x, own_inputs in zip((before, after), inputs, strict=True):
+            if rod is None:
+                place = self.model.body[layer.body](x, own_inputs)[0].full().T
+                ways.append(seen_from(self.model, layer.obstacle, x, own_inputs, place)[0])
+            else:
+                along = LookedAt(self.model, rod).positions(layer.obstacle, x, own_inputs)
+                ways.append(np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T]))
+        radius = min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius
+        assert layer.obstacle.width is not None
+        return ball_is_inside_between(layer.obstacle, radius, length, *ways, DEEP + layer.obstacle.width / length)
 
     def rods_pass(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
         """Whether rods pass through each other, or a rod through itself, on the straight way, as above."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from cosserat_casadi import Solution, build, parse_scene, solve
@@ -53,6 +54,34 @@ def test_a_ball_in_the_middle_of_a_sphere_has_given_way() -> None:
     before, after = shapes(-0.1)
     middle = before.x + 0.5 * (after.x - before.x)
     assert Barriers(before.model, before.inputs).give_way(middle)
+
+
+DISK = """
+[[disks]]
+name = "ball"
+rod = "rod"
+at = [0.997]
+radius = 0.05
+thickness = 0.1
+"""
+
+
+@pytest.mark.parametrize(("carried", "word"), [(BALL, "bodies"), (DISK, "disks")], ids=["body", "disk"])
+def test_no_step_takes_a_ball_or_a_disk_through_a_smooth_sphere(carried: str, word: str) -> None:
+    """The base comes down by more than the sphere is thick: in one step the tip would be below it, and free.
+
+    Beside the sphere it comes down.
+    """
+    head = 'inputs = ["rod.base.position"]\n' + HEAD + ROD + carried
+    sphere = SMALL.format(height=-0.2).replace("bodies", word) + "width = 0.01\n"
+    model = build(parse_scene(head + sphere), build(parse_scene(head)).discretisation)
+    above = solve(model)
+    below = solve(model, {"rod.base.position": [0.0, 0.0, -0.5]}, start=above)
+    assert below.tip().position[2] > -0.2
+    aside = solve(
+        model, {"rod.base.position": [0.0, 0.3, -0.5]}, start=solve(model, {"rod.base.position": [0, 0.3, 0]})
+    )
+    np.testing.assert_allclose(aside.tip().position, [1.0, 0.3, -0.5], rtol=0, atol=1e-9)
 
 
 def test_a_body_that_touches_pays_for_its_contact_alone() -> None:

@@ -66,16 +66,22 @@ class LookedAt:
             inputs: stacked inputs, shape (model.inputs.size,).
         """
         at_nodes = self.model.fields[self.rod](x, inputs)[0].full()
-        in_world = np.asarray(self._interpolation @ at_nodes.T)
-        if obstacle.body is None:
-            return in_world
-        position, quaternion, rotation = (part.full() for part in self.model.body[obstacle.body](x, inputs))
-        return in_axes_of(SolvedPoses(position[:, 0], rotation, quaternion[:, 0]), in_world)
+        return seen_from(self.model, obstacle, x, inputs, np.asarray(self._interpolation @ at_nodes.T))
 
     @cached_property
     def _interpolation(self) -> FloatArray:
         """Matrix from values at the nodes to values at the sections, shape (k, nodes)."""
         return self.model.discrete.rods[self.rod].grid.interpolation_matrix(SECTIONS)
+
+
+def seen_from(
+    model: Model, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray, positions: FloatArray
+) -> FloatArray:
+    """Positions in the world, shape (k, 3), in the axes that an obstacle is given in."""
+    if obstacle.body is None:
+        return positions
+    position, quaternion, rotation = (part.full() for part in model.body[obstacle.body](x, inputs))
+    return in_axes_of(SolvedPoses(position[:, 0], rotation, quaternion[:, 0]), positions)
 
 
 def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> bool:
