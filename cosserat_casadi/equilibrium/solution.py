@@ -186,7 +186,8 @@ class Solution(Equilibrium[Model]):
     ends too.
 
     Attributes:
-        smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
+        smallest_eigenvalue: of the second variation, in units of EI/ℓ of the scene's own numbers, whatever values
+            parameters have, and in exact contact with these values; None where loads have no potential.
         stable: whether every admissible variation costs energy; None where that has no meaning.
         shape_error_estimate: the error estimate over all sections, those between nodes included.
         wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions

@@ -151,7 +151,8 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     """Equilibria of rods along one of their inputs, which grows from zero, or from where it is told to begin.
 
     Attributes:
-        smallest_eigenvalue: of the second variation in units of EI/ℓ, shape (k,); None where loads have no potential.
+        smallest_eigenvalue: of the second variation in units of EI/ℓ, those of a :class:`Solution`, shape (k,); None
+            where loads have no potential.
         neutral: whether a variation costs no energy while none releases any, shape (k,); None likewise.
         branch: index of the first point on the branch that was switched to; None on the first path.
     """
