@@ -301,3 +301,60 @@ def test_derivatives_along_a_path_are_those_of_differences(force: float) -> None
     ends = [path.model.residual(x + sign * change, inputs).full()[:, 0] for sign in (1.0, -1.0)]
     slope = path.model.path_jacobian(x, inputs, 1.0).full() @ change
     assert_allclose(slope, (ends[0] - ends[1]) / 2, rtol=0, atol=1e-5 * np.abs(slope).max())
+
+
+TURN, PITCH, SECTION, TOUCHING = 0.1, 0.055, 0.02, 8e-3
+"""Radius and pitch of a coil, radius of its rod, and width of its contact with itself, m."""
+
+
+@cache
+def coil() -> Model:
+    """A rod of rather more than one turn, whose tip can be pressed on its first part and pulled over it."""
+    rise = PITCH / (2 * np.pi)
+    square = TURN**2 + rise**2
+    rod = {
+        "name": "coil",
+        "length": 1.15 * 2 * np.pi * np.sqrt(square),
+        "strain": "kirchhoff",
+        "section": {"shape": "circle", "radius": SECTION},
+        "material": {"youngs_modulus": BENDING * 4 / np.pi / SECTION**4, "poisson_ratio": POISSON},
+        "intrinsic": {"curvature": [0.0, TURN / square, rise / square]},
+        "base": {"position": [0, 0, 0], "tangent": [1, 0, 0]},
+    }
+    load = {"kind": "point_wrench", "rod": "coil", "at": 1.0, "force": [0, 0, 0]}
+    touch = {"rods": ["coil"], "width": TOUCHING, "stiffness": 1e6, "friction": FRICTION}
+    loads = [{"name": name, **load} for name in ("press", "pull")]
+    scene = scene_from_dict({"schema": 1, "rods": [rod], "rod_contacts": [touch], "loads": loads})
+    return build(scene, discretise(scene, 3, 5))
+
+
+@pytest.mark.slow
+def test_a_rod_rubs_on_itself() -> None:
+    """As a block under Coulomb's law: force and moment of the base are those of the loads alone, and energy leaves."""
+    press = follow(coil(), "press.force", [0, -8, 0], settings=STEPS)
+    paths = [press]
+    for force in (2.0, -2.0, 2.0):
+        paths.append(follow(coil(), "pull.force", [force, 0, 0], first=paths[-1], settings=STEPS))
+    work = 0.0
+    for path in paths[1:]:
+        assert isinstance(path, FrictionPath) and path.converged
+        end = path.solution(-1)
+        load = path.all_inputs[-1][path.model.inputs.slices["pull.force"]] + [0, -8, 0]
+        base = end.base_wrench("coil")
+        assert_allclose(base.force, -load, rtol=0, atol=1e-11)
+        assert_allclose(base.moment, -np.cross(end.tip().position, load), rtol=0, atol=1e-11)
+        friction = path.model.memory(path.x[-1], path.all_inputs[-1])[2].full()
+        assert_allclose(friction.sum(axis=1), 0, rtol=0, atol=1e-12)
+        on_tip = friction[:, friction.shape[1] // 2 :].sum(axis=1)
+        (contact,) = end.contacts
+        limit = FRICTION * np.linalg.norm(contact.force)
+        assert np.linalg.norm(on_tip) <= limit
+        assert on_tip[0] * load[0] < 0.0
+        if all(stretch.slips for stretch in path.rubbing(-1)):
+            assert_allclose(np.linalg.norm(on_tip), limit, rtol=2e-2, atol=0)
+        pulls = path.all_inputs[:, path.model.inputs.slices["pull.force"]]
+        tips = path.position(1.0)
+        if path is not paths[1]:
+            work += float(np.sum((pulls[1:] + pulls[:-1]) / 2 * np.diff(tips, axis=0)))
+    assert {stretch.slips for stretch in paths[1].rubbing(-1)} == {True}
+    assert work > 0.0
