@@ -67,7 +67,7 @@ class CaseInContact:
         return self.found.state.signature != other.found.state.signature
 
     def difference(self, other: CaseInContact) -> str:
-        """What touches in one of two equilibria alone, or in another way, in words; empty of nothing."""
+        """Contacts of one of two equilibria alone, in words; empty where there are none."""
         if not self.touches_otherwise(other):
             return ""
         kinds = [
@@ -293,7 +293,7 @@ class ContactMisfit(Misfit):
         return np.array([case.touches_otherwise(beside) for case, beside in pairs])
 
     def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
-        """What touches in one state alone, in words."""
+        """Contacts of one state alone, in words."""
         triples = zip(self.cases, _settled(state.point), _settled(other.point), strict=True)
         return [f"{own.where}: {case.difference(beside)}" for own, case, beside in triples if case.difference(beside)]
 

@@ -162,7 +162,7 @@ class Ending:
 
     @property
     def _unfollowed(self) -> str:
-        """What to do where the search ended beside contacts that change; nothing where none do."""
+        """A remedy where the search ended beside contacts that change; empty where none do."""
         if not self.kinks:
             return ""
         return f" Contacts change there ({named(self.kinks)}): begin nearer to the answer, or leave these cases out."

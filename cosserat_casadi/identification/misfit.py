@@ -169,7 +169,7 @@ class Misfit:
         return np.zeros(len(self.cases), dtype=bool)
 
     def at_kink(self, state: MisfitState, other: MisfitState) -> list[str]:
-        """What changes in these cases, in words."""
+        """Changes in these cases, in words."""
         return []
 
     def unstable(self, state: MisfitState) -> list[str]:

@@ -319,7 +319,7 @@ class ArrowStep:
 
         Args:
             other: on the other side.
-            changes: from the unknowns here to those there.
+            changes: of the unknowns, from here to there.
             scales: sizes of the derivatives by the unknowns, shapes (n,) and (k,).
             blocks: which of them have a kink in between, shape (blocks,).
         """

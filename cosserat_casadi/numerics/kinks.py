@@ -20,7 +20,7 @@ def kink_row(here: FloatArray, there: FloatArray, change: FloatArray, scales: Fl
     Args:
         here: residual and derivatives at one of them, shape (m, 1 + n).
         there: at the other one.
-        change: from the unknowns here to those there, shape (n,).
+        change: of the unknowns, from here to there, shape (n,).
         scales: sizes of the derivatives by each unknown, shape (n,).
     """
     jump = here - there
