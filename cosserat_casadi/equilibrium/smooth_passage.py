@@ -72,28 +72,34 @@ class SmoothBarriers:
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
-        return any(self._is_inside_between(layer, before, after, inputs) for layer in self.watched_bodies) or (
-            self.rods_pass(before, after, inputs)
-        )
+        if any(self._is_inside_between(layer, before, after, inputs) for layer in self.watched_bodies):
+            return True
+        return self.rods_pass(before, after, inputs)
 
     def _is_inside_between(
         self, layer: ContactLayer, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]
     ) -> bool:
         """Whether the largest ball in a body or a disk is deep inside an obstacle on the way, as above."""
+        start, end = (self._place(layer, *state) for state in zip((before, after), inputs, strict=True))
         discrete = self.model.discrete
-        rod = layer.rod
-        length = discrete.body_frame(layer.body).length if rod is None else discrete.rods[rod].properties.length
-        ways = []
-        for x, own_inputs in zip((before, after), inputs, strict=True):
-            if rod is None:
-                place = self.model.body[layer.body](x, own_inputs)[0].full().T
-                ways.append(seen_from(self.model, layer.obstacle, x, own_inputs, place)[0])
-            else:
-                along = LookedAt(self.model, rod).positions(layer.obstacle, x, own_inputs)
-                ways.append(np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T]))
+        if layer.body is not None:
+            length = discrete.body_frame(layer.body).length
+        else:
+            assert layer.rod is not None, "what is of no body is of a rod"
+            length = discrete.rods[layer.rod].properties.length
         radius = min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius
         assert layer.obstacle.width is not None
-        return ball_is_inside_between(layer.obstacle, radius, length, *ways, DEEP + layer.obstacle.width / length)
+        allowed = DEEP + layer.obstacle.width / length
+        return ball_is_inside_between(layer.obstacle, radius, length, start, end, allowed)
+
+    def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Position of a body or a disk in the axes that its obstacle is given in, shape (3,), m."""
+        if layer.body is not None:
+            place = self.model.body[layer.body](x, inputs)[0].full().T
+            return np.asarray(seen_from(self.model, layer.obstacle, x, inputs, place)[0])
+        assert layer.rod is not None, "what is of no body is of a rod"
+        along = LookedAt(self.model, layer.rod).positions(layer.obstacle, x, inputs)
+        return np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T])
 
     def rods_pass(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
         """Whether rods pass through each other, or a rod through itself, on the straight way, as above."""

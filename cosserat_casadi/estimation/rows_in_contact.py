@@ -152,7 +152,7 @@ class RowsInContact:
         return Estimates.joined(rows)
 
     def contact_changes(self, cases: MeasuredCases, numbers: FloatArray, covariance: FloatArray) -> dict[int, str]:
-        """Contacts that come, go or change within a standard deviation of estimates, in words, by the number of the row.
+        """Contacts that come, go or change within a standard deviation of estimates, in words, by the row's number.
 
         Args:
             cases: all rows.
