@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from cosserat_casadi.model.function_table import FunctionSpec
 from tests.once import once
+from tests.written_once import CHANGES_CODE, WrittenOnce
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT.parent / "shared" / "cases"
@@ -25,6 +27,8 @@ UNOPTIMISED = "-O0"
 
 NEW_OBJECTS = 100_000
 """Objects that are made between two collections of garbage, far more than Python's own number: little is garbage."""
+
+WRITTEN = WrittenOnce()
 
 PYTHON_OWN = gc.get_threshold()
 """The numbers of objects that Python itself begins with."""
@@ -77,6 +81,19 @@ def quick_compiler(workshop: Path) -> Iterator[None]:
         patch.setenv("OPENBLAS_NUM_THREADS", "1")
         patch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def written_once() -> Iterator[None]:
+    """Functions of models are written once for all tests that ask for the same equations."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(FunctionSpec, "build", lambda *arguments: WRITTEN.build(*arguments))
+        yield
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Tests that change the package, or measure its memory, share no functions."""
+    WRITTEN.active = CHANGES_CODE.isdisjoint(getattr(item, "fixturenames", ()))
 
 
 @pytest.fixture

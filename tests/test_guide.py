@@ -55,7 +55,7 @@ def whole_lines(text: str) -> list[str]:
 
 
 @pytest.mark.usefixtures("quick_gcc")
-@pytest.mark.parametrize("page", mostly_slow(MADE, quick=["guide.md"]))
+@pytest.mark.parametrize("page", mostly_slow(MADE, quick=[]))
 def test_the_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     notebook: dict[str, Any] = {}

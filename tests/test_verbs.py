@@ -89,6 +89,7 @@ def test_a_sweep_of_a_model_keeps_its_discretisation() -> None:
     assert_allclose(rows.positions(), np.array(alone), rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_scene_is_exported_as_the_model_that_it_is_solved_with(tmp_path: Path) -> None:
     of_scene = export(rod_model().scene, tmp_path / "scene", "rod")
     of_model = export(rod_model(), tmp_path / "model", "rod")

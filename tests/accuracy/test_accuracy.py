@@ -87,6 +87,7 @@ def test_modes_follow_the_inputs_given() -> None:
     assert min(flat.model.discretisation["rod"].modes[1], turned.model.discretisation["rod"].modes[0]) > 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", mostly_slow(["clamped", "pinned"], quick=["clamped"]))
 def test_held_rod_is_right_between_its_ends(kind: str) -> None:
     """Its tip is right with any modes, so the tip must not be what is looked at."""

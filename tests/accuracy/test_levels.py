@@ -106,6 +106,7 @@ def test_first_level(tolerance: float, index: int) -> None:
     assert Level.first(tolerance) == Level(index)
 
 
+@pytest.mark.slow
 def test_first_level_of_an_assembly_tells_how_fast_it_converges() -> None:
     """Three modes are always kept there, so that on five modes nothing is left to compare with."""
     platform = read_scene(ROOT / "examples" / "shaken_platform.toml")

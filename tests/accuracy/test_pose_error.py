@@ -79,6 +79,7 @@ def test_pose_error_vs_rotation_matrices() -> None:
     assert_allclose(pose_distance(coarse, fine), expected, rtol=1e-9, atol=0)
 
 
+@pytest.mark.slow
 def test_error_along_a_diagonal_is_refined() -> None:
     """Where four modes would do by the largest component of their error, they do not by its length."""
     coarse, truth = bent(Rotation.identity(), 4), bent(Rotation.identity(), 14)

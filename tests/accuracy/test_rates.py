@@ -63,7 +63,9 @@ def swept(name: str, nodes: tuple[int, ...], transport: str) -> FloatArray:
 
 
 @pytest.mark.parametrize("name", mostly_slow(SCENES, quick=["twisted"]))
-@pytest.mark.parametrize(("transport", "order"), [("magnus4", 4), ("magnus6", 6), ("magnus8", 8)])
+@pytest.mark.parametrize(
+    ("transport", "order"), mostly_slow([("magnus4", 4), ("magnus6", 6), ("magnus8", 8)], quick=[("magnus6", 6)])
+)
 def test_slope_in_the_intervals_vs_order(name: str, transport: str, order: int) -> None:
     nodes = (17, 21, 26)
     found = swept(name, nodes, transport)
@@ -71,6 +73,7 @@ def test_slope_in_the_intervals_vs_order(name: str, transport: str, order: int) 
     assert np.all(np.abs(slopes - order) < 0.07 * order), dict(zip(QUANTITIES, slopes, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", mostly_slow(SCENES, quick=["twisted"]))
 def test_permuted_system_is_faster_than_any_power(name: str) -> None:
     found = swept(name, (8, 12, 16), "permuted")

@@ -114,6 +114,7 @@ def test_a_wall_of_rubber_at_the_end_of_small_strains(ratio: float) -> None:
     assert 1.02 < reached**2 / area < 1.07
 
 
+@pytest.mark.slow
 def test_paths_motions_and_fits_that_leave_the_law_of_a_chamber_are_told() -> None:
     measured = {"quantity": "position", "file": "tips", "rod": "rod", "at": 1.0, "columns": ["x", "y", "z"]}
     tables = {

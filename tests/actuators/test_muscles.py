@@ -257,6 +257,7 @@ STEEP = 2 * np.pi / 0.1
 """Curvature, 1/m, of a wave as long as the swimmer whose slope swings between -1 and 1 rad."""
 
 
+@pytest.mark.slow
 def test_a_steep_wave_swims() -> None:
     """Its middle goes forth, and to and fro with the yaw, as the theory says."""
     found, wanted = strokes(STEEP, 1, [0.5, 0.75, 1.0], 1e-3)

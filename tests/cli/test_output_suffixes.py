@@ -9,6 +9,7 @@ import pytest
 
 from cosserat_casadi.cli.exit_codes import REFUSED
 from tests.commands import WIRE, cosserat
+from tests.families import mostly_slow
 
 SCENE = (
     """
@@ -75,7 +76,7 @@ def test_another_format_is_refused(
     assert sorted(folder.iterdir()) == before
 
 
-@pytest.mark.parametrize("command", [["solve"], ["modes", "--count", "1"]])
+@pytest.mark.parametrize("command", mostly_slow([["solve"], ["modes", "--count", "1"]], quick=[["solve"]]))
 @pytest.mark.parametrize("file", ["result", "result.json", "RESULT.JSON"])
 def test_json_and_no_suffix_are_written(folder: Path, command: list[str], file: str) -> None:
     cosserat(*command, "wire.toml", "--output", file, cwd=folder)

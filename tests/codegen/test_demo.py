@@ -40,7 +40,9 @@ def strict_json(text: str) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("name", ["planar", "pinned", "pair", "fixed", "thick"])
+@pytest.mark.parametrize(
+    "name", mostly_slow(["planar", "pinned", "pair", "fixed", "thick"], quick=["planar", "pinned", "pair"])
+)
 def test_demo_vs_python_at_the_inputs_of_the_scene(library: Library, name: str) -> None:
     made = library(name)
     printed = strict_json(run(made.demo, "--repeat", "2"))

@@ -57,7 +57,7 @@ CASES = {
 """Scenes with few modes, and how growing the load ends."""
 
 
-@pytest.mark.parametrize("name", mostly_slow(CASES, quick=["follower", "unresolved"]))
+@pytest.mark.parametrize("name", mostly_slow(CASES, quick=["unresolved"]))
 def test_hard_case_vs_python(export_recipe: ExportRecipe, name: str) -> None:
     recipe, outcome = CASES[name]
     made = export_recipe(f"hard_{name}", recipe)

@@ -106,6 +106,7 @@ def test_tendons_are_the_same() -> None:
     assert np.ptp(found[:, -1]) > 1e-3
 
 
+@pytest.mark.slow
 def test_paths_that_vanish_are_told_alike() -> None:
     """Tensions around the one at which a planar rod has pressed its tendon's path to nothing."""
     library = libraries(on_grid(pulled("planar", 50.0), modes=2, nodes=8))

@@ -53,6 +53,7 @@ def test_stack_of_optimised_code(library: Library, name: str, optimised: str) ->
     assert stack <= stated(library(name))[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", mostly_slow(["planar", "tiny", "spatial", "thick"], quick=["tiny"]))
 def test_stack_of_batches(name: str, tmp_path: Path) -> None:
     """Each number of a kernel in lanes is four; the stack that lanes need is that of no other function."""

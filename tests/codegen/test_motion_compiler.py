@@ -76,7 +76,7 @@ def is_compiled(compiler: MotionCompiler, name: str) -> bool:
     return compiler.asked[name][1] is not None
 
 
-@pytest.mark.parametrize("family", mostly_slow(list(FAMILIES), quick=["planar", "driven and held"]))
+@pytest.mark.parametrize("family", mostly_slow(list(FAMILIES), quick=["driven and held"]))
 def test_machine_code_gives_the_same_numbers(family: str) -> None:
     model = model_of(family)
     at = somewhere(model)

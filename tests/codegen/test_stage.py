@@ -179,6 +179,7 @@ def test_each_section_adds_few_instructions_to_the_jacobian(monkeypatch: pytest.
     assert lengths[1] - lengths[0] < 8 * 20
 
 
+@pytest.mark.slow
 def test_progress_tells_of_what_is_written_and_compiled() -> None:
     told: list[tuple[str, int, int]] = []
     compiled_stage(wire(), "told_stage", progress=lambda *report: told.append(report))

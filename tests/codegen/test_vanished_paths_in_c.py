@@ -12,11 +12,12 @@ from cosserat_casadi import Outcome, scene_from_dict, solve
 from tests.codegen.contact_libraries import exported_contact
 from tests.codegen.libraries import Exported, Recipe
 from tests.equilibrium.test_strain_limits import described, pulled
+from tests.families import mostly_slow
 
 ExportRecipe = Callable[[str, Recipe], Exported]
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["planar"]))
 def test_vanished_path_vs_python(export_recipe: ExportRecipe, strain: str) -> None:
     """Cold, warm, followed, and in a batch."""
     made = export_recipe(f"vanished_{strain}", Recipe(pulled(strain, 50.0), 2, 8))

@@ -190,6 +190,7 @@ def free_span() -> tuple[float, float, float]:
     return length, force + weight * length, span(found)[0]
 
 
+@pytest.mark.slow
 def test_heavy_rod_on_a_table(table: Solution) -> None:
     length, reaction, x = free_span()
     (contact,) = table.contacts

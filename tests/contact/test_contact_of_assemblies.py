@@ -418,6 +418,7 @@ def frame() -> Solution:
     return solved(FRAME + WALL)
 
 
+@pytest.mark.slow
 def test_a_frame_that_leans_on_a_wall(frame: Solution) -> None:
     (contact,) = frame.contacts
     assert contact.of_body

@@ -187,6 +187,7 @@ def test_the_gap_of_a_disk_vs_all_points_of_its_rim() -> None:
         assert nearest - less - rounded < gap < nearest + rounded
 
 
+@pytest.mark.slow
 def test_a_rod_on_disks_slides_as_a_point_mass() -> None:
     """Down an incline: its weight rests on the rims, whose friction tips it, and its energies balance."""
     slope, friction, radius, density, length = 0.5, 0.3, 0.02, 0.3, 0.2

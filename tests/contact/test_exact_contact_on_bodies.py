@@ -221,6 +221,7 @@ def test_a_rod_on_a_plate_that_does_not_move_lies_as_on_the_ground() -> None:
     assert_allclose(stiff.tip("rod").position, ground.tip("rod").position, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_rod_lies_on_a_plate_that_tilts(lying: Solution) -> None:
     """The line is straight, tilted with the plate, and carries what the clamps do not."""
     _nothing_is_inside(lying)

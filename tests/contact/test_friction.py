@@ -132,6 +132,7 @@ def test_what_sticks_creeps_slower_than_the_slip_speed() -> None:
     assert "rod sticks on plane from 0 to 1" in repr(motion)
 
 
+@pytest.mark.slow
 def test_friction_takes_the_energy_of_the_way() -> None:
     """Force times way, and nothing is missing from the balance."""
     motion = simulate(rigid(incline(0.5, 0.3)))

@@ -70,6 +70,7 @@ def slid(push: float) -> float:
     return float(solve_ivp(rates, (0, DURATION), [0, 0], "Radau", rtol=1e-10, atol=1e-13).y[0, -1])
 
 
+@pytest.mark.slow
 def test_a_rod_slides_on_a_rod_as_a_point_mass() -> None:
     """With the push less μ N over its mass; friction takes the energy of the way."""
     push = 2 * FRICTION * pressing()

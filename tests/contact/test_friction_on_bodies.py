@@ -74,6 +74,7 @@ def pulled(force: float, first: FrictionPath | None = None) -> FrictionPath:
     return path
 
 
+@pytest.mark.slow
 def test_a_ball_between_jaws_is_held_up_to_twice_the_pinch_times_the_coefficient() -> None:
     """Below the jaws bear the pull; above the spring bears what is beyond, and the jaws rub with their limit."""
     stuck, slid = pulled(0.8 * LIMIT), pulled(1.5 * LIMIT)

@@ -14,6 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.paths.friction_path import FrictionPath
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 
 RADIUS = 0.01
 LENGTH = 0.2
@@ -128,7 +129,10 @@ def test_what_is_held_stays_however_many_points_the_path_has() -> None:
     assert_allclose(twice.x[-1], once.x[-1], rtol=0, atol=1e-11)
 
 
-@pytest.mark.parametrize(("axis", "force", "coefficient"), [(0, 1, 0.2), (0, -1, 0.4), (1, 1, 0.5)])
+@pytest.mark.parametrize(
+    ("axis", "force", "coefficient"),
+    mostly_slow([(0, 1, 0.2), (0, -1, 0.4), (1, 1, 0.5)], quick=[(0, 1, 0.2), (0, -1, 0.4)]),
+)
 def test_directions_have_coefficients_of_their_own(axis: int, force: int, coefficient: float) -> None:
     rail = tuple(float(i == axis) for i in range(3))
     model = block(0.2, 0.4, 0.5, rail)

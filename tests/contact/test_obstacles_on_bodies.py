@@ -285,6 +285,7 @@ def _energy(solution: Solution, strains: FloatArray) -> float:
     return float(model.energy(x, inputs)) + 0.9 * float(grid.weights @ layer) + 0.5 * float(position[2])
 
 
+@pytest.mark.slow
 def test_every_variation_costs_energy(pressed: Solution) -> None:
     """The equilibrium is where the energy of all is least: the forces on rod and body are derivatives of one."""
     model = pressed.model

@@ -214,6 +214,7 @@ width = 8e-3
 """
 
 
+@pytest.mark.slow
 def test_an_elastica_that_closes_on_itself() -> None:
     solution = solve(build(parse_scene(LOOP)))
     assert solution.outcome is Outcome.CONVERGED

@@ -72,6 +72,7 @@ def test_the_unloaded_arc_vs_closed_form() -> None:
     assert_allclose(unloaded_shape(START)[-1], end, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_the_optimum_is_confirmed_by_solves(stroke: Stroke) -> None:
     design = designed(stroke)
     equilibria = equilibria_of(design, 5)

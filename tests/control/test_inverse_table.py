@@ -113,6 +113,7 @@ def test_models_and_optimisers_are_built_once(tmp_path: Path, monkeypatch: pytes
     assert counts[1] == counts[0]
 
 
+@pytest.mark.slow
 def test_rows_start_from_their_nearest_neighbour(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In whatever order they are given: along the line that the tips make."""
     given = wanted()

@@ -245,6 +245,7 @@ def test_assembly_that_cannot_close_says_what_is_left() -> None:
     assert metres > 0.3
 
 
+@pytest.mark.slow
 def test_stability_of_a_carried_column_vs_eulers_load() -> None:
     """Two rods in series under a dead load on a body: straight, stable below Euler's critical load, unstable above."""
     critical = np.pi**2 * 1.0 / (4 * 0.8**2)

@@ -14,6 +14,7 @@ from scipy.optimize import root
 from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve
 from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
 from cosserat_casadi.equilibrium.metrics import largest_turn
+from tests.families import mostly_slow
 from tests.reference.closed_forms import roll_up
 from tests.scenes import push, rod, scene
 from tests.shooting_near import integrate
@@ -77,7 +78,7 @@ def test_literal_system_that_loses_the_unit_quaternion_is_unresolved() -> None:
         assert solve(build(wanted, discretise(wanted, 1, nodes, "permuted"))).outcome is outcome
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
 @pytest.mark.parametrize("turns", [2, 5])
 def test_roll_up_vs_circles(strain: str, turns: int) -> None:
     solution = solve(rolled(turns, strain))

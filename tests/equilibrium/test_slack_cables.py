@@ -54,7 +54,7 @@ def test_cable_that_is_slack_on_the_way_and_taut_in_the_end() -> None:
     assert_alike(STALLED)
 
 
-@pytest.mark.parametrize("seed", mostly_slow(range(8), quick=[0, 3]))
+@pytest.mark.parametrize("seed", mostly_slow(range(8), quick=[3]))
 def test_taut_cables_vs_cables_that_cannot_go_slack(seed: int) -> None:
     """Lengths of a stable equilibrium under tensions from 0.2 to 10 N."""
     tensions = np.random.default_rng(seed).uniform(0.2, 10.0, 3)
@@ -77,7 +77,7 @@ def test_cable_that_is_too_long_stays_slack() -> None:
 
 
 @pytest.mark.parametrize("slack", [False, True])
-@pytest.mark.parametrize("load_factor", [1.0, 0.6, 0.0])
+@pytest.mark.parametrize("load_factor", mostly_slow([1.0, 0.6, 0.0], quick=[0.6]))
 def test_jacobian_vs_ad(load_factor: float, slack: bool) -> None:
     model = of_length(STALLED, slack=slack)
     x = 0.3 * np.random.default_rng(3).standard_normal(model.size)

@@ -14,12 +14,13 @@ from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.numerics.broyden import UpdatedJacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
+from tests.families import mostly_slow
 from tests.pose_errors import distance_between
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 
 @pytest.mark.parametrize("method", ["rootfinder", "nlpsol"])
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff", "reissner"], quick=["reissner"]))
 def test_casadis_solvers_vs_continuation(method: str, strain: str) -> None:
     model = build(scene(push(), WEIGHT, strain=strain))
     ours, theirs = solve(model), solve(model, method=method)
@@ -206,7 +207,7 @@ def test_continuation_stalls_at_a_fold() -> None:
     assert_allclose(result.reached, 0.5, rtol=0, atol=1e-2)
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff", "reissner"], quick=["planar", "kirchhoff"]))
 def test_stability_of_a_column_about_its_buckling_load(strain: str) -> None:
     """Euler's cantilever: π² EI/(4 ℓ²) with the softest bending; with shear and extension a little less."""
     critical = np.pi**2 / 4 * (1.4 if strain == "planar" else 1.0) / 0.8**2

@@ -221,6 +221,7 @@ def test_data_that_the_model_explains_are_not_doubted() -> None:
     assert found.warnings == () or not any("explain" in warning for warning in found.warnings)
 
 
+@pytest.mark.slow
 def test_a_number_that_a_bound_holds_is_not_fitted() -> None:
     """Of a rod that nothing pushes half of the rows would pull: their force stays at its bound, zero."""
     known = estimate(model_of({**FELT, "lower": 0.0}), shapes(BENDING, np.zeros(12), np.zeros(12), 4))

@@ -142,6 +142,7 @@ def test_derivatives_with_multipliers_are_those_of_differences() -> None:
     check_derivatives(misfit_of(model, {"path.csv": columns}, 0.01), [1e1, 1e-2, 1e-6], 1e-5)
 
 
+@pytest.mark.slow
 def test_modulus_density_and_damping_are_recovered_to_the_noise(found: Identification) -> None:
     assert found.converged, found.message
     truth = np.array([TRUTH[name] for name in found.labels])

@@ -106,6 +106,7 @@ def test_intervals_of_95_percent_cover() -> None:
     assert_allclose(np.sqrt(np.mean(every**2)), 1.0, rtol=0.25, atol=0)
 
 
+@pytest.mark.slow
 def test_a_scene_is_identified_with_the_steps_that_it_needs() -> None:
     found = identify(scene(), shapes(4, 2))
     assert found.converged

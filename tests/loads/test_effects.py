@@ -105,6 +105,7 @@ def test_check_names_them_and_their_prices(
         assert any(str(price[name]) in line for line in lines), lines
 
 
+@pytest.mark.slow
 def test_solve_writes_and_draws_them(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cosserat(monkeypatch, "solve", "finger.toml", "--output", "found.json", "--plot", "found.png") == 0
     result = json.loads((folder / "found.json").read_text())

@@ -79,6 +79,7 @@ def test_still_water_carries_what_it_displaces() -> None:
     assert_allclose(floating.base_wrench().force, light.base_wrench().force, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_level_rod_sinks_at_its_terminal_velocity() -> None:
     """(ρ_s − ρ) g π r²  = ρ r C_n v²; along its axis (ρ_s − ρ) g π r² = ρ r π C_t v². It stays straight."""
     weight = (2500.0 - DENSITY) * 9.81 * np.pi * RADIUS**2

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, scene_from_dict, solve
+from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
 FEW = {"modes": 3, "nodes": 8}
@@ -55,7 +56,7 @@ def tied_to(name: str, nodes: np.ndarray, unloaded: np.ndarray) -> np.ndarray:
     return np.array([0.1 + 0.2 * (2 * nodes - 1), -0.3 + 0 * nodes, 0.1 * nodes + 0.2 * nodes**2])
 
 
-@pytest.mark.parametrize("strain", ["kirchhoff", "reissner"])
+@pytest.mark.parametrize("strain", mostly_slow(["kirchhoff", "reissner"], quick=["reissner"]))
 @pytest.mark.parametrize("name", CASES)
 def test_residual_vs_gradient_of_the_energy(name: str, strain: str) -> None:
     """½ Σ k_i d_i² over the nodes of the span, and a symmetric Jacobian that is its second derivative."""

@@ -130,7 +130,7 @@ def assert_jacobian_is_exact(model: Model) -> None:
         assert_allclose(on_the_way, automatic(point, model.pack(), 0.6).full(), rtol=0, atol=bound)
 
 
-@pytest.mark.parametrize(("scene", "load"), mostly_slow(CASES, quick=QUICK[::3]))
+@pytest.mark.parametrize(("scene", "load"), mostly_slow(CASES, quick=QUICK[::5]))
 def test_jacobian_vs_automatic_differentiation(scene: str, load: str) -> None:
     assert_jacobian_is_exact(made(scene, load))
 

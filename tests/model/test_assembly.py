@@ -101,7 +101,7 @@ def test_jacobian_vs_ad_vs_finite_differences(factor: float) -> None:
     assert_allclose(own, np.hstack([s.full() for s in steps]) / (2 * h), rtol=0, atol=5e-9)
 
 
-@pytest.mark.parametrize("angle", mostly_slow([0.0, 1.0, np.pi, 2 * np.pi], quick=[0.0, np.pi]))
+@pytest.mark.parametrize("angle", mostly_slow([0.0, 1.0, np.pi, 2 * np.pi], quick=[np.pi]))
 def test_derivatives_finite_at_any_turn_of_a_frame(angle: float) -> None:
     """A quaternion has no singular rotation: identity, half turn and full turn alike."""
     model = loaded()
@@ -237,7 +237,9 @@ def hung(places: list[float], changes: dict[str, Any], *moved: float) -> Scene:
     return scene_from_dict({**tables, **changes, "loads": loads})
 
 
-@pytest.mark.parametrize("case", SPINS)
+@pytest.mark.parametrize(
+    "case", mostly_slow(SPINS, quick=["joint", "weight_at_the_joint", "two", "weight_on_the_line"])
+)
 def test_bodies_that_turn_freely_are_refused(case: str) -> None:
     places, changes, about = SPINS[case]
     with pytest.raises(SceneError) as refused:

@@ -42,6 +42,7 @@ def cut() -> Scene:
     return scene_from_dict(tables(rods, [joint("lower", rod="a"), joint("upper", rod="b")]))
 
 
+@pytest.mark.slow
 def test_a_rod_with_bodies_vs_the_rod_cut_at_them() -> None:
     one, three = solve(build(whole())), solve(build(cut()))
     assert one.converged

@@ -74,7 +74,7 @@ def test_residual_in_scalars_vs_that_of_matrices(family: str) -> None:
 OF_RODS = sorted(path.name for path in (ROOT / "examples").glob("*.toml") if "[[tubes]]" not in path.read_text())
 
 
-@pytest.mark.parametrize("name", mostly_slow(OF_RODS, quick=OF_RODS[::3]))
+@pytest.mark.parametrize("name", mostly_slow(OF_RODS, quick=OF_RODS[::9]))
 def test_examples_at_rest_are_static_to_the_last_bit(name: str) -> None:
     tables = read_scene(ROOT / "examples" / name)
     model = build(tables)
@@ -82,7 +82,7 @@ def test_examples_at_rest_are_static_to_the_last_bit(name: str) -> None:
     np.testing.assert_array_equal(at_rest(model, x), model.residual(x, model.pack()).full())
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", mostly_slow(range(12), quick=range(4)))
 def test_random_scenes_at_rest_are_static_to_the_last_bit(seed: int) -> None:
     model = build(scene_from_dict({**random_scene(seed), "accuracy": COARSE}))
     x = np.random.default_rng(seed).standard_normal(model.size)

@@ -42,6 +42,7 @@ def slid() -> Motion:
     return motion
 
 
+@pytest.mark.slow
 def test_turning_points_of_a_slide_on_a_spring(slid: Motion) -> None:
     """Each half turn brings the slide nearer to the rest of the spring by 2 F/k; within F/k of it, it sticks."""
     way = displacements(slid) - REST

@@ -258,6 +258,7 @@ def test_refusals(joint: dict[str, Any], where: str, problem: str) -> None:
     assert (f"joints[0].{where}", problem) in [(one.where, one.problem) for one in refused.value.problems]
 
 
+@pytest.mark.slow
 def test_stop_as_a_parameter() -> None:
     """A stop as a parameter: the angle follows it."""
     hinge = {**HINGE, "stiffness": 0.5, "upper_stop": 0.3}

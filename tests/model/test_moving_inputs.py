@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, parse_scene, solve
 from cosserat_casadi.model.load_cases import column_indices
+from tests.families import mostly_slow
 
 NAMES = ("push.force", "wind.force", "cable.tension", "arm.length", "arm.base.position", "arm.base.quaternion")
 FREE = f"inputs = {list(NAMES)}"
@@ -78,7 +79,7 @@ MOVED = {"arm.length": 0.26, "arm.base.position": PLACE, "arm.base.quaternion": 
 
 @pytest.mark.parametrize(
     ("strain", "more"),
-    [("reissner", ""), ("kirchhoff", ""), ("planar", ""), pytest.param("reissner", HELD, marks=pytest.mark.slow)],
+    mostly_slow([("reissner", ""), ("kirchhoff", ""), ("planar", ""), ("reissner", HELD)], quick=[("reissner", "")]),
 )
 def test_inputs_vs_a_scene_written_so(strain: str, more: str) -> None:
     found = solve(at_home(strain, more=more), MOVED)

@@ -73,7 +73,7 @@ MANY = tendon(COURSES["converging"]) + tendon(COURSES["partial"], "tension = 2.5
 MANY += tendon(COURSES["helical"], "tension = 1.5", "third")
 
 
-@pytest.mark.parametrize("course", mostly_slow([*COURSES, "several"], quick=["converging", "partial", "several"]))
+@pytest.mark.parametrize("course", mostly_slow([*COURSES, "several"], quick=["partial", "several"]))
 def test_tendons_vs_distributed_loads(course: str) -> None:
     """From the strain at the base the rod with distributed loads comes to the same tip, and nothing is left there.
 

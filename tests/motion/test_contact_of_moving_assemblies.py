@@ -225,6 +225,7 @@ def impulse_by_projection(model: Model, motion: Motion, time: float, body: str) 
     return -approach / inverse_mass, -approach
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "rods", mostly_slow([FRAME, TWIGS.split("[[obstacles]]")[0]], quick=[FRAME]), ids=["closed", "open"]
 )

@@ -230,6 +230,7 @@ def test_impact_is_the_blow_that_closes_the_cable() -> None:
     assert_allclose(length, 0.8, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_motion_through_an_impact_converges_with_the_steps() -> None:
     """Times of impact and paths after it follow the tolerance of a step."""
     scene = {**pushed_cable("kirchhoff", 0.02, 3.0, 1.0), "accuracy": {"modes": 3, "nodes": 9}}

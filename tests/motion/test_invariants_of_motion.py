@@ -127,6 +127,7 @@ def chain() -> transients.Table:
     return moving_scenes.scene(*rods, loads=[], bodies=[moving_scenes.PLATE], joints=joints)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jointed", mostly_slow([hinged, chain], quick=[hinged]))
 def test_momentum_of_free_rods_that_are_joined_is_kept_to_rounding(jointed: Callable[[], transients.Table]) -> None:
     """Forces in joints act within: steps alone would miss 5e-7 of the momentum of the scissors."""
@@ -154,6 +155,7 @@ def test_rods_that_nothing_joins_are_not_one_piece() -> None:
     assert not flies_free(moving_model(moving_scenes.scene(undamped(), loads=[]), 2, 6))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "order"),
     [
@@ -335,6 +337,7 @@ def test_turned_scene_moves_as_the_scene_does() -> None:
     assert_allclose(turned.tip().position, plain.tip().position @ turn.T, rtol=0, atol=1e-11)
 
 
+@pytest.mark.slow
 def test_two_rods_in_series_move_as_one() -> None:
     """One carries the other at its tip; the joint is a constraint, and the modes of the halves are others."""
     length = 0.8

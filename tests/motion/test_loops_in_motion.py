@@ -91,6 +91,7 @@ def test_energy_is_balanced_in_closed_loops(family: str) -> None:
     assert np.abs(motion.energy.imbalance).max() < 2e-3
 
 
+@pytest.mark.slow
 def test_poses_meet_at_joints() -> None:
     """The tips as results have them, in world axes, and the body."""
     motion = simulated("spherical joint")

@@ -83,6 +83,7 @@ def test_a_rod_that_has_fallen_on_a_table_lies_as_statics_has_it(fallen: Motion)
     assert fallen.energy.kinetic[-1] < 1e-4 * fallen.energy.kinetic.max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", mostly_slow(["falling", "fallen"], ["falling"]))
 def test_a_rod_that_lies_down_is_never_deep_nor_pulled_and_its_energy_only_falls(
     part: str, request: pytest.FixtureRequest

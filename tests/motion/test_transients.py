@@ -116,7 +116,7 @@ def line_loaded() -> LineLoaded:
 @pytest.mark.parametrize(
     ("method", "order", "sizes"),
     [
-        (radau(2), 3, (0.015, 0.0075)),
+        pytest.param(radau(2), 3, (0.015, 0.0075), marks=pytest.mark.slow),
         (radau(3), 5, (0.06, 0.03, 0.015)),
         (gauss(2), 4, (0.03, 0.015)),
         (gauss(3), 6, (0.06, 0.03, 0.015)),
@@ -150,6 +150,7 @@ def test_sudden_weight_vs_independent_galerkin_method() -> None:
     assert error <= motion.error_estimate + 3e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("tolerance", "share"), mostly_slow([(1e-3, 2.4e-4), (1e-4, 3.6e-5)], quick=[(1e-3, 2.4e-4)]))
 def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
     """Energy is kept as exactly as the steps are exact, which follow the tolerance of the path.
@@ -165,6 +166,7 @@ def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
 # Spin-up
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 1e-6, marks=pytest.mark.slow)])
 def test_spin_up_vs_independent_galerkin_method(spacing: float, atol: float) -> None:
     """The base turns by a cubic spline: knots twice as close bring it nearer to the angle of the reference by 2⁴."""

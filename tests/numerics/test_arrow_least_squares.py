@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, Fit, FitOutcome, FitSettings, Limits
 from cosserat_casadi.numerics.robust_loss import Loss
+from tests.families import mostly_slow
 
 TIMES = np.linspace(0.0, 2.0, 9)
 
@@ -240,7 +241,7 @@ class Linear:
         return self.matrix, np.zeros((len(self.measured), 0))
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", mostly_slow(range(40), quick=range(10)))
 def test_bounds_in_narrow_valleys_are_kept_as_by_scipy(seed: int) -> None:
     """Singular values from 1 to 1e-5: where a bound cuts one unknown off, the others must go another way."""
     rng = np.random.default_rng(seed)

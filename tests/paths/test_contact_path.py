@@ -73,6 +73,7 @@ def root(missed: object, guess: list[float]) -> np.ndarray:
     return np.asarray(found)
 
 
+@pytest.mark.slow
 def test_a_rod_comes_to_lie_on_a_table(lowered: ContactPath) -> None:
     """The tip touches; it carries more and more, until it lies level: from there on a line grows."""
     assert lowered.converged
@@ -201,6 +202,7 @@ def test_no_step_takes_a_rod_through_a_thin_wire() -> None:
     assert_allclose(path.smallest_eigenvalue[-1], path.solution(-1).smallest_eigenvalue, rtol=1e-9, atol=0)
 
 
+@pytest.mark.slow
 def test_without_contact_it_is_the_path_of_the_scene_without_obstacles() -> None:
     low = TABLE.replace("-0.08]", "-5.0]")
     bare = parse_scene(low[: low.index("[[obstacles]]")])

@@ -219,7 +219,10 @@ def test_a_result_is_plain_data(name: str) -> None:
     assert json.loads(json.dumps(data, allow_nan=False)) == data
 
 
-@pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.parametrize(
+    "name",
+    mostly_slow(MAKERS, quick=["Solution", "EquilibriumPath", "Modes", "Estimate", "SobolIndices", "TubeSolution"]),
+)
 def test_a_result_is_written_by_suffix(name: str, tmp_path: Path) -> None:
     result = MAKERS[name]()
     for suffix in presentation_of(result).suffixes:
@@ -244,7 +247,7 @@ def test_a_result_says_what_matters_in_a_few_lines(name: str) -> None:
     assert any("error" in line for line in lines) or name == "SobolIndices"
 
 
-@pytest.mark.parametrize("name", mostly_slow(MAKERS, quick=["Solution", "Sweep", "TubePath", "Estimate"]))
+@pytest.mark.parametrize("name", mostly_slow(MAKERS, quick=["Solution", "TubePath"]))
 def test_a_notebook_shows_table_and_figure(name: str) -> None:
     result = MAKERS[name]()
     assert isinstance(result.plot(), Figure)

@@ -138,12 +138,19 @@ SPOILT = {
 """Path of an entry of a result file, and what is put there."""
 
 
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The result file of a rod that is pushed."""
+    path = tmp_path_factory.mktemp("written") / "result.json"
+    solve(build(scene(push()))).write(path)
+    return path.read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("name", SPOILT)
-def test_files_with_a_spoilt_entry_are_refused(tmp_path: Path, name: str) -> None:
+def test_files_with_a_spoilt_entry_are_refused(tmp_path: Path, written: str, name: str) -> None:
     given = scene(push())
     path = tmp_path / "result.json"
-    solve(build(given)).write(path)
-    data = json.loads(path.read_text(encoding="utf-8"))
+    data = json.loads(written)
     *keys, last, value = SPOILT[name]
     entry = data
     for key in keys:

@@ -78,7 +78,7 @@ def check(compared, *at):
 
 @pytest.mark.parametrize("rotary", mostly_slow([False, True], quick=[True]), ids=["point", "rotary"])
 @pytest.mark.parametrize("breaks", BREAKS)
-@pytest.mark.parametrize("name", RODS)
+@pytest.mark.parametrize("name", mostly_slow(RODS, quick=[*RODS][1::2]))
 def test_derivatives_vs_ad(name, breaks, rotary):
     basis, compared = case(name, breaks, rotary=rotary)
     check(compared, *state(basis))
@@ -91,7 +91,7 @@ def test_derivatives_vs_ad_of_a_rod_that_is_drawn_out(name):
 
 
 @pytest.mark.parametrize("transport", ["magnus4", "magnus6"])
-@pytest.mark.parametrize("name", ["kirchhoff", "reissner"])
+@pytest.mark.parametrize("name", mostly_slow(["kirchhoff", "reissner"], quick=["reissner"]))
 def test_derivatives_vs_ad_for_each_transport(name, transport):
     basis, compared = case(name, "two", transport=transport)
     check(compared, *state(basis, 4))
@@ -107,7 +107,7 @@ def test_derivatives_vs_ad_without_strain(name, straight):
     check(compared, zero, zero, zero)
 
 
-@pytest.mark.parametrize("name", ["planar", "kirchhoff", "reissner", "odd"])
+@pytest.mark.parametrize("name", mostly_slow(["planar", "kirchhoff", "reissner", "odd"], quick=["reissner", "odd"]))
 def test_derivatives_vs_central_differences(name):
     basis, compared = case(name, "two")
     residual = compared.factory("residual_alone", compared.name_in(), [compared.name_out(0)])
@@ -125,7 +125,7 @@ def test_derivatives_vs_central_differences(name):
 
 
 @pytest.mark.parametrize("rotary", [False, True], ids=["point", "rotary"])
-@pytest.mark.parametrize("name", RODS)
+@pytest.mark.parametrize("name", mostly_slow(RODS, quick=[*RODS][1::2]))
 def test_mass_is_the_hessian_of_the_kinetic_energy(name, rotary):
     basis, compared = case(name, "two", rotary=rotary)
     values = [value.full() for value in compared(*state(basis))]

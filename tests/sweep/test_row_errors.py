@@ -73,6 +73,7 @@ def test_what_has_no_equilibrium_is_within_no_tolerance(tmp_path: Path) -> None:
     assert_array_equal(read_sweep(file).values, found.values)
 
 
+@pytest.mark.slow
 def test_a_tolerance_that_nobody_wrote_is_not_missed() -> None:
     fixed = scene(push(), rods=[rod("planar")], accuracy={"modes": 2, "nodes": 8})
     found = sweep(fixed, {"push.force.x": PUSHES})
@@ -142,6 +143,7 @@ def test_rows_in_contact_have_the_errors_of_their_solves() -> None:
     assert found["within_tolerance"][0] == expected.within_tolerance
 
 
+@pytest.mark.slow
 def test_rows_of_tubes_have_the_errors_of_their_solves() -> None:
     tubes = read_scene(Path(__file__).parents[2] / "examples" / "concentric_tubes.toml")
     found = sweep(tubes, {"inner.rotation": [0.0, 1.3]}, cores=1)

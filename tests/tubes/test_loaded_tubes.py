@@ -194,7 +194,7 @@ def wrench(**keys: object) -> str:
         pytest.param(wrench(force=[0.5, -0.3, -1.2], frame='"body"'), marks=pytest.mark.slow),
         pytest.param(wrench(moment=[0.04, 0.03, 0.06]), marks=pytest.mark.slow),
         wrench(moment=[0.04, 0.03, 0.06], force=[0.2, 0.1, 0.3], frame='"body"'),
-        WEIGHT + wrench(force=[0.0, 0.6, 0.0]),
+        pytest.param(WEIGHT + wrench(force=[0.0, 0.6, 0.0]), marks=pytest.mark.slow),
     ],
     ids=["force", "follower", "moment", "following wrench", "weight"],
 )
@@ -311,6 +311,7 @@ def test_a_straight_tube_buckles_at_eulers_load(share: float, falling: int) -> N
     assert found.stable == (falling == 0)
 
 
+@pytest.mark.slow
 def test_order_eight() -> None:
     scene = parse_scene(weighed(THREE) + PUSH + POKE + WEIGHT)
     robot = robot_of(scene)

@@ -257,6 +257,7 @@ def test_a_path_begins_at_an_equilibrium_of_its_own_robot() -> None:
         follow(of_rods, "push.force", [1.0, 0.0, 0.0], first=other)
 
 
+@pytest.mark.slow
 def test_loads_that_follow_have_no_energy() -> None:
     scene = parse_scene(FOLLOWING, ["accuracy.tolerance=1e-3"])
     found = solve(scene)

@@ -87,6 +87,7 @@ def test_derivatives_with_the_parameters_are_difference_quotients(
         assert_allclose(columns[:, index], difference, rtol=1e-6, atol=1e-9 / value)
 
 
+@pytest.mark.slow
 def test_an_equilibrium_elsewhere_is_that_of_a_scene_of_its_own(model: TubeFunctions) -> None:
     found = solve(model, parameters=NAMES, estimate_error=False)
     wanted = solve(elsewhere(), estimate_error=False)

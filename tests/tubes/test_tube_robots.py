@@ -107,10 +107,10 @@ def test_ranges_of_inputs() -> None:
 @pytest.mark.parametrize(
     "inputs",
     [
-        {},
+        pytest.param({}, marks=pytest.mark.slow),
         {"innermost.translation": 0.1},
         {"outer.translation": 0.05, "inner.translation": 0.29, "innermost.translation": 0.12},
-        {"outer.translation": 0.0, "inner.rotation": 4.0},
+        pytest.param({"outer.translation": 0.0, "inner.rotation": 4.0}, marks=pytest.mark.slow),
     ],
 )
 def test_three_tubes_whatever_the_order_of_their_ends(inputs: dict[str, float]) -> None:

@@ -67,6 +67,7 @@ def test_a_tip_has_the_pose_that_is_wanted() -> None:
         assert_allclose(found.values[key], value, rtol=0, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_beyond_its_reach_the_tip_is_as_near_as_it_can_be() -> None:
     free = {key: (-10.0, 10.0) if "rotation" in key else ends for key, ends in BOUNDS.items()}
     del free["inner.translation"]
@@ -138,6 +139,7 @@ def test_without_targets_or_bounds_there_is_nothing_to_look_for() -> None:
         inverse(parse_scene(with_target("concentric_tubes", "position", {}, position=[0, 0, 0.1])))
 
 
+@pytest.mark.slow
 def test_on_the_command_line(tmp_path: Path) -> None:
     goal = solve(parse_scene(text_of("concentric_tubes")), ELSEWHERE).tip("inner").position
     file = tmp_path / "tubes.toml"
