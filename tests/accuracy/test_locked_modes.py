@@ -31,6 +31,7 @@ def platform() -> Model:
     return build(legs, discretise(legs, 4, 8))
 
 
+@pytest.mark.slow
 def test_modes_that_lock_are_beyond_all_bounds(platform: Model) -> None:
     preview = Preview(solve(platform, estimate_error=False))
     locked = dict.fromkeys(platform.discretisation, (2, 2, 1))

@@ -15,6 +15,7 @@ from cosserat_casadi import Solution, solve
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.rod.rubbing_cable import BETWEEN, STRAIGHT, _missed_by_gauss
 from cosserat_casadi.scene import scene_from_dict
+from tests.families import mostly_slow
 
 KINK = 0.2839052656
 """Abscissa at which the rod is straight: solved for, with elements that end there."""
@@ -75,7 +76,7 @@ def test_the_estimate_is_above_the_error(reference: Solution) -> None:
     assert 0.0 < error(found, reference) <= found.error_estimate <= 1e-5
 
 
-@pytest.mark.parametrize("nodes", [25, pytest.param(26, marks=pytest.mark.slow), 29, 40])
+@pytest.mark.parametrize("nodes", mostly_slow([25, 26, 29, 40], quick=[25, 40]))
 def test_the_error_is_that_of_the_modes_wherever_the_kink_lies(reference: Solution, nodes: int) -> None:
     """2e-6 with 11 modes; it was 4e-6 to 8e-6, as the kink lay between nodes."""
     found = solved(modes=11, nodes=nodes)

@@ -106,6 +106,7 @@ def tip(tensions: FloatArray, strain: str) -> FloatArray:
     return np.asarray(solution.tip().position)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "tensions",
     mostly_slow([[4.0, 0, 0, 0, 2, 0], [2.0, 0, 0, 0, 1, 0], [8.0, 0, 0, 0, 0, 0]], quick=[[4.0, 0, 0, 0, 2, 0]]),

@@ -17,6 +17,7 @@ from cosserat_casadi.results.json_text import json_text
 from examples.demo import EXPORTED, HANDFUL, MOTIONS, SCENES, command_lines
 from tests.commands import WIRE, cosserat
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 
 SCENE = (
     """
@@ -700,6 +701,7 @@ def test_command_that_is_written_wrongly_is_told_where_to_look(
     assert last.endswith(helps)
 
 
+@pytest.mark.slow
 def test_an_export_says_for_which_ranges_its_modes_were_chosen(wire: Path) -> None:
     """Those that are asked for, in the README, the manifest and the scene of the folder."""
     asked = [f"push.force.{axis}=-0.1:0.1" for axis in "xyz"]
@@ -747,7 +749,7 @@ RANGED = {
 """Commands that take ranges."""
 
 
-@pytest.mark.parametrize("command", RANGED)
+@pytest.mark.parametrize("command", mostly_slow(RANGED, quick=["export", "view", "tune"]))
 def test_ranges_are_refused_and_nothing_is_written(command: str, wire: Path) -> None:
     for text, sentence in (
         ("push.force.x=1:1", "two different ends"),

@@ -16,6 +16,7 @@ from cosserat_casadi import ExportError, build, discretise, export, load
 from cosserat_casadi.codegen import cache, compiler
 from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
 from cosserat_casadi.codegen.compiler import find_compiler
+from tests.families import mostly_slow
 from tests.scenes import push, scene
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
@@ -253,11 +254,14 @@ def is_alive(number: int) -> bool:
 @needs_shell
 @pytest.mark.parametrize(
     ("command", "words"),
-    [
-        ("{gcc} -O1 -DANSWER='4 2'", ["-O0", "-O1", "-DANSWER=4 2", "-c"]),
-        ("{launcher} {gcc}", ["-O0", "-c"]),
-        ("{blank}", ["-O0", "-c"]),
-    ],
+    mostly_slow(
+        [
+            ("{gcc} -O1 -DANSWER='4 2'", ["-O0", "-O1", "-DANSWER=4 2", "-c"]),
+            ("{launcher} {gcc}", ["-O0", "-c"]),
+            ("{blank}", ["-O0", "-c"]),
+        ],
+        quick=[("{gcc} -O1 -DANSWER='4 2'", ["-O0", "-O1", "-DANSWER=4 2", "-c"])],
+    ),
     ids=["options", "launcher", "a path with a blank"],
 )
 def test_commands_of_several_words(

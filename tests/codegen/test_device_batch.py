@@ -194,6 +194,7 @@ def test_single_precision_vs_double(root: Path) -> None:
     assert_allclose(single["x"], double["x"], rtol=1e-3, atol=1e-4)
 
 
+@pytest.mark.slow
 def test_rows_of_a_sweep_vs_rows_in_c(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", QUICKLY)
     made, modes, nodes, _ = SCENES["adjustable"]

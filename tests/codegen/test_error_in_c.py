@@ -81,6 +81,7 @@ def test_an_old_jacobian_that_tells_nothing_is_made_anew(
     assert_allclose(solved.error_estimate, wanted.error_estimate, rtol=FRESH, atol=0)
 
 
+@pytest.mark.slow
 def test_an_answer_that_lacks_nothing_is_exact(pushed: Compiled) -> None:
     # A straight rod: no missing mode moves, and the unknowns of the answer have nothing to follow.
     solved = pushed.solve({"push.force": [0.0, 0.0, 0.0]})

@@ -74,6 +74,7 @@ def test_stack_of_batches(name: str, tmp_path: Path) -> None:
     assert stack <= said <= MARGIN * stack + ROUNDING
 
 
+@pytest.mark.slow
 def test_no_function_of_the_solver_has_a_large_frame(library: Library) -> None:
     """As the compiler counts it: what lies on the stack does not grow with the unknowns."""
     made = library("robot")

@@ -44,7 +44,7 @@ LINT = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-co
 """What any compiler may complain of; MSVC knows no arrays of variable length."""
 
 
-@pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
+@pytest.mark.parametrize("single", mostly_slow([False, True], quick=[False]), ids=["double", "float"])
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 @pytest.mark.parametrize("name", mostly_slow(KINDS, quick=["robot"]))
 def test_solver_passes_every_lint_in_both_languages(library: Library, name: str, language: str, single: bool) -> None:
@@ -106,7 +106,11 @@ def test_solver_is_the_same_file_in_every_folder(library: Library, name: str) ->
         assert text == resource("c", file), file
 
 
-@pytest.mark.parametrize("flags", [("-DPLANAR_SINGLE",), ("-fopenmp",), ("-std=c11",)], ids=lambda flags: flags[0])
+@pytest.mark.parametrize(
+    "flags",
+    [("-DPLANAR_SINGLE",), ("-fopenmp",), pytest.param(("-std=c11",), marks=pytest.mark.slow)],
+    ids=lambda flags: flags[0],
+)
 def test_variants_compile_without_a_warning(library: Library, flags: tuple[str, ...], tmp_path: Path) -> None:
     for stem in ("planar", "planar_demo"):
         gcc(*STRICT, "-O2", *flags, "-c", library("planar").folder / f"{stem}.c", "-o", tmp_path / "o")

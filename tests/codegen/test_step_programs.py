@@ -112,7 +112,7 @@ def test_float_vs_double(motion_library: MotionLibrary) -> None:
 # The sources
 
 
-@pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
+@pytest.mark.parametrize("single", mostly_slow([False, True], quick=[False]), ids=["double", "float"])
 @pytest.mark.parametrize("family", mostly_slow(["planar", "planar held", "fixed joint"], quick=["planar held"]))
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 def test_sources_pass_every_lint_in_both_languages(

@@ -112,6 +112,7 @@ def test_exact_contact_of_a_tip_vs_shooting() -> None:
     assert_allclose(path.tip().position[-1], solution.tip().position, rtol=0, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_a_disk_that_touches_exactly_where_a_joint_is() -> None:
     """A body without weight at the section of a disk changes nothing."""
     tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)

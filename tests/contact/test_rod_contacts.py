@@ -244,6 +244,7 @@ def test_an_elastica_that_closes_on_itself() -> None:
     assert_allclose(contact.force[1], 0.0, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_what_is_deeper_than_the_width_or_passes_through_is_told() -> None:
     weak = crossed(-2.0, "stiffness = 1e3")
     solution = solve(weak, estimate_error=False)

@@ -70,6 +70,7 @@ def test_the_table_takes_a_load_where_it_stands(pressed: Solution) -> None:
     assert pressed.stable
 
 
+@pytest.mark.slow
 def test_files_list_the_forces_inside(pressed: Solution) -> None:
     (contact,) = pressed.to_dict()["contacts"]
     (section,) = pressed.contacts[0].inside

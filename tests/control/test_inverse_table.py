@@ -55,7 +55,10 @@ def write(path: Path, rows: list[list[float]], header: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("accuracy", [{"tolerance": 1e-5}, {"modes": 4, "nodes": 9, "tolerance": 1e-3}])
+@pytest.mark.parametrize(
+    "accuracy",
+    [pytest.param({"tolerance": 1e-5}, marks=pytest.mark.slow), {"modes": 4, "nodes": 9, "tolerance": 1e-3}],
+)
 def test_forces_are_recovered_for_every_row(tmp_path: Path, accuracy: dict[str, Any]) -> None:
     given = wanted(accuracy=accuracy)
     rows = [row[:3] for row in tips(given)]

@@ -188,7 +188,7 @@ def of_both(model: Model, width: float) -> tuple[ca.Function, ca.Function]:
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=SLOW if name in ("fixed", "spherical") else ()) for name in MODELS]
+    "name", [pytest.param(name, marks=SLOW if name in ("cable", "fixed", "spherical") else ()) for name in MODELS]
 )
 def test_derivatives_vs_differences(name: str) -> None:
     """Exact to second order, where the round column has a double eigenvalue too."""

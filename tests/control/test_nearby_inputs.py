@@ -47,7 +47,10 @@ def problem_at(model: Model, values: dict[str, Any]) -> tuple[LiftedProblem, Sol
 
 @pytest.mark.parametrize(
     ("target", "values"),
-    [(POSITION, {"push.force": FORCE}), (POSE, {"push.force": FORCE, "push.moment": MOMENT})],
+    [
+        pytest.param(POSITION, {"push.force": FORCE}, marks=pytest.mark.slow),
+        (POSE, {"push.force": FORCE, "push.moment": MOMENT}),
+    ],
     ids=["position", "pose"],
 )
 def test_what_the_optimiser_finds_is_found(target: dict[str, Any], values: dict[str, Any]) -> None:

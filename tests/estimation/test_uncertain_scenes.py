@@ -214,6 +214,7 @@ def rows(count: int, **changes: Any) -> dict[str, Any]:
     return shapes(BENDING, PRIOR * rng.normal(size=count), np.zeros(count), 2, **changes)
 
 
+@pytest.mark.slow
 def test_data_that_the_model_explains_are_not_doubted() -> None:
     found = estimate(model_of(FELT), rows(40))
     assert found.consistency.holds

@@ -191,6 +191,7 @@ def test_equilibria_and_motions_are_fitted_together(model: Model, path: dict[str
     assert np.abs((found.shared - truth) / found.sigma).max() < 3.5
 
 
+@pytest.mark.slow
 def test_steps_that_are_given_are_kept_and_their_error_is_told(model: Model, path: dict[str, FloatArray]) -> None:
     coarse = built(simulation={"duration": 0.5, "step": 0.04})
     found = identify(coarse, {"path.csv": path})

@@ -31,6 +31,7 @@ def printed(found: Identification) -> str:
     return out.getvalue()
 
 
+@pytest.mark.slow
 def test_the_error_is_the_largest_of_solves_at_what_was_found(coarse: Identification) -> None:
     model = coarse.model.at(coarse.parameters)
     errors = {}

@@ -121,6 +121,7 @@ def test_path_strengthens_the_source(folder: Path, monkeypatch: pytest.MonkeyPat
     assert json.loads((folder / "path.json").read_text())["outcome"] == "converged"
 
 
+@pytest.mark.slow
 def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
     """In to 2 N and let out at 2 N: the four paths of a cycle meet, and the way back is another one."""
     model = build(read_scene(folder / "finger.toml"))

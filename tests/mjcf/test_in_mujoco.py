@@ -14,10 +14,11 @@ pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'coss
 import mujoco
 
 from cosserat_casadi.mjcf.export import mjcf_of
+from tests.families import mostly_slow
 from tests.mjcf.chains import Chain, settled
 
 
-@pytest.mark.parametrize("case", SCENES)
+@pytest.mark.parametrize("case", mostly_slow(SCENES, quick=["in space", "jointed"]))
 def test_shape_and_frequencies_have_the_second_order(case: str) -> None:
     scene = parse_scene(SCENES[case])
     model = build(scene)

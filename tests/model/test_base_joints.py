@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Model, SceneError, build, modes_of, scene_from_dict, simulate, solve
+from tests.families import mostly_slow
 
 LENGTH = 0.5
 GRAVITY = 9.81
@@ -53,7 +54,7 @@ ON_A_BODY = scene(
 SLIDING = scene([link("a", strain="reissner", base=DOWN)], [hinge(kind="prismatic", axis=[0.2, 1, 0.4])])
 
 
-@pytest.mark.parametrize("tables", [TWO, ON_A_BODY, SLIDING])
+@pytest.mark.parametrize("tables", mostly_slow([TWO, ON_A_BODY, SLIDING], quick=[ON_A_BODY, SLIDING]))
 def test_jacobian_vs_ad(tables: dict[str, Any]) -> None:
     model = build(scene_from_dict(tables))
     x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
@@ -90,6 +91,7 @@ def test_beam_on_two_supports() -> None:
     assert_allclose(solution.base_wrench().moment[1], 0.0, rtol=0, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_frequency_of_a_rigid_pendulum() -> None:
     """Of a rod that hardly bends: ω² = m g l/2 over m (l²/3 + r²/4)."""
     rod = link("a", modulus=2e12, base={"tangent": [0, 0, -1]})

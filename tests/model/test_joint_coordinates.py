@@ -138,6 +138,7 @@ def tip_of_first_link(angle: np.ndarray) -> np.ndarray:
     return LENGTH * np.array([np.cos(angle), 0 * angle, -np.sin(angle)]).T
 
 
+@pytest.mark.slow
 def test_two_links_with_a_spring_a_damper_and_a_motor_vs_scipy() -> None:
     motion = simulate(scene_from_dict(two_links(tolerance=1e-4)))
     assert motion.converged, motion.message

@@ -85,6 +85,7 @@ def test_lever_rests_on_its_stop(stiffness: float | None) -> None:
     assert_allclose(state["stop"], WEIGHT * np.cos(state["angle"]), rtol=1e-9, atol=0)
 
 
+@pytest.mark.slow
 def test_frequency_on_an_elastic_stop() -> None:
     modes = modes_of(scene_from_dict(lever(stop_stiffness=20.0)))
     angle = modes.solution.joint("hinge")["angle"]

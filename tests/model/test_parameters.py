@@ -415,10 +415,6 @@ MORE = (
 """Cases that are told apart only where values are not the defaults."""
 
 
-NOT_MOVED = [case for case in MORE if case != "spans of tendons and chambers"]
-"""Those of them that move no element: a scene of its own has the equations of the others."""
-
-
 def scene_of(case: str) -> Scene:
     given, values = CASES[case]
     return scene_from_dict({**given, "parameters": list(values)})
@@ -462,7 +458,9 @@ def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
         assert_allclose(found.full(), wanted_entries, rtol=1e-13, atol=1e-14 * np.abs(wanted_entries).max())
 
 
-@pytest.mark.parametrize("case", mostly_slow(CASES, quick=[*EACH_KIND[1::8], *NOT_MOVED]))
+@pytest.mark.parametrize(
+    "case", mostly_slow(CASES, quick=["density", "helix", "a foundation along a curve", "elastic cables"])
+)
 def test_elsewhere_it_is_the_model_with_these_numbers(case: str) -> None:
     """The bound model computes with plain numbers: none of its constants is an expression."""
     model = model_of(case)

@@ -276,6 +276,7 @@ def test_two_rods_in_series_touch_as_one_across_their_joint() -> None:
     assert_allclose(part.force, whole.force, rtol=0, atol=1e-2 * np.linalg.norm(whole.force))
 
 
+@pytest.mark.slow
 def test_a_free_rod_with_a_ball_takes_the_impulse_at_the_centre_of_the_ball() -> None:
     club = rod(base="{ position = [0, 0, 0], tangent = [1, 0, -0.5], free = true }", stiffness=0.5)
     text = head(duration=0.11) + club + BALL.format(rod="rod") + WEIGHT

@@ -69,7 +69,7 @@ DRIVES: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("drive", mostly_slow(DRIVES, quick=["length", "pinned"]))
+@pytest.mark.parametrize("drive", mostly_slow(DRIVES, quick=["length"]))
 def test_damped_motion_comes_to_rest_in_the_equilibrium(drive: str) -> None:
     """The equilibrium is that of the last inputs; on the way, energy is balanced."""
     motion = simulated(DRIVES[drive], 12.0)

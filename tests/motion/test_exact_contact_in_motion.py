@@ -223,6 +223,7 @@ def test_energies_balance_with_a_base_that_moves_and_off_the_plane(changes: list
     assert abs(motion.energy.imbalance).max() < 3e-4
 
 
+@pytest.mark.slow
 def test_a_start_that_does_not_touch_is_an_equilibrium() -> None:
     text = rod(BALL).replace('start = "unloaded"', 'start = "equilibrium"')
     apart = simulate(moving(text.replace("-9.81", "-2.0").replace("duration = 0.5", "duration = 0.05")))

@@ -62,6 +62,7 @@ def test_a_body_goes_along_with_the_strains() -> None:
     assert np.abs(motion.energy.imbalance).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_a_body_that_one_rod_carries_has_a_velocity_of_its_own() -> None:
     velocity = [1.0, 2.0, 3.0]
     body = {"name": "plate", "mass": 0.1, "inertia": [2e-4, 3e-4, 4e-4]}

@@ -26,6 +26,7 @@ def simulated(tables: dict[str, Any], duration: float) -> Any:
     return simulate(scene_from_dict({**tables, "simulation": simulation}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loads", mostly_slow([[WEIGHT], []], quick=[[WEIGHT]]), ids=["weight", "none"])
 def test_flight_decays_as_a_body_in_a_viscous_medium(loads: list[dict[str, Any]]) -> None:
     """r̈ = g − α ṙ of each point that does not turn: v = (v₀ − g/α) e^(−αt) + g/α."""

@@ -200,6 +200,7 @@ def test_a_rod_that_lies_unpressed_on_a_floor_has_no_modes_though_its_tip_presse
     assert "of the length from 'obstacle', which it does not press." in found.message
 
 
+@pytest.mark.slow
 def test_points_that_stand_for_a_line_within_the_tolerance_have_no_modes() -> None:
     """The rod enters the floor between them: it is held by more."""
     rest = pressed_at_tip(1e-3, 0.3924, 8e-4)

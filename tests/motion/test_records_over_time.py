@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Motion, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion import moving_inputs
+from tests.families import mostly_slow
 from tests.motion.stepping import moving_model
 
 DURATION = 0.5
@@ -51,7 +52,9 @@ def pushed(count: int) -> FloatArray:
     return 0.2 * np.sin(2.0 * np.pi * np.linspace(0.0, 1.0, count)) ** 2
 
 
-@pytest.mark.parametrize(("count", "interpolation"), [(201, "cubic"), (501, "linear")])
+@pytest.mark.parametrize(
+    ("count", "interpolation"), mostly_slow([(201, "cubic"), (501, "linear")], quick=[(501, "linear")])
+)
 def test_a_record_takes_the_steps_of_what_it_records(count: int, interpolation: str) -> None:
     few = recorded(pushed(11), "cubic")
     many = recorded(pushed(count), interpolation)

@@ -282,6 +282,7 @@ def test_a_start_that_is_refused_takes_no_step() -> None:
     assert steps == []
 
 
+@pytest.mark.slow
 def test_a_rod_that_merely_falls_is_not_warned_of_waves() -> None:
     free = {**IN_SPACE, "base": {"position": [0, 0, 0], "free": True}}
     simulation = asked(start="unloaded", duration=0.1)

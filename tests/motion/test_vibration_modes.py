@@ -102,7 +102,7 @@ UNLOADED = {
 
 @pytest.mark.parametrize(
     "name",
-    mostly_slow(UNLOADED, quick=["torsion", "shear", "helix 1"]),
+    mostly_slow(UNLOADED, quick=["torsion", "helix 1"]),
 )
 def test_unloaded_rods(name):
     described, expected, tolerance = UNLOADED[name]

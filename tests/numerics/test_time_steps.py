@@ -276,6 +276,7 @@ def test_radau_does_not_come_back() -> None:
     assert abs(back.x[0] - 2.0) > 1e-6
 
 
+@pytest.mark.slow
 def test_gauss_keeps_a_quadratic_energy() -> None:
     oscillator = explicit(lambda t, x, v: -x, lambda t, x, v: -np.eye(1), lambda t, x, v: np.zeros((1, 1)))
     start = start_at(oscillator, np.ones(1), np.zeros(1))

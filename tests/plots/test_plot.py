@@ -163,6 +163,7 @@ def test_axes_of_space_have_one_scale(spatial: Solution) -> None:
     assert np.all(drawn < limits[:, 1])
 
 
+@pytest.mark.slow
 def test_many_rods_differ_in_colour_or_marks() -> None:
     many = [rod(name=f"rod_{i}", base={"position": [0.1 * i, 0, 0]}) for i in range(8)]
     scenery = plot_solution(solve(build(scene(WEIGHT, rods=many)))).axes[0]

@@ -325,7 +325,7 @@ def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
         sweep().to_xarray()
 
 
-@pytest.mark.parametrize("name", ["EquilibriumPath", "TubePath", pytest.param("Motion", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", mostly_slow(["EquilibriumPath", "TubePath", "Motion"], quick=["TubePath"]))
 def test_a_film_is_written_and_named(name: str, tmp_path: Path) -> None:
     result = MAKERS[name]()
     assert result.animate(str(tmp_path / "film.gif")) == tmp_path / "film.gif"

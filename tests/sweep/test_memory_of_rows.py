@@ -29,6 +29,7 @@ from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.store import Store, StoreChangedError
 from cosserat_casadi.sweeps.table import read_table, table_of
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.sweep.conftest import PLANAR
 
 ROWS = 40_000
@@ -115,7 +116,10 @@ def list_of_rows(rows: int, file: Path) -> Path:
     return file
 
 
-@pytest.mark.parametrize(("written", "suffix"), [(grid_of_rows, ".toml"), (list_of_rows, ".csv")])
+@pytest.mark.parametrize(
+    ("written", "suffix"),
+    mostly_slow([(grid_of_rows, ".toml"), (list_of_rows, ".csv")], quick=[(grid_of_rows, ".toml")]),
+)
 def test_four_times_the_rows_take_no_more_memory(
     written: Any, suffix: str, peak: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

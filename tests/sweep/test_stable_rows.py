@@ -58,6 +58,7 @@ def test_eigenvalues_are_counted_in_the_scene_compiled_or_not(monkeypatch: pytes
     assert eigenvalues[1] / eigenvalues[0] > 1.6
 
 
+@pytest.mark.slow
 def test_rows_without_a_potential_are_not_judged(tmp_path: Path) -> None:
     """A force that turns with the rod has none, unless it is zero."""
     turning = scene(push(force=[0.0, 0.0, 0.0], frame="body"), rods=[rod("planar")], accuracy={**FIXED, "modes": 3})

@@ -236,6 +236,7 @@ def test_one_tube_with_a_force_beside_its_tip_is_a_rod(frame: str) -> None:
         assert_allclose(found.tip_jacobian[0, 3:, index], difference, rtol=0, atol=1e-5 if index == 1 else 1e-8)
 
 
+@pytest.mark.slow
 def test_a_force_beside_the_tip_of_two_tubes() -> None:
     scene = parse_scene(TWO + poke(0.9).replace('"tube"', '"inner"'))
     found = solve(scene)

@@ -255,6 +255,7 @@ def test_a_straight_third_tube_only_stiffens() -> None:
         assert_allclose(solution.x[2], -1.0, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_search_that_ran_out_of_work_is_not_complete(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-6"])
     monkeypatch.setattr(tube_equilibria, "MOST_STEPS", 16)

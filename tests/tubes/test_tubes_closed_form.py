@@ -89,7 +89,7 @@ def closed_form_tips(tubes: Pendulum, rotation: float) -> list[float]:
         (HOUSED, 2.5, 3),
         pytest.param(LONG, 3.0, 3, marks=pytest.mark.slow),
         pytest.param(Pendulum(5.0), 3.13, 5, marks=pytest.mark.slow),
-        (Pendulum(3.0, (0.3, 0.6)), 0.7, 9),
+        pytest.param(Pendulum(3.0, (0.3, 0.6)), 0.7, 9, marks=pytest.mark.slow),
     ],
 )
 def test_all_equilibria(tubes: Pendulum, rotation: float, count: int) -> None:

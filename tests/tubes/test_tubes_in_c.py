@@ -216,6 +216,7 @@ def turned(robot: Robot, step: float) -> tuple[CompiledSolution, CompiledSolutio
     return last, last
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", mostly_slow([0.003, 0.05, 0.4], quick=[0.05]))
 def test_a_snap_is_not_followed(robot: Robot, step: float) -> None:
     snap = follow(robot.scene, "inner.rotation", 9.0).events[0].value
@@ -425,6 +426,7 @@ def test_refusals(robot: Robot, tmp_path: Path) -> None:
         robot.compiled.track(robot.compiled.defaults, robot.compiled.solve(), max_iterations=3)
 
 
+@pytest.mark.slow
 def test_on_the_command_line(tmp_path: Path) -> None:
     scene = tmp_path / "robot.toml"
     scene.write_text((EXAMPLES / "concentric_tubes.toml").read_text(encoding="utf-8"), encoding="utf-8")
