@@ -158,6 +158,7 @@ def test_tolerance_binds_the_whole_shape_where_asked(seed: int) -> None:
 WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "body"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "magnitude",
     [pytest.param({"force": [0.5, 0.0, 0.1]}, marks=pytest.mark.slow), {"moment": [0.0, 0.1, 0.05]}],
@@ -187,6 +188,7 @@ def statements_of(model: Model) -> int:
 FOLLOWING = {**WIND, "force": [0.5, 0.0, 0.1]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("strain", "modes", "nodes", "loads", "by_columns"),
     [

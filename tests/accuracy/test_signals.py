@@ -15,6 +15,7 @@ from cosserat_casadi.accuracy.resolution import LOADED_SWEEPS, Resolution
 from cosserat_casadi.equilibrium.metrics import cable_distance
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.model.required_modes import BEYOND, signal_modes
+from tests.families import mostly_slow
 from tests.scenes import push, scene
 
 ROD: dict[str, Any] = {
@@ -76,7 +77,7 @@ def test_waves_beyond_all_levels_are_said_to_be_unresolved() -> None:
     assert solution.message.startswith("An equilibrium of the discrete model")
 
 
-@pytest.mark.parametrize("modes", [15, 17])
+@pytest.mark.parametrize("modes", mostly_slow([15, 17], quick=[15]))
 def test_modes_that_are_missing_vs_a_model_that_has_them(modes: int) -> None:
     wanted = wound(4.3)
     discretisations = [discretise(wanted, m, n, "magnus8") for m, n in ((modes, 60), (2 * modes, 60))]

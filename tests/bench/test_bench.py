@@ -180,6 +180,7 @@ def test_the_rod_is_named_whose_igm_is_timed() -> None:
     assert "IGM of left alone, µs" in headings[1]
 
 
+@pytest.mark.slow
 def test_a_motion_is_priced_beside_statics() -> None:
     """Inertia and damping cost something, and derivatives more; the table has the operations that the model counts."""
     model = model_of("planar")

@@ -22,6 +22,7 @@ from tests.catalogue.checks import (
     zero_near,
 )
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.reference.closed_forms import elastica, roll_up
 from tests.reference.shooting import solve_by_shooting
 from tests.shooting_near import integrate
@@ -55,14 +56,14 @@ def test_elastica_under_a_strong_force_vs_elliptic_integrals(load: float) -> Non
     assert_allclose(tip.rotation[:, 2], [np.sin(angle), 0, np.cos(angle)], rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize("load", [20.0, 40.0])
+@pytest.mark.parametrize("load", mostly_slow([20.0, 40.0], quick=[40.0]))
 def test_follower_force_vs_pendulum(load: float) -> None:
     tip = solved(cases.table({}, cases.tip([load, 0, 0], frame="body"))).tip()
     across, along = cases.follower_cantilever(load)
     assert_allclose(tip.position, [across, 0, along], rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize("turns", [5, 12])
+@pytest.mark.parametrize("turns", mostly_slow([5, 12], quick=[12]))
 def test_roll_up_into_many_circles(turns: int) -> None:
     """Two circles are in test_independent.py."""
     tip = solved(cases.table(cases.round_rod(1.0), cases.tip(moment=[0, 2 * np.pi * turns, 0]))).tip()
@@ -71,6 +72,7 @@ def test_roll_up_into_many_circles(turns: int) -> None:
     assert_allclose(tip.rotation, rotation, rtol=0, atol=1e-8)
 
 
+@pytest.mark.slow
 def test_two_turns_of_the_helical_form_vs_initial_value() -> None:
     assert initial_value_error(solved(cases.helical_form(0.2), 1e-8)) < 1e-7
 
@@ -92,8 +94,7 @@ PLANAR = list(cases.HELD)
     ("name", "strain"),
     [
         (PLANAR[1], "planar"),
-        (PLANAR[2], "planar"),
-        pytest.param(PLANAR[0], "planar", marks=pytest.mark.slow),
+        *(pytest.param(name, "planar", marks=pytest.mark.slow) for name in (PLANAR[0], PLANAR[2])),
         *(pytest.param(name, "kirchhoff", marks=pytest.mark.slow) for name in PLANAR),
     ],
 )
@@ -129,7 +130,7 @@ def test_torque_alone_vs_greenhill() -> None:
     assert_allclose(found, 2 * wave, rtol=1e-6, atol=0)
 
 
-@pytest.mark.parametrize("stretch", [-0.1, 0.2])
+@pytest.mark.parametrize("stretch", mostly_slow([-0.1, 0.2], quick=[-0.1]))
 def test_torque_with_tension_or_compression_vs_linear_theory(stretch: float) -> None:
     """EA = 100 EI/L²: a stretch of 0.2 is a tension of 20 EI/L²."""
     torsion, axial = 2.0, 100.0

@@ -103,7 +103,7 @@ def no_way_on(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("hinder", "outcome", "reason"),
     [
-        (few_iterations, "max_iterations", FitOutcome.MAX_ITERATIONS.value),
+        pytest.param(few_iterations, "max_iterations", FitOutcome.MAX_ITERATIONS.value, marks=pytest.mark.slow),
         (no_way_on, "stalled", FitOutcome.STALLED.value),
     ],
 )

@@ -60,6 +60,7 @@ def test_check_says_where_it_cannot_be_known(held: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_an_export_of_locked_modes_says_so_and_does_not_end_well(held: Path) -> None:
     done = cosserat("export", "held.toml", "--output", "c", "--no-error-estimate", cwd=held)
     assert done.returncode == 3, done.stdout + done.stderr

@@ -62,6 +62,7 @@ def test_two_libraries_in_one_program(library: Library) -> None:
     assert_allclose(tips, np.vstack([wanted_tips(one), wanted_tips(other)]), rtol=0, atol=1e-9 * one.length)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", mostly_slow(["planar", "spatial", "pinned", "thick", "fixed", "loops"], quick=["fixed"])
 )

@@ -426,6 +426,7 @@ def test_parameters_in_contact(pulled: ContactLibrary) -> None:
         assert_allclose(of_contacts[0][2, column], forces, rtol=1e-5, atol=0)
 
 
+@pytest.mark.slow
 def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:
     wanted = over_bar()
     folder = export(build(wanted, discretise(wanted, 1, 2)), tmp_path / "bar", estimate_errors=False)

@@ -184,6 +184,7 @@ def test_workspaces_go_with_their_batch(root: Path, monkeypatch: pytest.MonkeyPa
     assert released.count(workspaces) == 1
 
 
+@pytest.mark.slow
 def test_single_precision_vs_double(root: Path) -> None:
     batch, compiled = both("adjustable", root)
     rows, p = (own[:4] for own in cases(compiled))

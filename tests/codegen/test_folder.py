@@ -17,6 +17,7 @@ from cosserat_casadi.codegen import folder as folder_module
 from cosserat_casadi.codegen.export import check_export, folder_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.manifest import MANIFEST
+from tests.families import mostly_slow
 from tests.scenes import push, scene
 
 
@@ -291,7 +292,7 @@ def test_interrupted_export_leaves_an_empty_folder_empty(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["strip", "renamed"])
+@pytest.mark.parametrize("name", mostly_slow(["strip", "renamed"], quick=["renamed"]))
 def test_interrupted_export_leaves_the_old_one(tmp_path: Path, request: pytest.FixtureRequest, name: str) -> None:
     folder = export(small(1.0), tmp_path / "strip")
     before = contents(folder)

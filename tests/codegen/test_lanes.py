@@ -288,6 +288,7 @@ def test_what_lanes_cannot_do_together_is_known(written: Callable[[ca.SX], ca.SX
         scalars_in_c(function, function, LANES_OF_ROWS)
 
 
+@pytest.mark.slow
 def test_batches_of_a_library_may_have_any_name(tmp_path: Path) -> None:
     """Its own files are named after it, and no file that all libraries have is."""
     library = exported(scene(push(), strain="planar", accuracy=SMALL), tmp_path / "linear")

@@ -32,6 +32,7 @@ def test_vanished_path_vs_python(export_recipe: ExportRecipe, strain: str) -> No
     assert [one.outcome for one in batch] == [Outcome.PATH_VANISHED, Outcome.CONVERGED]
 
 
+@pytest.mark.slow
 def test_rod_turned_past_a_vanished_path_vs_python(export_recipe: ExportRecipe) -> None:
     """An equilibrium of the equations in which the tendon goes backwards is none of the rod."""
     made = export_recipe("vanished_turned", Recipe(pulled("planar", 1e-9, moment=12.0), 1, 12))

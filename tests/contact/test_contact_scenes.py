@@ -92,6 +92,7 @@ def test_friction_between_rods_moves_them_as_it_moves_discrete_ones() -> None:
         assert_allclose(change, ends[0][rod] - ends[1][rod], rtol=0, atol=8e-5)
 
 
+@pytest.mark.slow
 def test_discrete_rods_converge_at_second_order() -> None:
     text = smooth_scene(0)
     scene = parse_scene(text)

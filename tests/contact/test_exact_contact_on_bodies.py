@@ -242,6 +242,7 @@ def test_a_rod_lies_on_a_plate_that_tilts(lying: Solution) -> None:
     assert_allclose(total, 0.0, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_two_cantilevers_share_a_small_push() -> None:
     """(P − N) L³/3EI of the one less N a³/3EI of the other is the gap that there was, to the square of the slopes."""
     near = FINGERS.replace("[0.3, 0, -0.1]", "[0.3, 0, -0.052]").replace(

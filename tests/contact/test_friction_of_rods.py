@@ -161,6 +161,7 @@ def test_derivatives_are_those_of_differences() -> None:
     assert np.abs(by_v).max() > 0
 
 
+@pytest.mark.slow
 def test_at_rest_rods_do_not_rub() -> None:
     """Statics have not one instruction more, and say so."""
     rubbing, plain = sliding(moving=False), sliding(friction=0.0, moving=False)

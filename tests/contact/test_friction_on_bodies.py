@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.smooth_contact import smooth_layers
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.paths.friction_path import FrictionPath
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 
 PINCH = 2.0
 """Force on each jaw, N."""
@@ -158,7 +159,7 @@ def rolling(friction: float) -> Model:
     return build(scene, discretise(scene, 1, 2), moving=True)
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.5])
+@pytest.mark.parametrize("friction", mostly_slow([0.1, 0.5], quick=[0.1]))
 def test_a_ball_slides_or_rolls_down_an_incline(friction: float) -> None:
     """At g (sin − μ cos), or at 5/7 g sin where friction holds the point that touches."""
     motion = simulate(rolling(friction))

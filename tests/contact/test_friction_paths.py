@@ -99,6 +99,7 @@ def test_a_rod_sticks_below_and_slips_above_the_limit() -> None:
     assert "rod slips on table from 0 to 1" in repr(slid)
 
 
+@pytest.mark.slow
 def test_a_cycle_of_the_load_is_that_of_a_spring_that_slips() -> None:
     """Loaded to 3, unloaded to 0.5 and loaded back: stick, slip, stick, as Prandtl's element.
 

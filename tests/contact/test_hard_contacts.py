@@ -90,6 +90,7 @@ def check_holds(solution: Solution) -> None:
 THIN_BAR = PLANAR + push(-4.0) + bar("bar", 0.6, -0.063, 0.005)
 
 
+@pytest.mark.slow
 def test_a_path_goes_on_from_points_that_it_was_let_to() -> None:
     """Near a fold an exact correction may lead behind the bar: no step was asked for that leads there."""
     model = cushioned(parse_scene(HEAD + THIN_BAR), 1000.0)
@@ -175,6 +176,7 @@ def test_c_is_not_written_for_a_line_from_the_base(tmp_path: Path) -> None:
         export(model, tmp_path)
 
 
+@pytest.mark.slow
 def test_planes_that_coincide_are_as_one() -> None:
     one = on_coarse_modes(PLANAR + weight(-49.05) + plane("t", -0.1))
     two = on_coarse_modes(PLANAR + weight(-49.05) + plane("t", -0.1) + plane("t2", -0.1))

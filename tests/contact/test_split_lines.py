@@ -80,6 +80,7 @@ def test_files_list_the_forces_inside(pressed: Solution) -> None:
     assert "inside_forces" not in plain
 
 
+@pytest.mark.slow
 def test_from_a_solution_the_line_is_tried_first(pressed: Solution) -> None:
     again = solve(pressed.model, {"load.force": [0.0, 0.0, -0.8]}, start=pressed)
     check_contact(again)

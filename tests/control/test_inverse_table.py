@@ -80,6 +80,7 @@ def test_a_row_is_found_as_alone(tmp_path: Path) -> None:
     assert_allclose(alone.values["push.force"][:, 0], FORCES[2], rtol=0, atol=2e-5)
 
 
+@pytest.mark.slow
 def test_poses_with_orientations(tmp_path: Path) -> None:
     """Force and moment from position and quaternion; its sign does not matter."""
     given = wanted(POSE, inputs=["push.force", "push.moment"])

@@ -127,6 +127,7 @@ def test_no_number_ends_it() -> None:
     assert followed(problem, broken) is None
 
 
+@pytest.mark.slow
 def test_an_unstable_end_goes_to_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Newton's method may cross a fold: what it finds there is no answer where another may be."""
     problem, near = problem_at(model_of(POSITION, ["push.force"]), {"push.force": FORCE})

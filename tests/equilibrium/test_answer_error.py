@@ -82,6 +82,7 @@ def test_answers_at_the_inputs_of_the_choice_are_within_the_tolerance(tendon_rob
     assert "tolerance of" not in chosen.message
 
 
+@pytest.mark.slow
 def test_a_grip_beside_the_plane_of_the_choice() -> None:
     read = read_scene(ROOT / "examples" / "tendon_finger.toml")
     model = build(read, solve(read).model.discretisation)

@@ -79,7 +79,7 @@ def test_literal_system_that_loses_the_unit_quaternion_is_unresolved() -> None:
 
 
 @pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
-@pytest.mark.parametrize("turns", [2, 5])
+@pytest.mark.parametrize("turns", mostly_slow([2, 5], quick=[5]))
 def test_roll_up_vs_circles(strain: str, turns: int) -> None:
     solution = solve(rolled(turns, strain))
     assert solution.converged

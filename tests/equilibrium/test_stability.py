@@ -20,6 +20,7 @@ from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from tests.catalogue.cases import column_tip
+from tests.families import mostly_slow
 from tests.reference.held_scenes import held_scene
 from tests.scenes import WEIGHT, push, rod, scene
 from tests.shooting_near import integrate
@@ -61,7 +62,7 @@ def assert_integrates(solution: Solution, atol: float) -> None:
 
 
 @pytest.mark.parametrize("ratio", [1.02, pytest.param(2.0, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
 def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_wanted(
     strain: str, ratio: float
 ) -> None:

@@ -175,6 +175,7 @@ def test_a_load_along_the_rod_is_felt_from_its_shape() -> None:
     assert low <= nees(found, truth).mean() <= high
 
 
+@pytest.mark.slow
 def test_cells_that_are_empty_are_not_measured() -> None:
     model = build(felt().with_unknowns())
     data = measured(model, pushes([[0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), 3)

@@ -269,6 +269,7 @@ def test_unknowns_of_each_case_are_found_with_those_of_all(pushed: Model, shapes
     assert 0.7 < np.sqrt(np.mean(deviations**2)) < 1.3
 
 
+@pytest.mark.slow
 def test_single_cases_can_be_eliminated_or_not(pushed: Model, shapes: MadeUp) -> None:
     """The same least squares with all unknowns stacked, by scipy."""
     few = 2

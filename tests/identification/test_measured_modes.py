@@ -179,6 +179,7 @@ def test_density_and_modulus_are_seen_only_together() -> None:
     assert_allclose(parts[0], parts[1], rtol=1e-6, atol=0)
 
 
+@pytest.mark.slow
 def test_modes_of_one_frequency_are_compared_with_their_mean() -> None:
     """A square section: an unknown width parts its two bendings, which is told; a modulus does not."""
     rod = {**cantilever()["rods"][0], "section": {"shape": "rectangle", "width": HEIGHT, "height": HEIGHT}}

@@ -319,7 +319,7 @@ def test_planar_rod_on_a_spring_vs_shooting() -> None:
     assert_allclose(found[[0, 2]], tip(unknown)[0], rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("scene", ["carried", "platform"])
+@pytest.mark.parametrize("scene", mostly_slow(["carried", "platform"], quick=["carried"]))
 @pytest.mark.parametrize("load", mostly_slow(["spring", "dipole", "bed"], quick=["bed"]))
 def test_assemblies_are_solved(scene: str, load: str) -> None:
     solution = solve(made(scene, load))

@@ -64,6 +64,7 @@ def test_jacobian_vs_ad() -> None:
     assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 def test_a_ball_inside_a_rod_rests_on_a_floor() -> None:
     """The floor bears what the two stretches of the rod leave it: the ball is at its radius above."""
     lying = {"position": [0, 0, 0.1], "tangent": [1, 0, 0]}
@@ -100,6 +101,7 @@ def test_a_section_before_the_base_is_refused() -> None:
     assert [(one.where, one.problem) for one in refused.value.problems] == [("joints[0].at", "must be >= 0, got -0.1")]
 
 
+@pytest.mark.slow
 def test_a_body_at_the_tip_of_a_rod_that_is_wound_up_is_reached_as_the_rod_is() -> None:
     """A tendon of 40 N turns the tip more than three times: the body goes with it, and weighs next to nothing there."""
     rod = {

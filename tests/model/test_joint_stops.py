@@ -25,6 +25,7 @@ from cosserat_casadi import (
     solve,
 )
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
+from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, link, scene
 from tests.model.test_joint_coordinates import ALONG, CARRIED, HINGE, OBLIQUE, SLIDE, TURN, built
 
@@ -74,7 +75,7 @@ def test_jacobian_vs_ad(joint: dict[str, Any]) -> None:
     assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("stiffness", [None, 2.0])
+@pytest.mark.parametrize("stiffness", mostly_slow([None, 2.0], quick=[None]))
 def test_lever_rests_on_its_stop(stiffness: float | None) -> None:
     elastic = {} if stiffness is None else {"stop_stiffness": stiffness}
     rests = solve(build(scene_from_dict(lever(**elastic))))
@@ -94,7 +95,7 @@ def test_frequency_on_an_elastic_stop() -> None:
     assert_allclose(2 * np.pi * modes.modes[1].frequency, wanted, rtol=1e-9, atol=0)
 
 
-@pytest.mark.parametrize("stiffness", [0.3, 2.0])
+@pytest.mark.parametrize("stiffness", mostly_slow([0.3, 2.0], quick=[0.3]))
 def test_second_variation_of_a_lever_that_leans_on_an_elastic_stop(stiffness: float) -> None:
     """Its centre of mass is above the hinge: W cos θ of the moment of the stop is lost."""
     tables = lever(stop_stiffness=stiffness, upper_stop=0.05, moment=0.02)
@@ -208,6 +209,7 @@ def elastic_reference(times: np.ndarray) -> np.ndarray:
 ELASTIC = {"stop_stiffness": 20.0, "damping": 2e-3}
 
 
+@pytest.mark.slow
 def test_elastic_stop_vs_scipy() -> None:
     motion = simulate(scene_from_dict(lever(**ELASTIC)))
     assert motion.converged, motion.message

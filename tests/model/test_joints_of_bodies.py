@@ -146,6 +146,7 @@ def test_double_pendulum_swings_as_scipy_says() -> None:
     assert_allclose(motion.body("lower").position, elbow(motion.times), rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("modulus", mostly_slow([2e10, 2e14], quick=[2e14]))
 def test_how_stiff_a_link_is_does_not_matter(modulus: float) -> None:
     """A rod that only twists, beside one of 2 MPa: its own stiffness would hide what the other bears."""
@@ -195,6 +196,7 @@ def test_crank_without_rods_bends_a_rod(strain: str, kind: str) -> None:
     assert_allclose(solution.pose([0.5]).position, pinned.pose([0.5]).position, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_places_are_parameters() -> None:
     """A link that is longer by a parameter is one that is longer in its table, in both of its places."""
     tables = slider_crank(1.0, parameters=["pin.position", "pin.carries.position"])

@@ -632,7 +632,7 @@ MOVED = (
 
 
 @pytest.mark.parametrize("rotation", mostly_slow(["magnus6", "permuted"], quick=["magnus6"]))
-@pytest.mark.parametrize("case", mostly_slow(MOVED, quick=MOVED[1:3]))
+@pytest.mark.parametrize("case", mostly_slow(MOVED, quick=MOVED[2:3]))
 def test_equations_of_moved_elements_are_those_of_a_scene_of_its_own(case: str, rotation: str) -> None:
     """Strains are counted per nominal length of their element: a scene of its own has them times its width."""
     given, values = CASES[case]
@@ -707,6 +707,7 @@ def test_places_that_cannot_move_are_refused_with_what_to_do() -> None:
         build(scene_from_dict(tables(WIRE, "poke.at", loads=loads, inputs=[])))
 
 
+@pytest.mark.slow
 def test_the_response_of_the_tip_to_a_place_against_scenes_of_their_own() -> None:
     """dx/ds = −J⁻¹ ∂r/∂s, and the tip moves with x and with s: all of it by differences of other models."""
     name = "poke.at"

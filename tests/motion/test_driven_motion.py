@@ -153,7 +153,9 @@ def test_slack_cable_of_a_free_rod_takes_no_momentum_from_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("strain", "amplitude", "frequency"), [("kirchhoff", 3.0, 1.0), ("reissner", 0.5, 0.3)], ids=["stiff", "slow"]
+    ("strain", "amplitude", "frequency"),
+    [("kirchhoff", 3.0, 1.0), pytest.param("reissner", 0.5, 0.3, marks=pytest.mark.slow)],
+    ids=["stiff", "slow"],
 )
 def test_cable_that_snaps_taut_takes_energy_and_holds(strain: str, amplitude: float, frequency: float) -> None:
     motion = attempted(pushed_cable(strain, 0.02, amplitude, frequency), 1 / frequency, tolerance=1e-3)
@@ -248,6 +250,7 @@ def test_motion_through_an_impact_converges_with_the_steps() -> None:
     assert_allclose(impacts[1], impacts[2], rtol=0, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_given_steps_end_at_impacts_too() -> None:
     """What they take is told from the first row after them."""
     scene = pushed_cable("kirchhoff", 0.02, 3.0, 1.0)

@@ -109,6 +109,7 @@ def test_stout_beam_along_its_axis_and_about_it() -> None:
 # A column that stands
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beyond", mostly_slow([False, True], quick=[True]))
 def test_tallest_column(beyond: bool) -> None:
     """It falls at ρA g L³ / EI = 7.8373474388: Greenhill's."""

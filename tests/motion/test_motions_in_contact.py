@@ -208,6 +208,7 @@ def test_points_that_stand_for_a_line_within_the_tolerance_have_no_modes() -> No
     assert "beside its contacts, as accuracy.tolerance lets it" in modes_of(rest).message
 
 
+@pytest.mark.slow
 def test_a_rod_that_a_floor_holds_all_along_has_no_modes() -> None:
     with pytest.raises(SceneError, match="nothing may move: supports, joints or contacts hold all of it"):
         modes_of(solve(build(touching(floor(0.0))), estimate_error=False))
