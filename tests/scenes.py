@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,22 @@ HOOK = {"name": "hook", "kind": "point_wrench", "rod": "rod", "at": 0.4, "force"
 def scene(*loads: dict[str, Any], strain: str | list[str] = "kirchhoff", **changes: Any) -> Scene:
     """A scene of one rod with these loads; ``rods``, ``accuracy``, ``supports`` and ``inputs`` may be given."""
     return scene_from_dict({"schema": 1, "rods": [rod(strain)], "loads": list(loads), **changes})
+
+
+def markers(sections: Sequence[float], sigma: float) -> list[dict[str, Any]]:
+    """Measured positions of sections of a rod, from the columns x0, y0, z0, x1, ... of the file "shapes"."""
+    return [
+        {
+            "quantity": "position",
+            "name": f"marker {k}",
+            "file": "shapes",
+            "rod": "rod",
+            "at": at,
+            "columns": [f"{axis}{k}" for axis in "xyz"],
+            "sigma": sigma,
+        }
+        for k, at in enumerate(sections)
+    ]
 
 
 CABLE_OFFSET = 0.006

@@ -13,10 +13,11 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 from scipy.special import j0
 
-from cosserat_casadi import SceneError, build, scene_from_dict, simulate, solve
+from cosserat_casadi import SceneError, build, scene_from_dict, simulate
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.scene import Scene
+from tests.equilibria import solve
 from tests.scenes import STIFFNESS, push, rod, scene
 
 MUSCLE = {"name": "muscle", "kind": "muscle", "rod": "rod", "moment": [0.0, 0.6, 0.0]}

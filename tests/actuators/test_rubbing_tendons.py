@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi import Model, SceneError, build, scene_from_dict
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.moving_scenes import DAMPING, drawn_state, symbols_of
 from tests.scenes import HOOK, STIFFNESS, push, rod, scene

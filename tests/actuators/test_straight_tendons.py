@@ -11,8 +11,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import root
 
-from cosserat_casadi import Scene, SceneError, Solution, build, export, load, scene_from_dict, solve
+from cosserat_casadi import Scene, SceneError, Solution, build, export, load, scene_from_dict
 from cosserat_casadi.scene.writing import scene_text
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.equilibrium.test_assemblies import ROUND, march
 from tests.families import mostly_slow
 
@@ -117,11 +119,7 @@ CABLES: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("name", mostly_slow(CABLES, quick=["slack"]))
 def test_jacobian_vs_ad(name: str) -> None:
     model = build(scene(accuracy=FEW, **CABLES[name]))
-    x = 0.3 * np.random.default_rng(2).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    residual = model.path_residual(symbol, model.pack(), 0.7)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), 0.7).full(), ad, rtol=0, atol=1e-13)
+    check_jacobian(model, 0.7, seed=2)
 
 
 def test_pull_is_the_gradient_of_the_length() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.codegen.libraries import RECIPES, Exported, Recipe, exported
+from tests.codegen.libraries import RECIPES, Exported, exported
 from tests.codegen.motions import MovingRecipe
 
 
@@ -35,6 +35,6 @@ def motion_library(workshop: Path) -> Callable[[str], Exported]:
 
 
 @pytest.fixture(scope="session")
-def export_recipe(workshop: Path) -> Callable[[str, Recipe], Exported]:
-    """An exported library of any recipe."""
-    return lambda name, recipe: exported(name, recipe, workshop)
+def export_recipe(workshop: Path) -> Callable[..., Exported]:
+    """An exported library of any recipe, with the options of ``exported``."""
+    return lambda name, recipe, **options: exported(name, recipe, workshop, **options)

@@ -191,8 +191,8 @@ class Exported:
         return target
 
     def solve(self, inputs: np.ndarray, start: np.ndarray | None = None) -> Solution:
-        """Equilibrium by the solver in Python."""
-        return solve(self.model, self.model.inputs.unpack(inputs), start=start)
+        """Equilibrium by the solver in Python, without an estimate of its error."""
+        return solve(self.model, self.model.inputs.unpack(inputs), start=start, estimate_error=False)
 
     def tips(self, q: np.ndarray, inputs: np.ndarray) -> np.ndarray:
         """Tip positions of all rods, shape (rods, 3)."""
@@ -213,11 +213,16 @@ class HasModel(Protocol):
     def model(self) -> Model: ...
 
 
-def exported(name: str, recipe: HasModel, folder: Path) -> Exported:
-    """Export a recipe below a folder; processes that share the folder share the work."""
+def exported(name: str, recipe: HasModel, folder: Path, *, estimates: bool = True) -> Exported:
+    """Export a recipe below a folder; processes that share the folder share the work.
+
+    Libraries with motions have no estimates of errors, which are those of statics and take as long again.
+    """
+    estimated = estimates and not recipe.dynamics
     model, scratch = recipe.model(), folder / f"{name}-build"
     scratch.mkdir(parents=True, exist_ok=True)
-    once(folder / name, lambda path: export(model, path, name, dynamics=recipe.dynamics))
+    options = {"dynamics": recipe.dynamics, "estimate_errors": estimated}
+    once(folder / name, lambda path: export(model, path, name, **options))
     return Exported(name, model, folder / name, scratch)
 
 

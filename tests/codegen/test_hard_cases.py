@@ -14,7 +14,7 @@ from tests.codegen.libraries import Exported, Recipe
 from tests.families import mostly_slow
 from tests.scenes import push, rod, scene
 
-ExportRecipe = Callable[[str, Recipe], Exported]
+ExportRecipe = Callable[..., Exported]
 
 ROUND = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}
 
@@ -60,7 +60,7 @@ CASES = {
 @pytest.mark.parametrize("name", mostly_slow(CASES, quick=["unresolved"]))
 def test_hard_case_vs_python(export_recipe: ExportRecipe, name: str) -> None:
     recipe, outcome = CASES[name]
-    made = export_recipe(f"hard_{name}", recipe)
+    made = export_recipe(f"hard_{name}", recipe, estimates=False)
     inputs = made.model.pack()
     ours, theirs = made.compiled.solve(inputs), made.solve(inputs)
     assert ours.outcome is theirs.outcome is outcome, (ours, theirs.message)
@@ -74,7 +74,7 @@ def test_hard_case_vs_python(export_recipe: ExportRecipe, name: str) -> None:
 @pytest.mark.parametrize(("force", "outcome"), [(8.5, Outcome.CONVERGED), (9.5, Outcome.LOAD_STALLED)])
 def test_deep_arch_about_its_limit_load_vs_python(export_recipe: ExportRecipe, force: float, outcome: Outcome) -> None:
     """Followed from the arch at rest; beyond 8.97 no equilibrium is near, and where the path ends is the limit."""
-    made = export_recipe("hard_arch", Recipe(deep_arch(), 6, 10))
+    made = export_recipe("hard_arch", Recipe(deep_arch(), 6, 10), estimates=False)
     none, wanted = np.zeros(3), np.array([0.0, 0.0, -force])
     rest = made.solve(none)
     ours = made.compiled.follow(none, wanted, rest.x)
@@ -88,7 +88,7 @@ def test_deep_arch_about_its_limit_load_vs_python(export_recipe: ExportRecipe, f
 
 def test_unresolved_from_every_start(export_recipe: ExportRecipe) -> None:
     """Cold, warm and following other inputs: with too few nodes none is called converged."""
-    made = export_recipe("hard_unresolved", CASES["unresolved"][0])
+    made = export_recipe("hard_unresolved", CASES["unresolved"][0], estimates=False)
     inputs = made.model.pack()
     cold = made.compiled.solve(inputs)
     assert made.compiled.solve(inputs, cold.x).outcome is Outcome.UNRESOLVED
@@ -104,7 +104,7 @@ def test_unresolved_from_every_start(export_recipe: ExportRecipe) -> None:
 def test_round_rod_that_may_turn_without_energy_vs_python(export_recipe: ExportRecipe) -> None:
     """Buckled round column: its Jacobian is singular to rounding. A start nearby stays near, turned or not."""
     column = straight("kirchhoff", push(force=[0, 0, -5.0]))
-    made = export_recipe("hard_neutral", Recipe(column, 3, 6))
+    made = export_recipe("hard_neutral", Recipe(column, 3, 6), estimates=False)
     inputs = made.model.pack()
     bent = made.solve(inputs, made.compiled.solve(inputs).x)
     assert bent.stable is False

@@ -11,9 +11,10 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import root
 
-from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve
+from cosserat_casadi import Outcome, Scene, Solution, build, discretise
 from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
 from cosserat_casadi.equilibrium.metrics import largest_turn
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.reference.closed_forms import roll_up
 from tests.scenes import push, rod, scene

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, build, follow, scene_from_dict, solve
+from cosserat_casadi import Model, build, follow, scene_from_dict
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.families import mostly_slow
 
 ROD = {
@@ -80,11 +81,7 @@ def test_cable_that_is_too_long_stays_slack() -> None:
 @pytest.mark.parametrize("load_factor", mostly_slow([1.0, 0.6, 0.0], quick=[0.6]))
 def test_jacobian_vs_ad(load_factor: float, slack: bool) -> None:
     model = of_length(STALLED, slack=slack)
-    x = 0.3 * np.random.default_rng(3).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    residual = model.path_residual(symbol, model.pack(), load_factor)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), load_factor).full(), ad, rtol=0, atol=1e-12)
+    check_jacobian(model, load_factor, seed=3, atol=1e-12)
 
 
 def test_path_on_which_a_cable_becomes_taut() -> None:

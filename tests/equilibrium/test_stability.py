@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow, scene_from_dict, solve
+from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow, scene_from_dict
 from cosserat_casadi.equilibrium.relax import energy_at
 from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
@@ -20,6 +20,7 @@ from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from tests.catalogue.cases import column_tip
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.reference.held_scenes import held_scene
 from tests.scenes import WEIGHT, push, rod, scene
@@ -288,30 +289,26 @@ def test_energy_with_springs_for_supports_has_this_gradient_and_hessian(kind: st
         assert_allclose(hessian @ direction, slope, rtol=0, atol=1e-6)
 
 
-def test_a_round_rod_that_a_pin_presses_together_is_neutral() -> None:
-    """It buckles to any side; the large force of the pin turns along and tells nothing of how far it was turned."""
-    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.4}
+MIDDLE = {"name": "push", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0.0, 0.0, 0.56]}
+
+
+@pytest.mark.parametrize(
+    ("torsion", "height", "loads"),
+    [(1.4, 0.105, []), pytest.param(2.0, 0.3, [MIDDLE], marks=pytest.mark.slow)],
+    ids=["pin", "force and pin"],
+)
+def test_a_round_rod_that_is_pressed_together_is_neutral(torsion: float, height: float, loads: list[Any]) -> None:
+    """It lies in a plane, which turns about the axis.
+
+    The large force of the pin turns along and tells nothing of how far it was turned; one that stays behind would
+    turn it too far.
+    """
+    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": torsion}
     pressed = {
         "schema": 1,
         "rods": [{"name": "rod", "length": 1.0, "strain": "kirchhoff", "stiffness": stiffness}],
-        "supports": [{"rod": "rod", "kind": "pinned", "position": [0.0, 0.0, 0.105]}],
-    }
-    wanted = scene_from_dict(pressed)
-    solution = solve(build(wanted, discretise(wanted, 7, 16)), stable=True)
-    assert solution.converged
-    assert "neutral" in solution.message
-    assert solution.stable
-
-
-@pytest.mark.slow
-def test_a_round_rod_that_a_force_and_a_pin_press_together_is_neutral() -> None:
-    """It lies in a plane, which turns about the axis; a force of the pin that stays behind turns it too far."""
-    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 2.0}
-    pressed = {
-        "schema": 1,
-        "rods": [{"name": "rod", "length": 1.0, "strain": "kirchhoff", "stiffness": stiffness}],
-        "supports": [{"rod": "rod", "kind": "pinned", "position": [0.0, 0.0, 0.3]}],
-        "loads": [{"name": "push", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0.0, 0.0, 0.56]}],
+        "supports": [{"rod": "rod", "kind": "pinned", "position": [0.0, 0.0, height]}],
+        "loads": loads,
     }
     wanted = scene_from_dict(pressed)
     solution = solve(build(wanted, discretise(wanted, 7, 16)), stable=True)

@@ -18,7 +18,7 @@ from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.identification import identify
 from cosserat_casadi.results.presentation import csv_of
 from cosserat_casadi.scene import Scene
-from tests.scenes import rod
+from tests.scenes import markers, rod
 
 SIGMA = 2.5e-5
 """Standard deviation of a coordinate, m. Force and place are told from each other by how a rod bends, little by little:
@@ -35,18 +35,6 @@ TOUCH = {"name": "touch", "kind": "point_wrench", "rod": "rod", "at": 0.5, "forc
 
 def touched(strain: str = "planar", sections: Sequence[float] = AT, sigma: float = SIGMA, **changes: Any) -> Scene:
     """A rod with markers that is touched somewhere by an unknown force along x."""
-    measured = [
-        {
-            "quantity": "position",
-            "name": f"marker {k}",
-            "file": "shapes",
-            "rod": "rod",
-            "at": at,
-            "columns": [f"{axis}{k}" for axis in "xyz"],
-            "sigma": sigma,
-        }
-        for k, at in enumerate(sections)
-    ]
     unknowns = [
         {"input": "touch.force.x", "per_row": True, "prior": FORCE},
         {"parameter": "touch.at", "per_row": True, "prior": PLACE, **RANGE},
@@ -57,7 +45,7 @@ def touched(strain: str = "planar", sections: Sequence[float] = AT, sigma: float
         "accuracy": {"modes": 2, "nodes": 5, "tolerance": 1e-2},
         "rods": [rod(strain)],
         "loads": [TOUCH],
-        "measurements": measured,
+        "measurements": markers(sections, sigma),
         "unknowns": unknowns,
     }
     return scene_from_dict({**base, **changes})

@@ -19,7 +19,7 @@ from cosserat_casadi.model.operations import operations
 from cosserat_casadi.results.presentation import csv_of
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_tables
-from tests.scenes import push, rod, scene
+from tests.scenes import markers, push, rod, scene
 
 SIGMA = 1e-3
 PRIOR = np.array([1.0, 1.0, 0.2])
@@ -30,21 +30,15 @@ TIP = {"input": "push.force", "per_row": True}
 
 def felt(prior: bool = True, sections: tuple[float, ...] = AT, strain: str = "planar", **changes: Any) -> Scene:
     """A rod with markers; its tip is pushed by an unknown force."""
-    measured = [
-        {
-            "quantity": "position",
-            "name": f"marker {k}",
-            "file": "shapes",
-            "rod": "rod",
-            "at": at,
-            "columns": [f"{axis}{k}" for axis in "xyz"],
-            "sigma": SIGMA,
-        }
-        for k, at in enumerate(sections)
-    ]
     unknown = {**TIP, "prior": {"mean": 0.0, "sigma": PRIOR.tolist()}} if prior else TIP
     base = scene(push(force=[0.0, 0.0, 0.0]), rods=[rod(strain)], accuracy={"modes": 3, "nodes": 8, "tolerance": 1e-3})
-    tables = {**scene_tables(base), "inputs": [], "measurements": measured, "unknowns": [unknown], **changes}
+    tables = {
+        **scene_tables(base),
+        "inputs": [],
+        "measurements": markers(sections, SIGMA),
+        "unknowns": [unknown],
+        **changes,
+    }
     return scene_from_dict(tables)
 
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi import Model, SceneError, build, scene_from_dict
 from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.loads.load_trace import traced
 from cosserat_casadi.model.arrow_records import DRAWN_SECTIONS, LoadArrows
 from cosserat_casadi.model.registry import EFFECTS
+from tests.equilibria import solve
 from tests.scenes import rod, scene
 
 FEW = {"modes": 3, "nodes": 8}

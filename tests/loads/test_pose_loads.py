@@ -13,10 +13,11 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Model, build, discretise, solve
+from cosserat_casadi import Model, build, discretise
 from cosserat_casadi.loads.load import Load
 from cosserat_casadi.model.registry import EFFECTS, register
 from cosserat_casadi.scene.records import Record
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.loads.kinds import (
     BedRecord,

@@ -11,10 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict, solve
+from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.scene.writing import scene_tables
+from tests.derivatives import jacobian_by_ad
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.scenes import STIFFNESS
 
@@ -88,11 +90,9 @@ def unknowns(model: Model, seed: int) -> np.ndarray:
 @pytest.mark.parametrize("factor", mostly_slow([1.0, 0.6], quick=[0.6]))
 def test_jacobian_vs_ad_vs_finite_differences(factor: float) -> None:
     model = loaded()
-    x, inputs, symbol = unknowns(model, 1), model.pack(), ca.MX.sym("x", model.size)
+    x, inputs = unknowns(model, 1), model.pack()
     own = model.path_jacobian(x, inputs, factor).full()
-    residual = model.path_residual(symbol, inputs, factor)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
-    assert_allclose(own, ad, rtol=0, atol=1e-13)
+    assert_allclose(own, jacobian_by_ad(model, x, factor), rtol=0, atol=1e-13)
     h = 1e-6
     steps = [
         model.path_residual(x + h * e, inputs, factor) - model.path_residual(x - h * e, inputs, factor)
@@ -111,8 +111,7 @@ def test_derivatives_finite_at_any_turn_of_a_frame(angle: float) -> None:
         x[model.discrete.deviation(name)][3:] = turned - frame.start.quaternion
     jacobian = model.path_jacobian(symbol, inputs, 1.0)
     second = ca.Function("second", [symbol], [ca.jtimes(jacobian @ np.ones(model.size), symbol, np.ones(model.size))])
-    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, inputs, 1.0), symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, inputs, 1.0).full(), ad, rtol=0, atol=1e-12)
+    assert_allclose(model.path_jacobian(x, inputs, 1.0).full(), jacobian_by_ad(model, x, 1.0), rtol=0, atol=1e-12)
     assert np.all(np.isfinite(second(x).full()))
 
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Model, SceneError, build, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi import Model, SceneError, build, modes_of, scene_from_dict, simulate
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.families import mostly_slow
 
 LENGTH = 0.5
@@ -57,10 +58,7 @@ SLIDING = scene([link("a", strain="reissner", base=DOWN)], [hinge(kind="prismati
 @pytest.mark.parametrize("tables", mostly_slow([TWO, ON_A_BODY, SLIDING], quick=[ON_A_BODY, SLIDING]))
 def test_jacobian_vs_ad(tables: dict[str, Any]) -> None:
     model = build(scene_from_dict(tables))
-    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, model.pack(), 0.6), symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+    check_jacobian(model)
 
 
 def test_chain_of_two_hangs_straight_and_each_joint_bears_what_hangs_from_it() -> None:

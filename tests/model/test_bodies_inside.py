@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import casadi as ca
-import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, build, modes_of, scene_from_dict, solve
+from cosserat_casadi import Scene, SceneError, build, modes_of, scene_from_dict
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.model.test_assembly import rod
 
 PLACES = [0.3, 0.7]
@@ -57,11 +57,7 @@ def test_a_rod_with_bodies_vs_the_rod_cut_at_them() -> None:
 
 def test_jacobian_vs_ad() -> None:
     model = build(whole(accuracy={"modes": 3, "nodes": 6}))
-    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    residual = model.path_residual(symbol, model.pack(), 0.6)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+    check_jacobian(model)
 
 
 @pytest.mark.slow

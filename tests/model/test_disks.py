@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, build, export, load, modes_of, scene_from_dict, solve
+from cosserat_casadi import Scene, SceneError, build, export, load, modes_of, scene_from_dict
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.scene.writing import scene_text
+from tests.equilibria import solve
 from tests.model.test_assembly import rod
 
 FINE = {"modes": 6, "nodes": 9}

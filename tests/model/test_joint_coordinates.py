@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Model, SceneError, build, export, load, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi import Model, SceneError, build, export, load, modes_of, scene_from_dict, simulate
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, LENGTH, link, scene
 
@@ -41,10 +42,7 @@ OBLIQUE = {"rod": "b", "axis": [1, 2, 0.5]}
 )
 def test_jacobian_vs_ad(joint: dict[str, Any]) -> None:
     model = built([joint], CARRIED)
-    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, model.pack(), 0.6), symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+    check_jacobian(model)
 
 
 @pytest.mark.parametrize(

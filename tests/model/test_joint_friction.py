@@ -10,9 +10,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import Motion, SceneError, build, follow, scene_from_dict, simulate, solve
+from cosserat_casadi import Motion, SceneError, build, follow, scene_from_dict, simulate
 from cosserat_casadi.model.operation_cost import is_damped, price, without_damping
 from cosserat_casadi.model.operations import count
+from tests.equilibria import solve
 from tests.model.test_base_joints import link, scene
 from tests.model.test_joint_coordinates import ALONG, HINGE, SLIDE
 from tests.model.test_joint_stops import INERTIA, WEIGHT, lever

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -22,9 +21,10 @@ from cosserat_casadi import (
     modes_of,
     scene_from_dict,
     simulate,
-    solve,
 )
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, link, scene
 from tests.model.test_joint_coordinates import ALONG, CARRIED, HINGE, OBLIQUE, SLIDE, TURN, built
@@ -69,10 +69,7 @@ def angles(motion: Motion) -> np.ndarray:
 )
 def test_jacobian_vs_ad(joint: dict[str, Any]) -> None:
     model = built([joint], CARRIED)
-    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, model.pack(), 0.6), symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+    check_jacobian(model)
 
 
 @pytest.mark.parametrize("stiffness", mostly_slow([None, 2.0], quick=[None]))

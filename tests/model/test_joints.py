@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi import Model, SceneError, build, scene_from_dict
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.model.test_assembly import FEW, PULL, joint, leg, rod
 
@@ -50,11 +52,7 @@ def test_jacobian_vs_ad(kind: str, load_factor: float) -> None:
     carried = rod("b", 0.5, base={"rod": "a", "at": 0.5, "position": [0.02, 0.01, 0.0], "quaternion": [0.6, 0, 0.8, 0]})
     for rods in ([rod("a", 0.8, "reissner", **FIRST), rod("b", 0.6, **SECOND)], [rod("a", 0.8, **FIRST), carried]):
         model = held(kind, rods=rods)
-        x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
-        symbol = ca.MX.sym("x", model.size)
-        residual = model.path_residual(symbol, model.pack(), load_factor)
-        ad = ca.Function("ad", [symbol], [ca.jacobian(residual, symbol)])(x).full()
-        assert_allclose(model.path_jacobian(x, model.pack(), load_factor).full(), ad, rtol=0, atol=1e-13)
+        check_jacobian(model, load_factor)
 
 
 def _in_place(model: Model, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

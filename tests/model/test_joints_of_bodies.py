@@ -5,14 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import SceneError, build, export, load, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi import SceneError, build, export, load, modes_of, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
+from tests.derivatives import check_jacobian
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.model.test_base_joints import GRAVITY, WEIGHT, link, scene
 
@@ -93,10 +94,7 @@ def test_jacobian_vs_ad(elbow: dict[str, Any]) -> None:
     second = {"body": "lower", "position": [0, 0.02, 0.03], "rotation_vector": [0.3, 0, 0.1]}
     tables["joints"][1] = {"name": "elbow", "between": [first, second], **elbow}
     model = build(scene_from_dict(tables), moving=True)
-    x = 0.3 * np.random.default_rng(1).standard_normal(model.size)
-    symbol = ca.MX.sym("x", model.size)
-    ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, model.pack(), 0.6), symbol)])(x).full()
-    assert_allclose(model.path_jacobian(x, model.pack(), 0.6).full(), ad, rtol=0, atol=1e-13)
+    check_jacobian(model)
 
 
 def test_frequencies_of_a_double_pendulum() -> None:

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Discretisation, Model, Scene, build, discretise, solve
+from cosserat_casadi import Discretisation, Model, Scene, build, discretise
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 

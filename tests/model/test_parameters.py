@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Scene, SceneError, build, follow, modes_of, scene_from_dict, solve
+from cosserat_casadi import Model, Scene, SceneError, build, follow, modes_of, scene_from_dict
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene.load_records import LoadRecord
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.loads.kinds import BedRecord, DipoleRecord, registered, with_loads
 from tests.scenes import WEIGHT, push

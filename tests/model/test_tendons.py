@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from_dict, solve
+from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.plots.scenery import actuator_routing
 from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.conftest import case_files
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.reference.tendons import TendonRod
 

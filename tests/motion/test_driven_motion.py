@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Motion, MotionOutcome, SceneError, build, scene_from_dict, simulate, solve
+from cosserat_casadi import Motion, MotionOutcome, SceneError, build, scene_from_dict, simulate
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.tip_paths import path_distance
 from tests import moving_scenes
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.motion.stepping import moving_model
 

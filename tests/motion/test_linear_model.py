@@ -8,10 +8,11 @@ import scipy.linalg
 import scipy.signal
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, SolveError, build, discretise, solve
+from cosserat_casadi import SceneError, SolveError, build, discretise
 from cosserat_casadi.motion.linear_model import linearise
 from cosserat_casadi.motion.vibration_modes import modes_of
 from cosserat_casadi.scene import scene_from_dict
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, rod, scene, three_cables
 

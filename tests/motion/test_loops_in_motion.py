@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Motion, MotionOutcome, build, simulate, solve
+from cosserat_casadi import Model, Motion, MotionOutcome, build, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.motion_ending import independence_of
@@ -20,6 +20,7 @@ from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepS
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.time_steps import integrate
 from tests import moving_scenes
+from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.motion.stepping import moving_model, orders, stepped
 from tests.moving_scenes import constrained_rows

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, linearise, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi import build, linearise, modes_of, scene_from_dict, simulate
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -17,6 +17,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.motion_start import EQUILIBRIUM
 from cosserat_casadi.numerics.collocation import radau
 from tests import moving_scenes
+from tests.equilibria import solve
 from tests.motion.stepping import moving_model, orders, stepped
 
 SHARE = 0.3

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import os
-import subprocess
 from pathlib import Path
 
 import casadi as ca
@@ -21,6 +19,7 @@ from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_solve import solution_near, solve_at
 from tests.families import mostly_slow
+from tests.tubes.functions_in_c import check_functions_in_c
 from tests.tubes.test_tube_robots import THREE, TWO, moved
 
 DIFFERENCE = 1e-6
@@ -429,15 +428,4 @@ def computed(function: ca.Function) -> int:
 def test_loaded_functions_in_c(tmp_path: Path) -> None:
     robot = robot_of(parse_scene(TWO + PUSH))
     found = solve_at(LoadedTubeModel(robot, 1), robot.inputs)
-    generator = ca.CodeGenerator("tubes.c")
-    generator.add(found.model.equilibrium)
-    generator.add(found.model.tip_jacobian)
-    (tmp_path / "tubes.c").write_text(generator.dump())
-    command = [os.environ["CC"], "-shared", "-fPIC", "-o", "tubes.so", "tubes.c", "-lm"]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    library = str(tmp_path / "tubes.so")
-    x, missed = ca.external("equilibrium", library)(found.x + 0.01, found.inputs)
-    assert float(missed) < 1e-11
-    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
-    jacobian = ca.external("tip_jacobian", library)(x, found.inputs)
-    assert_allclose(jacobian.full().reshape(2, 6, 7), found.tip_jacobian, rtol=0, atol=1e-10)
+    check_functions_in_c(found, tmp_path, 0.01)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import os
-import subprocess
 from pathlib import Path
 
 import casadi as ca
@@ -21,6 +19,7 @@ from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_solution import tip_error
 from cosserat_casadi.tubes.tube_solve import solution_near
 from tests.commands import cosserat
+from tests.tubes.functions_in_c import check_functions_in_c
 
 TWO = """
 schema = 1
@@ -217,18 +216,7 @@ def test_equilibrium_is_an_expression() -> None:
 
 def test_functions_in_c(tmp_path: Path) -> None:
     found = solve(parse_scene(TWO))
-    generator = ca.CodeGenerator("tubes.c")
-    generator.add(found.model.equilibrium)
-    generator.add(found.model.tip_jacobian)
-    (tmp_path / "tubes.c").write_text(generator.dump())
-    command = [os.environ["CC"], "-shared", "-fPIC", "-o", "tubes.so", "tubes.c", "-lm"]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    library = str(tmp_path / "tubes.so")
-    x, missed = ca.external("equilibrium", library)(found.x + 0.05, found.inputs)
-    assert float(missed) < 1e-11
-    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
-    jacobian = ca.external("tip_jacobian", library)(x, found.inputs)
-    assert_allclose(jacobian.full().reshape(2, 6, 4), found.tip_jacobian, rtol=0, atol=1e-10)
+    check_functions_in_c(found, tmp_path, 0.05)
 
 
 def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
