@@ -13,6 +13,8 @@ from cosserat_casadi.equilibrium.locking import degrees_of_freedom, has_freedom,
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.scene import Scene
 
+pytestmark = pytest.mark.slow
+
 
 def six_tendons() -> Scene:
     """A spine of two segments, three tendons to the end of each, all pulled alike."""
@@ -34,7 +36,6 @@ def six_tendons() -> Scene:
     return scene_from_dict(tables)
 
 
-@pytest.mark.slow
 def test_a_robot_of_six_tendons_is_right_at_random_tensions() -> None:
     """Its own tensions balance; of 20 random sets all are within the tolerance, against finer modes."""
     robot = six_tendons()
@@ -54,7 +55,6 @@ def test_a_robot_of_six_tendons_is_right_at_random_tensions() -> None:
     assert missed > 0
 
 
-@pytest.mark.slow
 def test_beyond_the_ranges_an_answer_says_that_it_is_beyond_the_tolerance() -> None:
     """Modes chosen for tensions alone, under a payload that nobody asked for."""
     tables = six_tendons().model_dump(mode="json", by_alias=True, exclude_unset=True)
@@ -93,7 +93,6 @@ def platform(**accuracy: Any) -> Scene:
     return scene_from_dict({**tables, "bodies": [{"name": "platform", "mass": 0.1}]})
 
 
-@pytest.mark.slow
 def test_a_platform_is_not_locked() -> None:
     """Two modes of bending and one of torsion leave no freedom, whatever the load: they are not chosen."""
     free = platform(tolerance=1e-2)
@@ -107,7 +106,6 @@ def test_a_platform_is_not_locked() -> None:
     assert pushed[0] - resting[0] > 1e-5
 
 
-@pytest.mark.slow
 def test_a_platform_on_fixed_modes_is_told_to_be_locked() -> None:
     """With eighteen degrees of freedom too, none of which moves the plate; with two more in bending it moves."""
     for modes, freedom, locked in (([3, 3, 2], 18, True), ([4, 4, 2], 30, False)):

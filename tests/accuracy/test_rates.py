@@ -74,7 +74,7 @@ def test_slope_in_the_intervals_vs_order(name: str, transport: str, order: int) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", mostly_slow(SCENES, quick=["twisted"]))
+@pytest.mark.parametrize("name", SCENES)
 def test_permuted_system_is_faster_than_any_power(name: str) -> None:
     found = swept(name, (8, 12, 16), "permuted")
     assert np.all(found[1:] < found[:-1] * [[0.03], [1e-3]]), found

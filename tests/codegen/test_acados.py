@@ -152,7 +152,7 @@ context.finalize()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("moving", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["at rest", "in motion"])
+@pytest.mark.parametrize("moving", [False, True], ids=["at rest", "in motion"])
 @pytest.mark.skipif(not BUNDLED or COMPILER is None, reason="acados' generator comes with rockit")
 def test_functions_vs_those_acados_generates(tmp_path: Path, moving: bool) -> None:
     """Its generator takes the expressions; what it makes of them has the names, arguments and values of ours."""

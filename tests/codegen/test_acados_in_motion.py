@@ -15,7 +15,6 @@ from cosserat_casadi.codegen.acados import acados_expressions, acados_functions,
 from cosserat_casadi.control import radau
 from cosserat_casadi.maths.typing import FloatArray
 from tests.control.swing import STEP, arm, replayed, task
-from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES
 
 
@@ -47,7 +46,7 @@ def test_the_dae_vs_the_model(make: Callable[[], Model]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("make", mostly_slow([arm, supported], quick=[supported]))
+@pytest.mark.parametrize("make", [arm, supported])
 def test_jacobians_vs_differentiated_expressions(make: Callable[[], Model]) -> None:
     model = make()
     dae = acados_expressions(model, "moving", moving=True)

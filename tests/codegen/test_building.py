@@ -63,9 +63,7 @@ def test_two_libraries_in_one_program(library: Library) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", mostly_slow(["planar", "spatial", "pinned", "thick", "fixed", "loops"], quick=["fixed"])
-)
+@pytest.mark.parametrize("name", ["planar", "spatial", "pinned", "thick", "fixed", "loops"])
 def test_float_vs_double(library: Library, name: str) -> None:
     """Rounding of 1e-7 leaves four digits and a converged status; loads are scaled about the scene's own."""
     made = library(name)

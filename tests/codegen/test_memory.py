@@ -46,15 +46,15 @@ def test_stack_and_workspace(library: Library, name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", mostly_slow(["tiny", "robot"], quick=["tiny"]))
-@pytest.mark.parametrize("optimised", mostly_slow(["-Os", "-O2", "-O3"], quick=["-O2"]))
+@pytest.mark.parametrize("name", ["tiny", "robot"])
+@pytest.mark.parametrize("optimised", ["-Os", "-O2", "-O3"])
 def test_stack_of_optimised_code(library: Library, name: str, optimised: str) -> None:
     stack, _ = measured(library(name), optimised, "-fPIC")
     assert stack <= stated(library(name))[0]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", mostly_slow(["planar", "tiny", "spatial", "thick"], quick=["tiny"]))
+@pytest.mark.parametrize("name", ["planar", "tiny", "spatial", "thick"])
 def test_stack_of_batches(name: str, tmp_path: Path) -> None:
     """Each number of a kernel in lanes is four; the stack that lanes need is that of no other function."""
     model = RECIPES[name].model()

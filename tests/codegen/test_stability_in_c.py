@@ -109,9 +109,7 @@ def test_column_about_its_critical_loads(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", [pytest.param("robot", marks=pytest.mark.slow), pytest.param("tendons", marks=pytest.mark.slow), "cables"]
-)
+@pytest.mark.parametrize("name", ["robot", "tendons", "cables"])
 def test_constrained_equilibria_beside_python(library: Callable[[str], Library], name: str) -> None:
     """Loops, cables of given length, taut and slack: the same eigenvalues and verdicts as in Python."""
     made = library(name)

@@ -30,9 +30,6 @@ needs_cases = pytest.mark.skipif(not CASES, reason="the reference cases are not 
 OFF = {"release_damped": 2.5e-2, "planar_release": 5e-3, "shaken": 1e-2, "space_push": 1.5e-2, "flying": 2.5e-2}
 """Distance of the paths over the length that so few modes leave."""
 
-LARGE = {"release_damped", "shaken", "space_push", "flying"}
-"""Cases whose C takes the compiler long."""
-
 
 @dataclass(frozen=True)
 class Halvings:
@@ -243,9 +240,7 @@ def test_order_three_of_a_base_whose_rate_does_not_jump(shaken: Exported) -> Non
 
 @pytest.mark.slow
 @needs_cases
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LARGE else name for name in OFF]
-)
+@pytest.mark.parametrize("name", OFF)
 def test_path_of_the_tip_vs_independent_program(case: Callable[[str], Exported], name: str) -> None:
     made = case(name)
     wanted = json.loads(CASES[name].with_suffix(".json").read_text())["expected"]

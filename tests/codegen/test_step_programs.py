@@ -31,13 +31,13 @@ def test_special_and_random_numbers_under_sanitizers(motion_library: MotionLibra
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", pytest.param("given length", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "given length"])
 def test_very_many_numbers_under_sanitizers(motion_library: MotionLibrary, family: str) -> None:
     fuzz(motion_library(family), 3000)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", ["planar", pytest.param("fixed joint", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("family", ["planar", "fixed joint"])
 def test_threads_vs_one_thread(motion_library: MotionLibrary, family: str) -> None:
     assert int(run(motion_library(family).program("step_threads.c", *QUICK, "-pthread"))) > 50
 

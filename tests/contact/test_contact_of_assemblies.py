@@ -185,11 +185,11 @@ def on_dome() -> Solution:
     ("share", "touching", "atol"),
     [
         (0.3, "rod", 1e-9),
-        pytest.param(0.6, "first", 1e-9, marks=pytest.mark.slow),
+        (0.6, "first", 1e-9),
         # The place of contact is next to the joint, on either side, and on it: there the tip of the first rod touches.
-        pytest.param(0.455, "rod", 1e-9, marks=pytest.mark.slow),
-        pytest.param(0.47, "first", 1e-9, marks=pytest.mark.slow),
-        pytest.param(0.46958636, "first", 1e-7, marks=pytest.mark.slow),
+        (0.455, "rod", 1e-9),
+        (0.47, "first", 1e-9),
+        (0.46958636, "first", 1e-7),
     ],
 )
 def test_two_rods_in_series_touch_as_one(one_rod: Solution, share: float, touching: str, atol: float) -> None:

@@ -103,7 +103,7 @@ def test_places_are_sought_until_rounding_is_left(pressed: Solution, moved: floa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lift", [0.15, pytest.param(0.05, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("lift", [0.15, 0.05])
 def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     """A heavy beam on a rigid plane rises over 3P/4q on either side; each end of what rises presses with P/4.
 

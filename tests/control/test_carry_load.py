@@ -15,6 +15,8 @@ from cosserat_casadi.equilibrium.metrics import prolong
 from examples.carry_load import HOME, LEAST, arch, carry, draw, margins, place_of_load, robot
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 LENGTH_INPUTS = 3
 
 
@@ -23,7 +25,6 @@ def feet(inputs: np.ndarray) -> np.ndarray:
     return np.linalg.norm(inputs[LENGTH_INPUTS:].reshape(3, 3), axis=1)
 
 
-@pytest.mark.slow
 def test_the_margin_is_held_where_the_feet_alone_would_not(tmp_path: Path) -> None:
     """At the top, where the robot is symmetric and its smallest eigenvalue double."""
     model, top = robot(modes=3), arch(3)[1:2]
@@ -44,7 +45,6 @@ def test_the_margin_is_held_where_the_feet_alone_would_not(tmp_path: Path) -> No
     assert margins([less])[0] < LEAST - 1e-3
 
 
-@pytest.mark.slow
 def test_the_path_is_as_stable_with_more_modes() -> None:
     points, fine = arch(5), robot(modes=6)
     held = carry(robot(), points, bounded=True)
@@ -56,7 +56,6 @@ def test_the_path_is_as_stable_with_more_modes() -> None:
     assert np.all(margins(held) >= LEAST - 1e-6)
 
 
-@pytest.mark.slow
 def test_the_program_draws_its_figure_and_its_animation(tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "examples" / "carry_load.py"), "--stages", "3", "--output", "c.png"]
     done = subprocess.run(

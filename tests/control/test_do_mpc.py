@@ -24,6 +24,8 @@ from tests.control.quasi_static import (
     robot_with_parameters,
 )
 
+pytestmark = pytest.mark.slow
+
 
 def imported() -> Any:
     """The package do_mpc, as late as the tests that use it: a process that runs others need not wait for it."""
@@ -35,14 +37,12 @@ def imported() -> Any:
 MODULUS = "finger.material.youngs_modulus"
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_vs_nlp() -> None:
     model, near = robot()
     assert_plan_is(model, near, None, optimum())
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_with_a_parameter_vs_nlp() -> None:
     """A parameter of the scene is a variable of the kind _p: the plan is that of a finger with this number."""
@@ -93,7 +93,6 @@ def assert_plan_is(model: Model, near: Solution, modulus: float | None, expected
     assert_allclose(near.inputs + STEP * first[:, 0], expected[0], rtol=0, atol=1e-6)
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_vs_nlp_in_motion() -> None:
     """Unknowns of a stage are algebraic states of a discrete system, the equations of motion their equation."""

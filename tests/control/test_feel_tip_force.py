@@ -19,6 +19,8 @@ from examples.feel_tip_force import (
 )
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 SETTLED = 8
 """Measurements after which the covariance is that of what was measured, not of the first guess."""
 
@@ -39,19 +41,16 @@ def mean_error(plant, runs, steps):
     return np.mean(errors), entries, 1.96 * np.sqrt(2 * entries / runs)
 
 
-@pytest.mark.slow
 def test_covariance_says_how_far_off_the_belief_is(plant):
     error, entries, band = mean_error(plant, 20, SETTLED)
     assert_allclose(error, entries, rtol=0.0, atol=band)
 
 
-@pytest.mark.slow
 def test_covariance_is_consistent_over_two_hundred_runs(plant):
     error, entries, band = mean_error(plant, 200, 40)
     assert_allclose(error, entries, rtol=0.0, atol=band)
 
 
-@pytest.mark.slow
 def test_filter_in_c_vs_python(tmp_path):
     """Of a robot with few modes: the compiler takes several times as long over the equations of the whole one."""
     model = robot(modes=1, nodes=4)
@@ -74,7 +73,6 @@ def test_filter_in_c_vs_python(tmp_path):
     assert np.all(found[-1, 3:] < 0.03)
 
 
-@pytest.mark.slow
 def test_picture_is_drawn(plant, tmp_path):
     run = true_motion(plant, 5, 0)
     draw(run, filtered(plant, run), str(tmp_path / "f.png"))

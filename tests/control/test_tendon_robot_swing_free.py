@@ -21,6 +21,8 @@ from examples import tendon_robot_swing_free as example
 from tests.codegen.test_load import cached, needs_compiler
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.slow
+
 
 def check_bounds(run: Run, first: np.ndarray) -> None:
     """Every plan was found, and tensions and rates are within their bounds."""
@@ -37,7 +39,6 @@ def not_compiled(stage: MotionStage, name: str) -> CompiledMotionStage:
     return CompiledMotionStage(stage.equations, poses)
 
 
-@pytest.mark.slow
 def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
     """To the end of the move, with a payload that the model does not have."""
     monkeypatch.setattr(with_motion, "compiled_motion_stage", not_compiled)
@@ -69,7 +70,6 @@ def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @needs_compiler
-@pytest.mark.slow
 def test_only_the_plan_with_motion_stops(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
     known, model = task.known_model(), task.moved_model()
@@ -90,7 +90,6 @@ def test_only_the_plan_with_motion_stops(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @needs_compiler
-@pytest.mark.slow
 def test_the_program_prints_its_table_and_draws(tmp_path: Path) -> None:
     program = ROOT / "examples" / "tendon_robot_swing_free.py"
     files = ["--output", "run.png", "--animation", "run.gif"]

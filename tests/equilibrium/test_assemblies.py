@@ -13,7 +13,8 @@ from scipy.optimize import root
 
 from cosserat_casadi import Scene, Solution, read_scene, scene_from_dict, solve
 from tests.conftest import case_files
-from tests.families import mostly_slow
+
+pytestmark = pytest.mark.slow
 
 ROUND = {"bending_x": 1.0, "bending_y": 1.4, "torsion": 0.7, "shear_x": 400.0, "shear_y": 600.0, "extension": 900.0}
 HOOKE = np.array(list(ROUND.values()))
@@ -68,8 +69,7 @@ WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0.0, 1.0, -3.0]}
 G = np.array([0.0, 0.5, -1.5])  # weight per length
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff", "reissner"], quick=["reissner"]))
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
 def test_two_rods_in_series_vs_one(strain: str) -> None:
     base = {"position": [0.1, 0, 0], "tangent": [1, 0, 1]}
     push = {"name": "push", "kind": "tip_wrench", "force": [0.9, 0.0, -0.4], "moment": [0, 0.2, 0]}
@@ -87,7 +87,6 @@ def test_two_rods_in_series_vs_one(strain: str) -> None:
     assert (single.stable is not None) == (strain == "planar")
 
 
-@pytest.mark.slow
 def test_rod_carried_between_the_ends_vs_shooting() -> None:
     offset, turn = np.array([0.05, 0.02, 0.0]), [0.6, 0, 0.8, 0]
     push = np.array([0.9, 0.5, -0.4])
@@ -125,8 +124,7 @@ CENTRE = np.array([0.02, 0.01, 0.05])
 SIDE = np.array([0.4, -0.3, 0.2])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", [pytest.param("fixed", marks=pytest.mark.slow), "spherical"])
+@pytest.mark.parametrize("kind", ["fixed", "spherical"])
 def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     """Three rods that do not fit a body unloaded: all root wrenches and the body's pose found at once."""
     mass = 0.3
@@ -166,7 +164,6 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     assert own.stable
 
 
-@pytest.mark.slow
 def test_portal_vs_its_half() -> None:
     """Two equal planar legs under a heavy beam: by symmetry each carries half.
 
@@ -213,7 +210,6 @@ def test_portal_vs_its_half() -> None:
     assert whole.stable
 
 
-@pytest.mark.slow
 def test_planar_loop_of_carried_rods_vs_one_held_rod() -> None:
     """A rod on a rod whose tip is held: the same as one rod held there."""
     base, at = {"tangent": [0, 0, 1]}, [0.25, 0.0, 0.45]
@@ -228,7 +224,6 @@ def test_planar_loop_of_carried_rods_vs_one_held_rod() -> None:
     assert single.stable is True
 
 
-@pytest.mark.slow
 def test_assembly_that_cannot_close_says_what_is_left() -> None:
     """A body wider than rods that keep their length can reach."""
     rods = [rod(n, 0.3, "kirchhoff", base={"position": [x, 0, 0]}) for n, x in (("a", 0.0), ("b", 1.5))]
@@ -245,7 +240,6 @@ def test_assembly_that_cannot_close_says_what_is_left() -> None:
     assert metres > 0.3
 
 
-@pytest.mark.slow
 def test_stability_of_a_carried_column_vs_eulers_load() -> None:
     """Two rods in series under a dead load on a body: straight, stable below Euler's critical load, unstable above."""
     critical = np.pi**2 * 1.0 / (4 * 0.8**2)
@@ -261,7 +255,6 @@ def test_stability_of_a_carried_column_vs_eulers_load() -> None:
 CASES = [path for path in case_files("robots") if "platform" in path.stem]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
 def test_reference_platform(path: Any) -> None:
     """The six-rod robot, whose rods do not fit each other unloaded, from a cold start with default settings."""

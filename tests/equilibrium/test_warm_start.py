@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import Model, build, discretise, scene_from_dict, solve
-from tests.families import mostly_slow
 from tests.scenes import cable_lengths, three_cables
 
 
@@ -23,8 +22,8 @@ def refuse(*arguments: object) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("step", "turns"), mostly_slow([(2e-4, 500), (6e-4, 500), (6e-4, 120)], [(6e-4, 120)]))
-@pytest.mark.parametrize("kind", mostly_slow(["unknowns", "solution"], quick=["solution"]))
+@pytest.mark.parametrize(("step", "turns"), [(2e-4, 500), (6e-4, 500), (6e-4, 120)])
+@pytest.mark.parametrize("kind", ["unknowns", "solution"])
 def test_cables_moved_turn_after_turn(
     model: Model, step: float, turns: int, kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,6 +15,8 @@ from cosserat_casadi.equilibrium.metrics import pose_distance
 from tests.fuzz.held import TOLERANCES, Verdict, alike, all_alike, says_unresolved, solved, verdict
 from tests.shooting_near import shoot
 
+pytestmark = pytest.mark.slow
+
 BUCKLED = 20
 """Seed of a rod that is pushed together along its axis, and leaves it in any direction."""
 
@@ -31,7 +33,6 @@ SHARPLY_BENT = 68
 """Seed of a rod that nine modes do not resolve."""
 
 
-@pytest.mark.slow
 def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
     coarse = solved(BUCKLED, {"tolerance": 1e-3})
     fine = solved(BUCKLED, {"tolerance": 1e-7})
@@ -42,7 +43,6 @@ def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
     assert not alike(replace(coarse, x=-coarse.x), fine)
 
 
-@pytest.mark.slow
 def test_a_rod_that_no_level_resolves_says_so_and_is_held_to_its_shape(monkeypatch: pytest.MonkeyPatch) -> None:
     truth = solved(PLAIN, {"tolerance": 1e-9})
     # The equilibrium is decided on 15 modes, which then do not do: what is known of fewer is kept.
@@ -61,7 +61,6 @@ def test_a_rod_that_no_level_resolves_says_so_and_is_held_to_its_shape(monkeypat
     assert verdict(PLAIN, [{"tolerance": 1e-3}, {"tolerance": 1e-9}]) is Verdict.SAYS_UNRESOLVED
 
 
-@pytest.mark.slow
 def test_a_sharply_bent_rod_vs_shooting() -> None:
     solution = solved(SHARPEST, {"tolerance": 1e-9})
     assert solution.converged
@@ -70,7 +69,6 @@ def test_a_sharply_bent_rod_vs_shooting() -> None:
     assert errors.pose <= solution.error_estimate <= 1e-9
 
 
-@pytest.mark.slow
 def test_fixed_modes_find_the_equilibrium_that_a_tolerance_finds() -> None:
     fine = solved(BUCKLED, {"tolerance": 1e-7})
     for modes in (9, 14):
@@ -79,7 +77,6 @@ def test_fixed_modes_find_the_equilibrium_that_a_tolerance_finds() -> None:
         assert alike(fixed, fine)
 
 
-@pytest.mark.slow
 def test_modes_that_do_not_resolve_a_rod_are_held_to_its_shape() -> None:
     coarse = solved(SHARPLY_BENT, {"modes": 9, "nodes": 20})
     fine = solved(SHARPLY_BENT, {"tolerance": 1e-5})
@@ -89,13 +86,11 @@ def test_modes_that_do_not_resolve_a_rod_are_held_to_its_shape() -> None:
     assert not alike(replace(coarse, x=-coarse.x), fine)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", LOST)
 def test_held_rods_that_were_lost_are_found(seed: int) -> None:
     assert verdict(seed, [{"tolerance": tolerance} for tolerance in (1e-3, 1e-9)]) is Verdict.ALIKE
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 60, 5))
 def test_held_rods_are_the_same_at_every_tolerance(first: int) -> None:
     accuracies = [{"tolerance": tolerance} for tolerance in TOLERANCES]

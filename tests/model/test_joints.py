@@ -138,11 +138,6 @@ def test_derivatives_finite_at_any_turn(angle: float) -> None:
     assert np.all(np.isfinite(model.path_jacobian(x, model.pack(), 1.0).full()))
 
 
-def _hinges(legs: tuple[dict[str, Any], ...], axis: list[float]) -> list[dict[str, Any]]:
-    places = [[entry["base"]["position"][0], 0, 0] for entry in legs]
-    return [joint(entry["name"], kind="revolute", axis=axis, position=p) for entry, p in zip(legs, places, strict=True)]
-
-
 def test_planar_rods_with_hinges_about_their_normal_hold_a_body_once() -> None:
     """As with spherical joints, only the first keeps the body in the plane."""
     legs = (leg("a", 0.0, "planar"), leg("b", 0.1, "planar"))

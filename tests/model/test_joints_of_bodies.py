@@ -145,7 +145,7 @@ def test_double_pendulum_swings_as_scipy_says() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("modulus", mostly_slow([2e10, 2e14], quick=[2e14]))
+@pytest.mark.parametrize("modulus", [2e10, 2e14])
 def test_how_stiff_a_link_is_does_not_matter(modulus: float) -> None:
     """A rod that only twists, beside one of 2 MPa: its own stiffness would hide what the other bears."""
     stiff = link("a", modulus, strain=["torsion"], base={"tangent": [1, 0, 0]})

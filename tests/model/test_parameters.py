@@ -135,6 +135,16 @@ def streaming(rod: dict[str, Any], load: dict[str, Any]) -> dict[str, Any]:
     return {"schema": 1, "rods": [rod], "loads": [load], "inputs": []}
 
 
+STREAM = {
+    "name": "stream",
+    "kind": "flow",
+    "density": 900.0,
+    "velocity": [0.4, 0.1, 0],
+    "normal": 1.1,
+    "tangential": 0.02,
+    "added_mass": 1.0,
+    "gravity": [0, 0, -9.81],
+}
 CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "moduli": (tables(WIRE), {"wire.material.youngs_modulus": 3.1e9, "wire.material.poisson_ratio": 0.21}),
     "modulus of a uniform rod": (
@@ -252,35 +262,14 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
                     "moment": [0, 0, 0.4],
                     "field": [0.1, 0.02, 0.01],
                 },
-                {
-                    "name": "stream",
-                    "kind": "flow",
-                    "density": 900.0,
-                    "velocity": [0.4, 0.1, 0],
-                    "normal": 1.1,
-                    "tangential": 0.02,
-                    "added_mass": 1.0,
-                    "gravity": [0, 0, -9.81],
-                },
+                STREAM,
             ],
             inputs=[],
         ),
         {"magnet.at": 0.72},
     ),
     "a stream": (
-        streaming(
-            WIRE,
-            {
-                "name": "stream",
-                "kind": "flow",
-                "density": 900.0,
-                "velocity": [0.4, 0.1, 0],
-                "normal": 1.1,
-                "tangential": 0.02,
-                "added_mass": 1.0,
-                "gravity": [0, 0, -9.81],
-            },
-        ),
+        streaming(WIRE, STREAM),
         {
             "stream.density": 1050.0,
             "stream.normal": 0.9,

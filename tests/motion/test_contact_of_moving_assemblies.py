@@ -23,7 +23,6 @@ from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.motion_equations import Instant
-from tests.families import mostly_slow
 
 HEAD = """
 schema = 1
@@ -226,9 +225,7 @@ def impulse_by_projection(model: Model, motion: Motion, time: float, body: str) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "rods", mostly_slow([FRAME, TWIGS.split("[[obstacles]]")[0]], quick=[FRAME]), ids=["closed", "open"]
-)
+@pytest.mark.parametrize("rods", [FRAME, TWIGS.split("[[obstacles]]")[0]], ids=["closed", "open"])
 def test_impulses_act_together_with_those_of_joints(rods: str, tmp_path: Path) -> None:
     body = "deck" if "deck" in rods else "ball"
     height = -0.02 if body == "deck" else -0.19

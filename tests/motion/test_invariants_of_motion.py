@@ -128,7 +128,7 @@ def chain() -> transients.Table:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jointed", mostly_slow([hinged, chain], quick=[hinged]))
+@pytest.mark.parametrize("jointed", [hinged, chain])
 def test_momentum_of_free_rods_that_are_joined_is_kept_to_rounding(jointed: Callable[[], transients.Table]) -> None:
     """Forces in joints act within: steps alone would miss 5e-7 of the momentum of the scissors."""
     model = moving_model(jointed(), 2, 6)
@@ -159,9 +159,9 @@ def test_rods_that_nothing_joins_are_not_one_piece() -> None:
 @pytest.mark.parametrize(
     ("method", "order"),
     [
-        pytest.param(radau(3), 5, marks=pytest.mark.slow),
+        (radau(3), 5),
         (gauss(2), 4),
-        pytest.param(gauss(3), 6, marks=pytest.mark.slow),
+        (gauss(3), 6),
     ],
     ids=["Radau-3", "Gauss-2", "Gauss-3"],
 )

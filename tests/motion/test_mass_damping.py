@@ -10,7 +10,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, modes_of, scene_from_dict, simulate
-from tests.families import mostly_slow
 from tests.motion.stepping import moving_model
 from tests.moving_scenes import FOLLOW, WEIGHT, rod, scene
 
@@ -27,7 +26,7 @@ def simulated(tables: dict[str, Any], duration: float) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("loads", mostly_slow([[WEIGHT], []], quick=[[WEIGHT]]), ids=["weight", "none"])
+@pytest.mark.parametrize("loads", [[WEIGHT], []], ids=["weight", "none"])
 def test_flight_decays_as_a_body_in_a_viscous_medium(loads: list[dict[str, Any]]) -> None:
     """r̈ = g − α ṙ of each point that does not turn: v = (v₀ − g/α) e^(−αt) + g/α."""
     velocity = np.array([1.0, -2.0, 0.5])

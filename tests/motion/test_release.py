@@ -12,7 +12,6 @@ from cosserat_casadi import EquilibriumPath, Scene, Solution, build, follow, rea
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.trajectory import Motion
 from tests.conftest import ROOT
-from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
 STIFFNESS = 2.0  # N m²
@@ -125,7 +124,7 @@ def test_an_arch_snaps_through_to_the_far_equilibrium_of_its_path() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("interpolation", mostly_slow(["linear", "cubic"], quick=["cubic"]))
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_an_arch_below_its_limit_load_stays_on_its_side(interpolation: str) -> None:
     start = below_the_limit(arch_path())
     force = float(start.inputs[2])

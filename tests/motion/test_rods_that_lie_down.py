@@ -24,7 +24,6 @@ from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.consistent_start import response, saddle_at, shortly_after
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step_run import ON_GUARD
-from tests.families import mostly_slow
 
 LIES = "examples/rod_lies_down.toml"
 LENGTH = 0.4
@@ -84,7 +83,7 @@ def test_a_rod_that_has_fallen_on_a_table_lies_as_statics_has_it(fallen: Motion)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", mostly_slow(["falling", "fallen"], ["falling"]))
+@pytest.mark.parametrize("part", ["falling", "fallen"])
 def test_a_rod_that_lies_down_is_never_deep_nor_pulled_and_its_energy_only_falls(
     part: str, request: pytest.FixtureRequest
 ) -> None:
@@ -136,7 +135,7 @@ def heavy_at_rest() -> Solution:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("modes", mostly_slow([2, 3, 4, 5, 6, 7, 10, 12, 16, 24], quick=[5]))
+@pytest.mark.parametrize("modes", [2, 3, 4, 5, 6, 7, 10, 12, 16, 24])
 def test_a_heavy_rod_starts_in_contact_on_any_number_of_modes(modes: int, heavy_at_rest: Solution) -> None:
     """Few modes stand on as many sections as they have; without the table under it the rod would be unstable."""
     simulation = "simulation={duration=0.05,tolerance=5e-3,frames=3}"

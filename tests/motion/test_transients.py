@@ -151,7 +151,7 @@ def test_sudden_weight_vs_independent_galerkin_method() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("tolerance", "share"), mostly_slow([(1e-3, 2.4e-4), (1e-4, 3.6e-5)], quick=[(1e-3, 2.4e-4)]))
+@pytest.mark.parametrize(("tolerance", "share"), [(1e-3, 2.4e-4), (1e-4, 3.6e-5)])
 def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
     """Energy is kept as exactly as the steps are exact, which follow the tolerance of the path.
 
@@ -167,7 +167,7 @@ def test_sudden_weight_keeps_its_energy(tolerance: float, share: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 1e-6, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), (0.05, 1e-6)])
 def test_spin_up_vs_independent_galerkin_method(spacing: float, atol: float) -> None:
     """The base turns by a cubic spline: knots twice as close bring it nearer to the angle of the reference by 2⁴."""
     time, lag = transients.SPIN_LAG

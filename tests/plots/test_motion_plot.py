@@ -23,7 +23,6 @@ from cosserat_casadi.plots.motion_plot import (
     shown_rows,
 )
 from cosserat_casadi.plots.moving_shapes import SECTIONS, moving_shapes
-from tests.families import mostly_slow
 from tests.motions import motion_of, planar_swing, swinging_rod, two_rods_on_a_platform, without_start
 from tests.scenes import push, rod, scene
 
@@ -219,7 +218,7 @@ def test_of_very_many_curves_those_that_vary_most_are_named() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("suffix", mostly_slow(["png", "pdf", "svg"], quick=["svg"]))
+@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_files_are_the_same_every_time(platform: Motion, tmp_path: Path, suffix: str) -> None:
     first = tmp_path / f"a.{suffix}"
     second = tmp_path / f"b.{suffix}"
