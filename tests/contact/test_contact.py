@@ -635,6 +635,7 @@ def test_second_variation_of_a_point_that_slides() -> None:
     assert_allclose(bar.smallest_eigenvalue, np.linalg.eigvalsh(hessian)[0], rtol=1e-5, atol=0)
 
 
+@pytest.mark.slow
 def test_points_that_stand_for_a_line_have_its_error() -> None:
     """A rod that is pressed on a drum harder than before lies down: a point holds to the tolerance, and is far off."""
     loose = parse_scene((ROD + PUSH + DRUM).replace("1e-6", "1e-3"))

@@ -137,6 +137,7 @@ def test_a_load_moves_past_a_contact() -> None:
     assert_allclose(found.shared, [0.7], rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_load_moves_inside_a_line_of_contact() -> None:
     at = 0.9
     lying = poked(at, force=[0, 0, 0], moment=[0, -0.005, 0])
