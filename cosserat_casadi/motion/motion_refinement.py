@@ -1,9 +1,10 @@
 """Simulate a scene to a tolerance in space and time together: modes and nodes are chosen for the motion.
 
-The motion is computed on one set of modes after the other. The distance of the paths of two of them, and how it falls
-from one to the next, bound the error of the last one; a strain that does not move keeps one mode, and a strain whose
-last coefficients do not tell keeps its number of modes. The steps are as exact as such motions mostly ask, and are
-checked on the last set of modes. See docs/theory.md, section 11.
+The motion is computed on one set of modes after the other, until their last coefficients tell that further ones would
+not matter, or two motions do: the distance of their paths, and how it falls from one to the next, bound the error of
+the last one. A strain that does not move keeps one mode, and a strain whose last coefficients do not tell keeps its
+number of modes. The steps are as exact as such motions mostly ask, and are checked on the last set of modes. See
+docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -106,6 +107,9 @@ MOST_WITHOUT_START = 4
 SAFETY = 1.5
 """Factor on the error that is extrapolated from it."""
 
+REST = SAFETY / UNKNOWN_ORDER
+"""Displacement by all further coefficients over that by the last one and their number, as errors fall by this power."""
+
 FELT = 0.02
 """Displacement by a coefficient, over the tolerance, from which it counts."""
 
@@ -130,9 +134,10 @@ class ResolvedMotion:
         paths: paths of tips and bodies, which are compared with the paths of the next motion.
         rung: place of the modes on the ladder.
         modes: most polynomials of a strain in an element.
-        distance: of the paths from those of the level before; infinite for the first.
-        unseen: displacement over the length by the last coefficients of strains that have no more modes than on the
-            level before: the distance tells nothing of modes that they lack.
+        distance: of the paths from those of the level before; infinite for the first, zero where strains have
+            modes enough.
+        unseen: displacement over the length by coefficients that strains lack, as their last ones tell: of strains that
+            have no more modes than on the level before the distance tells nothing.
     """
 
     simulator: Simulator
@@ -195,13 +200,15 @@ class _Search:
 
         Of strains that keep their modes the last coefficients bound the rest.
         """
-        if len(self.levels) < 2:
+        if not np.isfinite(self.last.distance):
             return float("inf")
         return self.foreseen(self.last.modes, self.order)
 
     def foreseen(self, modes: int, order: float) -> float:
         """Error of the paths on so many modes, if it falls with a power of their number."""
-        left_now = max(self.last.distance * self.left_over_distance(order), self.last.unseen)
+        left_now = self.last.unseen
+        if self.last.distance > 0.0:
+            left_now = max(left_now, self.last.distance * self.left_over_distance(order))
         return float(left_now * (modes / self.last.modes) ** -order)
 
     def left_over_distance(self, order: float) -> float:
@@ -323,6 +330,9 @@ def _with_tolerance(search: _Search) -> Motion:
     while rung is not None:
         modes = ladder[rung]
         chosen, unseen = _next_modes(search, modes) if search.levels else (_uniform(search.scene, modes), 0.0)
+        if chosen is None:
+            search.levels[-1] = replace(search.last, distance=0.0, unseen=unseen)
+            break
         model = moving_model(search.scene, chosen)
         simulator = _simulator(search, model, f"with up to {modes} modes")
         if not simulator.start.found:
@@ -358,7 +368,7 @@ def _with_tolerance(search: _Search) -> Motion:
         return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
     companions = [timed.companion]
-    if len(search.levels) > 1:
+    if len(search.levels) > 1 and search.last.distance > 0.0:
         companions.append(Companion(search.levels[-2].history, search.left_over_distance(search.order)))
     return _judged(search, finest, search.space_error + timed.error, companions)
 
@@ -491,14 +501,16 @@ def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
     return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
 
 
-def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation], float]:
+def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] | None, float]:
     """Modes of the next level: as many as it has, but of strains that do not need them.
 
     Returns:
-        the modes, and what the last coefficients of strains without further modes move, over the length.
+        the modes, None where none lacks more than modes may leave, and what strains lack that get no further ones, over
+        the length.
     """
     chosen = {}
     unseen = 0.0
+    lacking = 0.0
     felt = _felt(search.last, search.simulation.duration)
     for name, discretisation in _uniform(search.scene, modes).items():
         counts = []
@@ -506,17 +518,21 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation],
         for strain, count in enumerate(discretisation.modes):
             moved = felt[name][strain]
             kept = coarse.modes[strain]
-            # The coefficients of a polynomial of each element, by their degree.
-            last = moved[-max(1, len(moved) // LAST) :]
+            # The coefficients of a polynomial of each element, by their degree. One alone may vanish by symmetry.
+            last = moved[-max(2, len(moved) // LAST) :]
+            lacking = max(lacking, REST * kept * float(last.max()))
             if moved.max() < FELT * search.tolerance:
                 counts.append(1)
-                unseen = max(unseen, float(moved.max()))
+                unseen = max(unseen, REST * kept * float(moved.max()))
             elif last.max() < FELT * search.tolerance:
                 counts.append(kept)
-                unseen = max(unseen, float(last.max()))
+                unseen = max(unseen, REST * kept * float(last.max()))
             else:
                 counts.append(count)
         chosen[name] = replace(discretisation, modes=tuple(counts))
+    # What touches is found at sections, of which more modes have more.
+    if lacking <= SPACE_SHARE * search.tolerance and not search.scene.has_contact:
+        return None, lacking
     return chosen, unseen
 
 

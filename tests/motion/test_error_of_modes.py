@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
 from cosserat_casadi.motion.motion_refinement import FASTEST, SAFETY, SLOWEST, ResolvedMotion, _Search
 from cosserat_casadi.scene.simulation import Simulation
+from tests.motion import transients
 
 
 def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3) -> _Search:
@@ -44,3 +47,12 @@ def test_waves_that_modes_do_not_see_yet_end_no_search() -> None:
     stagnant.levels[-1] = replace(stagnant.last, rung=rung)
     assert stagnant.climb(VERIFIED_MODES) == rung + 3
     assert replace(stagnant, tolerance=1e-4).climb(VERIFIED_MODES) is None
+
+
+def test_modes_whose_last_coefficients_do_not_tell_are_enough_and_their_error_is_told() -> None:
+    tolerance = 1e-2
+    motion = simulate(scene_from_dict(transients.line_load(tolerance=tolerance)))
+    error = np.linalg.norm(motion.tip().position[:, [0, 2]] - transients.LINE_LOAD_TIP, axis=1).max()
+    assert motion.converged
+    assert motion.model.discretisation["rod"].modes == (VERIFIED_MODES[0],)
+    assert max(error, 0.1 * tolerance) < motion.error_estimate

@@ -226,7 +226,7 @@ def test_interrupted_motion_keeps_its_rows() -> None:
 
 def test_interrupted_search_keeps_the_best_whole_motion() -> None:
     """Whoever stops the choice of modes gets the last motion computed to its end, and what is known of its error."""
-    scene = {**falling(), "accuracy": {}}
+    scene = falling(accuracy={}, simulation=asked(start="unloaded", tolerance=1e-4))
     stages: list[str] = []
 
     def tell(progress: MotionProgress) -> None:
@@ -254,7 +254,7 @@ def test_interrupted_search_foresees_no_error_of_given_steps(monkeypatch: pytest
         if len(stages) == 3:
             raise KeyboardInterrupt
 
-    scene = falling(accuracy={}, simulation=asked(start="unloaded", integrator="gauss"))
+    scene = falling(accuracy={}, simulation=asked(start="unloaded", integrator="gauss", tolerance=1e-4))
     motion = simulate(scene_from_dict(scene), progress=tell)
     assert motion.outcome is MotionOutcome.INTERRUPTED
     assert np.isnan(motion.error_estimate)
