@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import FileIO
 from pathlib import Path
 from typing import IO
 
@@ -186,12 +187,12 @@ def sources_hash(folder: Path | None = None) -> str | None:
     # Paths as texts: to sort and to compare hundreds of records of paths takes longer than to read the files.
     files = sorted(f"{at}/{name}" for at, _, names in os.walk(root) for name in names if _is_source(name))
     for path in files:
-        file = Path(path)
-        facts = file.stat()
-        # A file that is moved or linked into place keeps its own time; that of its entry in the folder changes.
-        if max(facts.st_mtime, facts.st_ctime) >= imported:
-            return None
-        content = file.read_bytes()
+        with FileIO(path) as file:
+            facts = os.fstat(file.fileno())
+            # A file that is moved or linked into place keeps its own time; that of its entry in the folder changes.
+            if max(facts.st_mtime, facts.st_ctime) >= imported:
+                return None
+            content = file.read()
         within = path[len(root) :].replace(os.sep, "/")
         digest.update(f"{within}\0{len(content)}\0".encode() + content)
     return digest.hexdigest() if files else None

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import Model, Scene, build, solve
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.trajectory import Energies, Motion, MotionOutcome, MotionState, StepStatistics
+from cosserat_casadi.motion.trajectory import Account, Energies, Motion, MotionOutcome, MotionState, StepStatistics
 from tests.scenes import HOOK, push, rod, scene
 
 STATISTICS = StepStatistics(steps=57, rejected=3, iterations=211, jacobians=18, smallest_step=2.5e-4, largest_step=0.03)
@@ -64,12 +66,22 @@ def _fields(model: Model, times: FloatArray, states: list[MotionState], swing: S
         "v": np.array([state.v for state in states]).reshape(len(times), model.size),
         "a": np.array([state.a for state in states]).reshape(len(times), model.size),
         "inputs": np.array([state.inputs for state in states]).reshape(len(times), model.inputs.size),
-        "energy": energies(times),
         "error_estimate": 3e-5,
         "statistics": STATISTICS,
         "start": START,
         "interpolant": swing.at,
+        "account": partial(told, energies(times)),
     }
+
+
+def told(energy: Energies) -> Account:
+    """Energies of a motion from which none goes on."""
+    return energy, None
+
+
+def with_energies(motion: Motion, **changed: FloatArray) -> Motion:
+    """A motion with other energies."""
+    return replace(motion, account=partial(told, replace(motion.energy, **changed)))
 
 
 def energies(times: FloatArray) -> Energies:
@@ -130,9 +142,9 @@ def without_start() -> Motion:
         v=motion.v[:0],
         a=motion.a[:0],
         inputs=motion.inputs[:0],
-        energy=energies(none),
         error_estimate=float("nan"),
         statistics=StepStatistics(0, 0, 0, 0, float("nan"), float("nan")),
         start="",
         interpolant=motion.interpolant,
+        account=partial(told, energies(none)),
     )

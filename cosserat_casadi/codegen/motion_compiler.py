@@ -118,7 +118,7 @@ class MotionCompiler:
         of_model, residual = self.asked.get(RESIDUAL, (None, None))
         if of_model is not model or residual is None or residual.code is None:
             return None
-        return {name: ca.external(f"{TIP}{k}", residual.code.path) for k, name in enumerate(model.tip)}
+        return {name: ca.external(f"{TIP}{k}", residual.code.path) for k, name in enumerate(model.discrete.rods)}
 
     def _stepper(self) -> Stepper | None:
         """The steps in machine code; None where there is no compiler."""

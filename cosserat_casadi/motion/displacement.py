@@ -49,10 +49,11 @@ def _displacements(model: Model) -> FloatArray:
 
 def _of_strains(rod: DiscreteRod) -> FloatArray:
     """Largest displacement over the length by a unit of each strain coordinate, shape (n,)."""
-    unloaded = shape(rod, ca.MX.zeros(rod.size))
+    # Numbers throughout: to write expressions first takes several times as long.
+    unloaded = shape(rod, ca.DM.zeros(rod.size))
     tangent = Tangent(InverseGeometricModel(Statics(unloaded, [])))
-    variation = ca.evalf(ca.densify(ca.MX(tangent.tangent))).full()
-    turns = ca.evalf(ca.densify(ca.MX(tangent.rotation))).full()
+    variation = ca.DM(tangent.tangent).full()
+    turns = ca.DM(tangent.rotation).full()
     points = rod.grid.size
     # Stacked component by component: the first axis is that of the components.
     of_tangents = variation.reshape(3, points, rod.size)

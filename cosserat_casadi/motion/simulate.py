@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -34,6 +34,7 @@ from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
 from cosserat_casadi.motion.trajectory import (
+    Account,
     Energies,
     Motion,
     MotionOutcome,
@@ -524,16 +525,12 @@ def motion_of(
     if history.stopped is not None:
         times = np.union1d(times, history.end.time)
     states = [history.at(float(time)) for time in times]
-    moving = frozenset(motion.input for motion in model.scene.motions)
     begin = history.of_model(history.legs[0].start.instant)
     duration = simulator.simulation.duration
-    begun = simulator.begun
-    energy, account = energies_of(history, times, moving, None if begun is None else begun.energy)
     others = [one for one in companions if one is not None and one.history.completed]
     strands = [_strand(history, 0.0, 0.0)]
     strands += [_strand(one.history, one.factor, one.impacts + one.history.lost - history.lost) for one in others]
     spread = max((abs(strand.impacts) for strand in strands[1:]), default=float("nan"))
-    end = Checkpoint(history.end.time, tuple(strands), error, account, _tips(history, history.end.time))
     return Motion(
         model=model,
         outcome=outcome,
@@ -543,17 +540,39 @@ def motion_of(
         v=_stacked([state.v for state in states], model.size),
         a=_stacked([state.a for state in states], model.size),
         inputs=_stacked([state.inputs for state in states], model.inputs.size),
-        energy=energy,
         error_estimate=error,
         statistics=history.statistics,
         start=simulator.start.sentence,
         interpolant=history.at,
+        account=partial(_account, history, times, simulator.begun, tuple(strands), error),
         warnings=tuple(warnings(model, simulator.start, simulator.moving, duration, begin.a)),
         contacts=tuple(history.touching(float(time)) for time in times),
         events=tuple(sorted([*history.events, *simulator.watch.crossings(history)], key=lambda event: event.time)),
-        end=end,
         impacts_spread=spread,
     )
+
+
+def _account(
+    history: History, times: FloatArray, begun: Checkpoint | None, strands: tuple[Strand, ...], error: float
+) -> Account:
+    """Energies of a motion at its times, and its end.
+
+    Args:
+        history: the motion.
+        times: shape (T,), s.
+        begun: where it goes on from; None for one that begins.
+        strands: the motion, then the motions that tell its error.
+        error: estimated error of its paths, over the length.
+    """
+    moving = frozenset(motion.input for motion in history.model.scene.motions)
+    energies, account = energies_of(history, times, moving, None if begun is None else begun.energy)
+    return energies, Checkpoint(history.end.time, strands, error, account, _tips(history, history.end.time))
+
+
+def _nothing() -> Account:
+    """Energies and end of a motion that has no state."""
+    none = np.zeros(0)
+    return Energies(none, none, none, none, none, none, none), None
 
 
 def _strand(history: History, factor: float, impacts: float) -> Strand:
@@ -591,9 +610,9 @@ def not_started(model: Model, start: Start) -> Motion:
         v=no_state,
         a=no_state,
         inputs=np.zeros((0, model.inputs.size)),
-        energy=Energies(none, none, none, none, none, none, none),
         error_estimate=float("nan"),
         statistics=StepStatistics(0, 0, 0, 0, float("nan"), float("nan")),
         start=start.sentence,
         interpolant=nowhere,
+        account=_nothing,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -135,6 +136,10 @@ class Energies:
     imbalance: FloatArray
 
 
+Account = tuple[Energies, Checkpoint | None]
+"""Energies at the times of a motion, and its end, from which another goes on; None where it was not started."""
+
+
 @dataclass(frozen=True)
 class StepStatistics:
     """Numbers and sizes of the time steps of a motion.
@@ -169,7 +174,6 @@ class Motion(Result):
         v: their rates, likewise, 1/s; without meaning for multipliers and tensions.
         a: their second derivatives, likewise, 1/s².
         inputs: stacked inputs, shape (T, model.inputs.size).
-        energy: energies at the times, and the balance between them.
         error_estimate: estimated error of the tips' paths relative to the rods' lengths, of space and time together;
             nan where none was made.
         statistics: what the time steps took.
@@ -178,7 +182,7 @@ class Motion(Result):
         warnings: sentences on what limits the accuracy, such as a load that jumps.
         contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
         events: impacts and other changes of contact, and of cables that go slack, in their order.
-        end: how far it has come, for a motion that goes on; None where it was not started.
+        account: gives the energies and the end, which few ask for and which take their time.
         impacts_spread: by how much the energy that impacts took since the motion began is another on the other modes
             and with the other steps that told the error, J; nan where there were no others.
     """
@@ -191,16 +195,29 @@ class Motion(Result):
     v: FloatArray
     a: FloatArray
     inputs: FloatArray
-    energy: Energies
     error_estimate: float
     statistics: StepStatistics
     start: str
     interpolant: Callable[[float], MotionState]
+    account: Callable[[], Account]
     warnings: tuple[str, ...] = ()
     contacts: tuple[tuple[MotionContact, ...], ...] = ()
     events: tuple[ContactEvent, ...] = ()
-    end: Checkpoint | None = None
     impacts_spread: float = float("nan")
+
+    @property
+    def energy(self) -> Energies:
+        """Energies at the times, and the balance between them."""
+        return self._account[0]
+
+    @property
+    def end(self) -> Checkpoint | None:
+        """How far it has come, for a motion that goes on; None where it was not started."""
+        return self._account[1]
+
+    @cached_property
+    def _account(self) -> Account:
+        return self.account()
 
     @property
     def converged(self) -> bool:

@@ -23,7 +23,7 @@ from cosserat_casadi.plots.motion_plot import (
     shown_rows,
 )
 from cosserat_casadi.plots.moving_shapes import SECTIONS, moving_shapes
-from tests.motions import motion_of, planar_swing, swinging_rod, two_rods_on_a_platform, without_start
+from tests.motions import motion_of, planar_swing, swinging_rod, two_rods_on_a_platform, with_energies, without_start
 from tests.scenes import push, rod, scene
 
 
@@ -148,8 +148,7 @@ def test_inputs_that_move_have_a_panel_for_each_quantity(platform: Motion) -> No
 
 
 def test_energies_and_their_imbalance(planar: Motion) -> None:
-    without_damping = replace(planar.energy, dissipated=np.zeros(len(planar.times)))
-    by_label = panels(plot_motion(replace(planar, energy=without_damping)))
+    by_label = panels(plot_motion(with_energies(planar, dissipated=np.zeros(len(planar.times)))))
     energies = {line.get_label(): line.get_ydata() for line in by_label["energy, J"].get_lines()}
     assert list(energies) == ["kinetic", "elastic", "potential", "work", "impacts"]
     assert_allclose(energies["work"], planar.energy.work, rtol=0, atol=0)
@@ -163,9 +162,7 @@ def test_energies_and_their_imbalance(planar: Motion) -> None:
 
 def test_a_motion_that_rests_has_panels_that_say_so(planar: Motion) -> None:
     none = np.zeros(len(planar.times))
-    still = replace(
-        planar, energy=replace(planar.energy, **dict.fromkeys(vars(planar.energy), none)), inputs=0 * planar.inputs
-    )
+    still = replace(with_energies(planar, **dict.fromkeys(vars(planar.energy), none)), inputs=0 * planar.inputs)
     by_label = panels(plot_motion(still))
     assert not any(label.startswith("force") for label in by_label)
     for label in ("energy, J", "imbalance /\nlargest energy"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import builtins
 import csv
 import json
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from cosserat_casadi import SceneError
 from cosserat_casadi.motion.trajectory import Energies, Motion, MotionOutcome
 from cosserat_casadi.results.motion_file import FORMATS, check_motion_path, motion_columns
 from cosserat_casadi.sweeps.outcome_file import ParquetUnavailableError
-from tests.motions import START, motion_of, swinging_rod, two_rods_on_a_platform, without_start
+from tests.motions import START, motion_of, swinging_rod, two_rods_on_a_platform, with_energies, without_start
 from tests.scenes import WIND, push, scene
 
 ENERGIES = [field.name for field in fields(Energies)]
@@ -132,7 +132,7 @@ def test_npz_vs_json(platform: Motion, tmp_path: Path) -> None:
 def test_what_is_not_finite_is_missing_in_every_format(tmp_path: Path) -> None:
     motion = swinging_rod(frames=3, error_estimate=float("nan"), outcome=MotionOutcome.INTERRUPTED)
     lost = np.array([0.0, np.inf, np.nan])
-    motion = replace(motion, energy=replace(motion.energy, imbalance=lost))
+    motion = with_energies(motion, imbalance=lost)
     data = json.loads(written(motion, tmp_path, ".json").read_text(encoding="utf-8"))
     assert data["converged"] is False
     assert data["error_estimate"] is None
