@@ -64,8 +64,8 @@ def unloaded_response(
     if discrete.size:
         response = -np.linalg.solve(jacobian.full(), rates)
     at_origin = response[:, :1]
-    constant = ca.DM(_without_noise(at_origin[:, 0]))
-    by_inputs = _without_noise(response[:, 1:] - at_origin)
+    constant = ca.DM(without_noise(at_origin[:, 0]))
+    by_inputs = without_noise(response[:, 1:] - at_origin)
     return constant + ca.sparsify(ca.DM(by_inputs)) @ deviation
 
 
@@ -84,7 +84,7 @@ def parametric_response(written: Expressions) -> Matrix:
     return response
 
 
-def _without_noise(values: FloatArray) -> FloatArray:
+def without_noise(values: FloatArray) -> FloatArray:
     """Values, zero where they are rounding errors, which differ with the number of threads of a BLAS."""
     largest = float(np.abs(values).max(initial=0.0))
     return np.where(np.abs(values) < NOISE * largest, 0.0, values)

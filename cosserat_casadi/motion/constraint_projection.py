@@ -9,13 +9,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -52,11 +56,12 @@ class Closing:
         numbers = [np.arange(span.start, span.stop) for span in entries]
         return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
 
-    def closed(self, instant: Instant, equations: MotionEquations, near: Instant) -> FloatArray:
+    def closed(self, instant: Instant, inputs: FloatArray, equations: MotionEquations, near: Instant) -> FloatArray:
         """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
 
         Args:
             instant: of the motion, in the unknowns of the model.
+            inputs: then, shape (model.inputs.size,).
             equations: of motion, of which some rows are the constraints.
             near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many of them.
         """
@@ -69,7 +74,7 @@ class Closing:
         is_here = False
         for _ in range(MOST_CORRECTIONS):
             instant = replace(instant, x=x)
-            gaps = equations.residual_at(instant)[self.rows]
+            gaps = self._gaps(x, inputs)
             largest = np.abs(gaps).max()
             if largest <= CLOSED:
                 break
@@ -79,7 +84,7 @@ class Closing:
                 return best
             if leads_away:
                 instant = replace(instant, x=best)
-                gaps = equations.residual_at(instant)[self.rows]
+                gaps = self._gaps(best, inputs)
             else:
                 best = x
             if answer is None:
@@ -90,6 +95,17 @@ class Closing:
             before = np.abs(gaps).max()
             x = best - answer @ gaps
         return x
+
+    @cached_property
+    def _gaps(self) -> RepeatedCall:
+        """(x, inputs) ↦ the rows of the constraints: the rest of the equations takes several times as long."""
+        return RepeatedCall(kept_with(self.model, "_gaps", self._written_gaps))
+
+    def _written_gaps(self) -> ca.Function:
+        function = self.model.residual
+        # As scalars only the constraints are left of it.
+        arguments = function.mx_in() if chooses(function) else function.sx_in()
+        return ca.Function("gaps", arguments, [ca.densify(function(*arguments)[self.rows.tolist()])])
 
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
         """As :meth:`_answer`, at an end of a step; that of the last one asked for is remembered."""

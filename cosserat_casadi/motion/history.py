@@ -218,7 +218,7 @@ class History:
         if self.steps:
             _, step = self.steps[self.number_at(time)]
             near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time)))
-        return MotionState(self._closing.closed(instant, equations, near), instant.v, instant.a, inputs)
+        return MotionState(self._closing.closed(instant, inputs, equations, near), instant.v, instant.a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""

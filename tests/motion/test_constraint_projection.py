@@ -25,5 +25,5 @@ def test_a_jacobian_of_elsewhere_that_leads_away_is_replaced() -> None:
     assert np.abs(equations.residual_at(opened)[closing.rows]).max() > 1e3 * CLOSED
     backwards = replace(instant, time=-1.0)
     closing._remembered["last"] = -1.0, -3.0 * closing._answer(equations.linearised(instant).stiffness)
-    x = closing.closed(opened, equations, backwards)
+    x = closing.closed(opened, leg.piece.at(instant.time).value, equations, backwards)
     assert np.abs(equations.residual_at(replace(opened, x=x))[closing.rows]).max() <= CLOSED
