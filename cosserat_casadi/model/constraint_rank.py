@@ -84,7 +84,8 @@ def _at_a_random_shape(probe: DiscreteScene) -> System:
     x = np.zeros(probe.size)
     strains = probe.unknowns.count(BlockKind.STRAIN)
     x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains) * _own_units(probe)
-    return System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
+    # Numbers throughout: to write expressions first takes several times as long.
+    return System(probe, Arguments(ca.DM(x), ca.DM(probe.layout.pack())))
 
 
 def _own_units(probe: DiscreteScene) -> FloatArray:
@@ -102,7 +103,7 @@ def _own_units(probe: DiscreteScene) -> FloatArray:
 def _constraint_rows(system: System) -> FloatArray:
     """Derivatives of all constraint residuals with strains and floating frames, one row each."""
     unknowns = system.discrete.unknowns
-    jacobian = ca.evalf(SceneEquations(system).assembly.constraint_jacobian).full()
+    jacobian = ca.DM(SceneEquations(system).assembly.constraint_jacobian).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
     rows = np.delete(jacobian[first:last], slice(first, last), axis=1)

@@ -102,10 +102,12 @@ class Closing:
         return RepeatedCall(kept_with(self.model, "_gaps", self._written_gaps))
 
     def _written_gaps(self) -> ca.Function:
-        function = self.model.residual
+        dynamics = self.model.inverse_dynamics_in_scalars
         # As scalars only the constraints are left of it.
-        arguments = function.mx_in() if chooses(function) else function.sx_in()
-        return ca.Function("gaps", arguments, [ca.densify(function(*arguments)[self.rows.tolist()])])
+        symbols = dynamics.mx_in() if chooses(dynamics) else dynamics.sx_in()
+        at_rest = {"x": symbols[0], "inputs": symbols[3]}
+        rows = dynamics.call({**dict.fromkeys(dynamics.name_in(), 0), **at_rest})["residual"][self.rows.tolist()]
+        return ca.Function("gaps", list(at_rest.values()), [ca.densify(rows)])
 
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
         """As :meth:`_answer`, at an end of a step; that of the last one asked for is remembered."""

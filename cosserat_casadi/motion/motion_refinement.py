@@ -161,6 +161,7 @@ class _Search:
         source: chooses the kernels of every motion.
         events: of the user.
         tolerance: of the paths, over the length.
+        ladder: modes of every strain in each element, level by level; none where the user fixes them.
         levels: the motions so far.
         step_tolerance: of a step, over the length; nan for steps of given size.
         time_error: error of the steps on the last level that it was told of; nan where none was.
@@ -173,6 +174,7 @@ class _Search:
     source: KernelSource | None
     events: Sequence[MotionEvent]
     tolerance: float
+    ladder: tuple[int, ...]
     levels: list[ResolvedMotion] = field(default_factory=list)
     step_tolerance: float = float("nan")
     time_error: float = float("nan")
@@ -216,23 +218,19 @@ class _Search:
         left: float = (self.last.modes / self.levels[-2].modes) ** -order
         return SAFETY * left / (1.0 - left)
 
-    def climb(self, ladder: Sequence[int]) -> int | None:
-        """The next rung: as far up as seems to be needed; None where the last one would not do.
-
-        Args:
-            ladder: modes of each rung.
-        """
+    def climb(self) -> int | None:
+        """The next rung: as far up as seems to be needed; None where the last one would not do."""
         rung = self.last.rung
-        last = len(ladder) - 1
+        last = len(self.ladder) - 1
         if rung == last:
             return None
         if len(self.levels) < 3:
             return rung + 1
-        if self.foreseen(ladder[last], max(self.order, HOPED)) > self.tolerance:
+        if self.foreseen(self.ladder[last], max(self.order, HOPED)) > self.tolerance:
             return None
         # Not further than is foreseen well, and never to stay.
         for higher in range(rung + 1, min(rung + MOST_RUNGS, last)):
-            if self.foreseen(ladder[higher], self.order) <= SPACE_SHARE * self.tolerance:
+            if self.foreseen(self.ladder[higher], self.order) <= SPACE_SHARE * self.tolerance:
                 return higher
         return min(rung + MOST_RUNGS, last)
 
@@ -271,12 +269,14 @@ def simulate(
     refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
-    chosen = discretise(scene) if scene.accuracy.fixed else _uniform(scene, _ladder(scene)[0])
+    ladder = () if scene.accuracy.fixed else _ladder(scene)
+    chosen = _uniform(scene, ladder[0]) if ladder else discretise(scene)
     first = moving_model(moving_scene, chosen)
     simulation = scene.simulation
     check_simulation(first, simulation)
     assert simulation is not None, "checked"
-    search = _Search(moving_scene, simulation, start, progress, source, events, tolerance_of(first, simulation))
+    tolerance = tolerance_of(first, simulation)
+    search = _Search(moving_scene, simulation, start, progress, source, events, tolerance, ladder)
     try:
         if scene.accuracy.fixed:
             return _with_fixed(search)
@@ -324,7 +324,7 @@ def _finer(discretisation: Discretisation) -> Discretisation:
 
 def _with_tolerance(search: _Search) -> Motion:
     """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
-    ladder = _ladder(search.scene)
+    ladder = search.ladder
     rung: int | None = 1 if search.tolerance < FINE else 0
     without_start = 0
     while rung is not None:
@@ -360,7 +360,7 @@ def _with_tolerance(search: _Search) -> Motion:
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
-        rung = search.climb(ladder)
+        rung = search.climb()
     timed = _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
         raise KeyboardInterrupt

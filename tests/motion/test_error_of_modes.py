@@ -19,7 +19,7 @@ from tests.motion import transients
 def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3) -> _Search:
     """A search whose errors are modes^−order."""
     anything: Any = None
-    found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance)
+    found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance, VERIFIED_MODES)
     before = float("inf")
     for number in modes:
         error = float(number) ** -order
@@ -45,8 +45,8 @@ def test_waves_that_modes_do_not_see_yet_end_no_search() -> None:
     assert stagnant.foreseen(VERIFIED_MODES[-1], stagnant.order) > 0.09
     rung = VERIFIED_MODES.index(16)
     stagnant.levels[-1] = replace(stagnant.last, rung=rung)
-    assert stagnant.climb(VERIFIED_MODES) == rung + 3
-    assert replace(stagnant, tolerance=1e-4).climb(VERIFIED_MODES) is None
+    assert stagnant.climb() == rung + 3
+    assert replace(stagnant, tolerance=1e-4).climb() is None
 
 
 def test_modes_whose_last_coefficients_do_not_tell_are_enough_and_their_error_is_told() -> None:
