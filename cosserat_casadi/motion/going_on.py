@@ -17,6 +17,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
+from cosserat_casadi.motion.felt_modes import lacking
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
@@ -119,6 +120,10 @@ def go_on(
             return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
         error += strand.factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
         companions.append(Companion(told, strand.factor, strand.impacts))
+    by_modes = any(strand.discretisation != first.discretisation for strand in checkpoint.strands)
+    if given is None and not scene.accuracy.fixed and not by_modes:
+        # The modes were enough so far, as their last coefficients told.
+        error += lacking(history, asked.duration)
     # An error that is not known makes that of the whole unknown.
     total = float(np.maximum(error, checkpoint.error))
     bound = bound_of(scene, asked, tolerance_of(model, asked))

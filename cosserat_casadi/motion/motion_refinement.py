@@ -18,11 +18,11 @@ import numpy as np
 from cosserat_casadi.accuracy.levels import SPARE_NODES, VERIFIED_MODES, seeing_modes
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.felt_modes import REST, SAFETY, UNKNOWN_ORDER, felt, lacking, last_of
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -50,7 +50,7 @@ from cosserat_casadi.motion.simulate import (
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
 from cosserat_casadi.motion.step_kernels import KernelSource
-from cosserat_casadi.motion.tip_paths import Paths, path_distance, watched_times
+from cosserat_casadi.motion.tip_paths import Paths, path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -77,9 +77,6 @@ FINE = 2e-4
 TOLD_AFTER = 3
 """Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
 
-UNKNOWN_ORDER = 1.7
-"""Power of the modes with which errors fall, before two distances tell; waves of a sudden load have 2.3."""
-
 HOPED = 4.0
 """Least power with which a search gives up: that of short waves is below 1 until modes see them, and then 3 to 5."""
 
@@ -104,17 +101,8 @@ MOST_RUNGS = 3
 MOST_WITHOUT_START = 4
 """Sets of modes without a start in contact before none is told."""
 
-SAFETY = 1.5
-"""Factor on the error that is extrapolated from it."""
-
-REST = SAFETY / UNKNOWN_ORDER
-"""Displacement by all further coefficients over that by the last one and their number, as errors fall by this power."""
-
 FELT = 0.02
 """Displacement by a coefficient, over the tolerance, from which it counts."""
-
-LAST = 3
-"""One of so many coefficients counts as one of the last."""
 
 
 ERRATIC = (
@@ -510,47 +498,29 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     """
     chosen = {}
     unseen = 0.0
-    lacking = 0.0
-    felt = _felt(search.last, search.simulation.duration)
+    history = search.last.history
+    of_strains = felt(history, search.simulation.duration)
     for name, discretisation in _uniform(search.scene, modes).items():
         counts = []
         coarse = search.last.simulator.model.discretisation[name]
         for strain, count in enumerate(discretisation.modes):
-            moved = felt[name][strain]
+            moved = of_strains[name][strain]
             kept = coarse.modes[strain]
-            # The coefficients of a polynomial of each element, by their degree. One alone may vanish by symmetry.
-            last = moved[-max(2, len(moved) // LAST) :]
-            lacking = max(lacking, REST * kept * float(last.max()))
+            last = last_of(moved)
             if moved.max() < FELT * search.tolerance:
                 counts.append(1)
                 unseen = max(unseen, REST * kept * float(moved.max()))
-            elif last.max() < FELT * search.tolerance:
+            elif last < FELT * search.tolerance:
                 counts.append(kept)
-                unseen = max(unseen, REST * kept * float(last.max()))
+                unseen = max(unseen, REST * kept * last)
             else:
                 counts.append(count)
         chosen[name] = replace(discretisation, modes=tuple(counts))
     # What touches is found at sections, of which more modes have more.
-    if lacking <= SPACE_SHARE * search.tolerance and not search.scene.has_contact:
-        return None, lacking
+    left = lacking(history, search.simulation.duration)
+    if left <= SPACE_SHARE * search.tolerance and not search.scene.has_contact:
+        return None, left
     return chosen, unseen
-
-
-def _felt(level: ResolvedMotion, duration: float) -> dict[str, list[FloatArray]]:
-    """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
-    model = level.simulator.model
-    times = watched_times(level.history, duration)
-    x, _ = level.history.rough_positions(times)
-    moved = np.abs(x).max(axis=0) * level.simulator.displacements
-    felt = {}
-    for name, rod in model.discrete.rods.items():
-        of_rod = moved[model.discrete.unknowns.strain(name)]
-        by_degree = []
-        for columns in rod.columns.values():
-            by_element = of_rod[columns].reshape(rod.grid.elements, -1)
-            by_degree.append(by_element.max(axis=0))
-        felt[name] = by_degree
-    return felt
 
 
 def _judged(search: _Search, level: ResolvedMotion, error: float, companions: Sequence[Companion | None]) -> Motion:

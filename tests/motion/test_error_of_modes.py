@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
-from cosserat_casadi.motion.motion_refinement import FASTEST, SAFETY, SLOWEST, ResolvedMotion, _Search
+from cosserat_casadi.motion.felt_modes import SAFETY
+from cosserat_casadi.motion.motion_refinement import FASTEST, SLOWEST, ResolvedMotion, _Search
 from cosserat_casadi.scene.simulation import Simulation
 from tests.motion import transients
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
@@ -14,7 +15,7 @@ from cosserat_casadi.motion.checkpoint import Checkpoint, EnergyAccount, Resume,
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.simulate import Simulator, started
-from cosserat_casadi.motion.trajectory import Motion, MotionProgress
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
 from tests.families import mostly_slow
 from tests.motion.stepping import moving_model
@@ -131,3 +132,22 @@ def test_what_does_not_fit_is_refused(tmp_path: Path) -> None:
     file.write_text("{}")
     with pytest.raises(SceneError, match="no file of a motion"):
         moved(swing(0.1875), file)
+
+
+def test_modes_that_were_enough_for_a_rod_at_rest_are_judged_anew_where_it_is_knocked() -> None:
+    knock = {
+        "input": "push.force",
+        "times": [0.0, 0.2, 0.21, 0.22],
+        "values": [[0, 0, 0], [0, 0, 0], [0, 0, 8], [0, 0, 0]],
+    }
+    tables = swing(0.1, step=None, accuracy={}, motions=[knock])
+    del tables["loads"][0]
+    tables["simulation"] |= {"tolerance": 5e-2, "frames": 11, "start": "equilibrium"}
+    first = moved(tables)
+    assert first.converged
+    tables["simulation"] |= {"duration": 0.3, "frames": 31}
+    second = moved(tables, first)
+    assert second.outcome is MotionOutcome.UNRESOLVED
+    exact = moved({**tables, "simulation": tables["simulation"] | {"tolerance": 5e-3}}).tip().position
+    error = np.linalg.norm(second.tip().position - exact[-len(second.times) :], axis=1).max() / 0.5
+    assert 1e-3 < error < second.error_estimate
