@@ -93,7 +93,7 @@ class Names:
     def _symbol(self, shown: str, word: str, owner: str | None) -> str:
         only_rod = len(self.rods) <= 1 and word in self.words(Owner.ROD)
         named = owner is not None and not only_rod
-        return f"{self.name}_{shown}_{owner}" if named else f"{self.name}_{shown}"
+        return f"{self.name}_{shown}_{identifier(owner)}" if named else f"{self.name}_{shown}"
 
 
 def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_errors: bool = False) -> Names:
@@ -190,7 +190,7 @@ def _symbol_problems(names: Names) -> Iterator[Problem]:
     }
     for kind, owners in owners_by_kind.items():
         words = names.words(kind)
-        yield from _clashes(kind, owners, [[f"{word}_{owner}" for word in words] for owner in owners])
+        yield from _clashes(kind, owners, [[f"{word}_{identifier(owner)}" for word in words] for owner in owners])
 
 
 def _clashes(kind: Owner, owners: Sequence[str], functions: Sequence[list[str]]) -> Iterator[Problem]:
@@ -210,7 +210,7 @@ def _clashes(kind: Owner, owners: Sequence[str], functions: Sequence[list[str]])
 
 
 def identifier(name: str) -> str:
-    """Name of an input or of a parameter as a C identifier."""
+    """Name of an input, of a parameter or of a disk of a row as a C identifier."""
     return re.sub(r"\W+", "_", name.rstrip("]"))
 
 

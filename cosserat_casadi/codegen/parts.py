@@ -100,7 +100,8 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     parts = list[Part]()
     for number, group in enumerate(groups):
         one, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
-        may_be_short = max(lengths[i] for i in group) <= FORESEEN_WITHIN * STRAIGHT
+        # Of the steps of a short part, such as a platform's, few entries are read: it is foreseen ten times too long.
+        may_be_short = max(lengths[i] for i in group) <= STRAIGHT_IN_SHARES
         kernels.append(_short_or_in_loops(one) if may_be_short else function_of(one))
         for i, constants in zip(group, constants_of_each, strict=True):
             parts.append(Part(number, programs[i].reads, constants, programs[i].entries))

@@ -19,7 +19,7 @@ from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.cache import kept_texts
 from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.names import identifier, library_names
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
@@ -209,7 +209,7 @@ def written(function: ca.Function, name: str) -> ca.Function:
 def poses_of(model: Model | RelaxedContact) -> dict[str, ca.Function]:
     """The poses of tips and bodies, under the names that they have as results."""
     poses = {f"tip_{rod}": tip for rod, tip in model.tip.items()}
-    return poses | {f"body_{body}": pose for body, pose in model.body.items()}
+    return poses | {f"body_{identifier(body)}": pose for body, pose in model.body.items()}
 
 
 def _further_outputs(

@@ -226,8 +226,8 @@ class FunctionSpec:
         if results is None:
             return None
         names = [output.name for output in self.outputs_of(discrete, owner)]
-        # CasADi takes no two underscores in a row.
-        name = re.sub("_+", "_", f"{self.name}_{owner}") if owner else self.name
+        # CasADi takes no two underscores in a row, and no brackets, which disks of a row have.
+        name = re.sub("[^A-Za-z0-9]+", "_", f"{self.name}_{owner}").strip("_") if owner else self.name
         return ca.Function(name, list(symbols.values()), list(results), arguments, names)
 
 

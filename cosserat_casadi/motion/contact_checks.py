@@ -28,12 +28,12 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]
-    for of_bodies in (True, False):
-        named = dict.fromkeys(disk.name for disk in disks if disk.listed == of_bodies)
+    for of_rows in (False, True):
+        named = dict.fromkeys(disk.name for disk in disks if disk.stands_for_entry == of_rows)
         if named:
             what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(named)}"
             balls = "leave their thickness out, which makes them balls; or take [[disks]] and obstacles with a width, m"
-            yield Problem("obstacles", what, balls if of_bodies else remedy)
+            yield Problem("obstacles", what, remedy if of_rows else balls)
     moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
     if moving:
         what = (

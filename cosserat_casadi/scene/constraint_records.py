@@ -22,6 +22,7 @@ from cosserat_casadi.scene.records import Entry, refusal, sound
 from cosserat_casadi.scene.values import (
     SEVERAL,
     SINGLE,
+    BodyName,
     Direction,
     Name,
     NotNegative,
@@ -171,7 +172,7 @@ name = "platform"
 mass = 0.1
 """
 
-    name: Name = Field(description="name of the body, a letter, then letters, digits and underscores")
+    name: BodyName = Field(description="name of the body, a letter, then letters, digits and underscores")
     mass: NotNegative = Field(0.0, description="mass, kg")
     centre_of_mass: Vector = Field((0.0, 0.0, 0.0), description="centre of mass in the axes of the body, m")
     inertia: Inertia = Field(
@@ -192,9 +193,17 @@ mass = 0.1
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A disk has a radius."""
+        """A disk has a radius; a name as ``spacers[0]`` is that of a disk of a row, which results do not list."""
+        if given.get("listed", True) and "[" in str(given.get("name", "")):
+            problem = f"{shown(given['name'])} is the name of a disk of a row, or of a joint"
+            yield Fault(("name",), problem, "use letters, digits and underscores")
         if "thickness" in given and "radius" not in given:
             yield Fault(("radius",), "missing", "thickness makes the ball of that radius a disk")
+
+    @property
+    def stands_for_entry(self) -> bool:
+        """Whether reading wrote it for a disk of a row or for a joint without a name, as ``spacers[0]``."""
+        return "[" in self.name
 
     @property
     def inertia_matrix(self) -> FloatArray:

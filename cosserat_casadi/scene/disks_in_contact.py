@@ -41,7 +41,7 @@ def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
     names = []
     for number, at in enumerate(row.places):
         size = {"radius": row.radius, "thickness": row.thickness}
-        body = add_unlisted_body(tables, f"{row.name}_{number}", **size)
+        body = add_unlisted_body(tables, f"{row.name}[{number}]", **size)
         names.append(body)
         tables.setdefault("joints", []).append({"kind": "fixed", "body": body, "rod": row.rod, "at": at})
     return names

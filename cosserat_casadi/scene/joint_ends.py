@@ -102,13 +102,13 @@ def _between_rods(tables: Tables, joint: Tables, sections: list[Table], index: i
     if _at(second) == 0:
         place = {key: joint.pop(key) for key in PLACE if key in joint}
         return _put_base(tables, second["rod"], {"rod": first["rod"], "at": _at(first), **place})
-    joint["body"] = add_unlisted_body(tables, joint.get("name", f"joint_{index}"))
+    joint["body"] = add_unlisted_body(tables, joint.get("name", f"joints[{index}]"))
     tables["joints"].append({"kind": "fixed", "body": joint["body"], "rod": first["rod"], "at": _at(first)})
     return True
 
 
 def add_unlisted_body(tables: Tables, name: Any, **contents: Any) -> Any:
-    """Add a body without mass under a name that no other body has, like the wanted one; the name."""
+    """Add a body without mass under a name that no other body has, such as ``spacers[0]``; the name."""
     taken = [body.get("name") for _, body in SceneTables(tables).tables("bodies")]
     while name in taken:
         name = f"at_{name}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Scene, SceneError, build, discretise, export, follow, load, scene_from_dict, simulate, solve
+from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.equilibrium.solution import rotations
+from cosserat_casadi.errors import ExportError
 from cosserat_casadi.loads.contact_layer import ContactLayer, push_on_disk
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_checks import untouchable
@@ -106,7 +109,7 @@ def test_exact_contact_of_a_tip_vs_shooting() -> None:
     assert_allclose(solution.tip().position[[0, 2]], place, rtol=0, atol=1e-4 * RADIUS + 1e-2 * THICKNESS)
     assert_allclose(contact.force, force * NORMAL, rtol=0, atol=1e-4 * force)
     assert_allclose(solution.base_wrench().force, -PUSH - contact.force, rtol=0, atol=1e-12)
-    assert (contact.owner, contact.of_body) == ("d_1", True)
+    assert (contact.owner, contact.of_body) == ("d[1]", True)
     path = follow(model, "push.force", PUSH.tolist())
     assert path.converged
     assert_allclose(path.tip().position[-1], solution.tip().position, rtol=0, atol=1e-8)
@@ -124,18 +127,18 @@ def test_a_disk_that_touches_exactly_where_a_joint_is() -> None:
     for solution in (alone, held):
         assert solution.converged, solution.message
         (contact,) = solution.contacts
-        assert contact.owner == "d_1"
+        assert contact.owner == "d[1]"
     assert_allclose(held.tip().position, alone.tip().position, rtol=0, atol=1e-9)
 
 
 def test_bodies_that_stand_for_disks_are_none_of_the_users() -> None:
-    """A body of the scene may have their names; results list that one alone."""
+    """Results list bodies of the scene alone."""
     bodies = [{"name": "d_1", "mass": 0.01}]
     joints = [{"kind": "fixed", "body": "d_1", "rod": "a", "at": 0.7}]
     tables = finger().model_dump(exclude_unset=True, by_alias=True)
     del tables["obstacles"][0]["width"], tables["obstacles"][0]["stiffness"]
     scene = scene_from_dict({**tables, "bodies": bodies, "joints": joints, "loads": []})
-    assert [body.name for body in scene.bodies] == ["d_1", "d_0", "at_d_1"]
+    assert [body.name for body in scene.bodies] == ["d_1", "d[0]", "d[1]"]
     assert list(solve(build(scene)).to_dict()["bodies"]) == ["d_1"]
 
 
@@ -145,7 +148,7 @@ def test_a_disk_that_stands_on_its_face_in_exact_contact() -> None:
     tables["rods"][0]["intrinsic"] = {"curvature": [0, np.pi / 2 / LENGTH, 0]}
     tip = 2 * LENGTH / np.pi
     floor = {"name": "floor", "kind": "plane", "point": [0, 0, -tip - THICKNESS / 2 + 2e-4], "normal": [0, 0, 1]}
-    solution = solve(build(scene_from_dict({**tables, "obstacles": [{**floor, "bodies": ["d_1"]}], "loads": []})))
+    solution = solve(build(scene_from_dict({**tables, "obstacles": [{**floor, "bodies": ["d[1]"]}], "loads": []})))
     (contact,) = solution.contacts
     arm = abs(solution.base_wrench().moment[1]) / contact.force[2]
     assert solution.converged
@@ -254,12 +257,31 @@ def test_refusals(changes: dict[str, Any], where: str, problem: str) -> None:
     assert (where, problem) in [(one.where, one.problem) for one in refused.value.problems]
 
 
-@pytest.mark.parametrize(("listed", "remedy"), [(False, "width"), (True, "balls")])
-def test_a_motion_of_disks_in_exact_contact_names_a_remedy(listed: bool, remedy: str) -> None:
-    """A row becomes smooth with a width; a body that is a disk would be refused beside one."""
+@pytest.mark.parametrize("of_row", [False, True])
+def test_a_motion_of_disks_in_exact_contact_names_a_remedy(of_row: bool) -> None:
+    """A row becomes smooth with a width; a body that is a disk would be refused beside one, listed or not."""
     tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
-    bodies = [{**body, "listed": listed} for body in tables["bodies"]]
-    model = build(scene_from_dict({**tables, "bodies": bodies}))
-    (problem,) = untouchable(model, Simulation(duration=1.0))
-    assert problem.problem.endswith("as they roll: d_0, d_1")
-    assert remedy in problem.remedy.split(";")[0]
+    if not of_row:
+        tables = json.loads(json.dumps(tables).replace("d[0]", "foot").replace("d[1]", "hand"))
+    (problem,) = untouchable(build(scene_from_dict(tables)), Simulation(duration=1.0))
+    assert problem.problem.endswith("as they roll: d[0], d[1]" if of_row else "as they roll: foot, hand")
+    assert ("width" if of_row else "balls") in problem.remedy.split(";")[0]
+
+
+def test_a_name_of_a_disk_is_no_name_for_a_listed_body() -> None:
+    with pytest.raises(SceneError) as refused:
+        finger_with_body("e[0]")
+    (problem,) = refused.value.problems
+    assert problem.where == "bodies[0].name"
+    assert problem.problem == "'e[0]' is the name of a disk of a row, or of a joint"
+    assert model_names("robot", build(finger(**HARD))).function("body", "d[0]") == "robot_body_d_0"
+    with pytest.raises(ExportError, match="'d\\[0\\]' gives a function the name that body 'd_0' gives another"):
+        model_names("robot", build(finger_with_body("d_0")))
+
+
+def finger_with_body(name: str) -> Scene:
+    """The cantilever with disks on a hard floor and a body inside it."""
+    tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
+    joint = {"kind": "fixed", "body": name, "rod": "a", "at": 0.25}
+    others = {"bodies": [{"name": name}, *tables["bodies"]], "joints": [joint, *tables["joints"]]}
+    return scene_from_dict({**tables, **others})
