@@ -161,12 +161,12 @@ class Model(ModelFunctions, MotionFunctions, WithParameters):
 
     @property
     def resolution_words(self) -> list[str]:
-        """Modes, intervals and elements of every rod."""
-        sentences = []
+        """Modes, intervals and elements of every rod; rods that are alike in all of these share a sentence."""
+        names: dict[str, list[str]] = {}
         for name, d in self.discretisation.items():
             elements = f" in {d.elements} elements" if d.elements > 1 else ""
-            sentences.append(f"{name}: modes {list(d.modes)}, {d.nodes} intervals{elements}")
-        return sentences
+            names.setdefault(f"modes {list(d.modes)}, {d.nodes} intervals{elements}", []).append(name)
+        return [f"{', '.join(alike)}: {words}" for words, alike in names.items()]
 
     def element_ends(self, rod: str) -> tuple[float, ...]:
         """Abscissae X at which the elements of a rod end, base to tip, with its parameters as they are here."""

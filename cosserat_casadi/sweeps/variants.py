@@ -246,7 +246,8 @@ def _entries(
     reserved = [table.columns[k] for k in parameter_columns if _is_reserved(table.columns[k])]
     for column in reserved:
         problem = f"{column!r} cannot be swept"
-        problems.append(Problem(table.where, problem, "change it with --set for all rows"))
+        example = "sweep an input or a number of a part, such as push.force.x, or change it with --set for all rows"
+        problems.append(Problem(table.where, problem, example))
     if not reserved:
         yield from _scenes(scene_tables(scene), table, parameter_columns, problems)
 

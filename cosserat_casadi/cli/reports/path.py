@@ -36,9 +36,7 @@ def _merit_sentence(path: EquilibriumPath) -> str:
         parts.append(f"{changes} changes of contact")
     if path.error_estimate is not None:
         parts.append(f"estimated error of events and end {path.error_estimate:.1e}")
-    for name, d in path.model.discretisation.items():
-        parts.append(f"{name}: modes {list(d.modes)}, {d.nodes} intervals")
-    return escape("; ".join(parts))
+    return escape("; ".join([*parts, *path.model.resolution_words]))
 
 
 @dataclass(frozen=True)
