@@ -18,8 +18,8 @@ STROKES = ("-", "--", "-.")
 ZERO = 1e-9
 """Share of the largest component below which a component is not drawn."""
 
-SMALLEST = 1e-300
-"""Keeps the scale of a quantity that is zero away from zero."""
+ROUNDING = 1e-12
+"""Share of the scale of its rod below which a component is rounding, where all components are."""
 
 LEVEL = 1e-3
 """Share of its value below which the variation of a curve is taken for rounding."""
@@ -51,6 +51,7 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
     """Draw the components of a quantity that are not zero, of all rods."""
     rods = solution.model.discrete.rods
     values = {name: _values(solution, name, quantity.name) for name in rods}
+    scales = {name: _scale(solution, name, quantity.name) for name in rods}
     panel.set_ylabel(quantity.axis_label)
     shown = [panel]
     linear_axes = panel
@@ -64,8 +65,8 @@ def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
         for component, label in enumerate(quantity.labels):
             curve = values[name][:, component]
             # A component that rounding alone has filled would take a colour and a line of the legend.
-            largest = max(np.abs(values[name]).max(), SMALLEST)
-            if np.abs(curve).max() <= ZERO * largest:
+            rounding = max(ZERO * np.abs(values[name]).max(), ROUNDING * scales[name])
+            if np.abs(curve).max() <= rounding:
                 continue
             axes = linear_axes if component >= 3 else panel
             style = _curve_style(len(rods), index, component)
@@ -120,6 +121,16 @@ def _hide_rounding(axes: Any) -> None:
     middle = (low + high) / 2
     margin = 0.1 * largest
     axes.set_ylim(middle - margin, middle + margin)
+
+
+def _scale(solution: Solution, name: str, quantity: str) -> float:
+    """Scale of a quantity of a rod: a radian along it, 1/m; or its force times its length, N m, or moment over it, N."""
+    length = solution.model.lengths[name]
+    if quantity == "strain":
+        return float(1 / length)
+    wrench = solution.internal_wrench(SAMPLES, name)
+    moment = max(np.abs(wrench[:, :3]).max(), length * np.abs(wrench[:, 3:]).max())
+    return float(moment if quantity == "moment" else moment / length)
 
 
 def _values(solution: Solution, name: str, quantity: str) -> FloatArray:

@@ -106,6 +106,14 @@ def test_components_that_are_zero_are_not_drawn(planar: Solution) -> None:
     assert [line.get_label() for line in moment.get_lines()] == ["M_y"]
 
 
+def test_rounding_alone_is_zero() -> None:
+    """A planar rod that hangs straight bends by 1e-50 /m or so, where its force is 1 N."""
+    solution = solve(build(scene(push(force=[0.0, 0.0, 1.0]), strain="planar")))
+    _, strain, moment, force = plot_solution(replace(solution, x=solution.x + 1e-30)).axes
+    assert [len(panel.get_lines()) for panel in (strain, moment)] == [0, 0]
+    assert [line.get_label() for line in force.get_lines()] == ["N_z"]
+
+
 def test_several_rods_are_named() -> None:
     other = rod(name="other", base={"position": [0.3, 0, 0]})
     solution = solve(build(scene(push(), rods=[rod(), other])))
