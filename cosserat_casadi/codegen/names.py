@@ -92,8 +92,9 @@ class Names:
 
     def _symbol(self, shown: str, word: str, owner: str | None) -> str:
         only_rod = len(self.rods) <= 1 and word in self.words(Owner.ROD)
-        named = owner is not None and not only_rod
-        return f"{self.name}_{shown}_{identifier(owner)}" if named else f"{self.name}_{shown}"
+        if owner is None or only_rod:
+            return f"{self.name}_{shown}"
+        return f"{self.name}_{shown}_{identifier(owner)}"
 
 
 def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_errors: bool = False) -> Names:

@@ -120,6 +120,8 @@ def _add_view(figure: Any, grid: Any, view: _View) -> Any:
     right, up = view.plane
     panel = figure.add_subplot(cell)
     panel.set(xlabel=f"{AXIS_NAMES[right]}, m", ylabel=f"{AXIS_NAMES[up]}, m")
+    # Numbers such as 0.1425 need the room of two.
+    panel.locator_params(axis="x", nbins=5)
     panel.grid(alpha=0.3)
     return panel
 

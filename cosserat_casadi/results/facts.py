@@ -33,6 +33,12 @@ Titled = tuple[str | None, Facts]
 MOST_OF_A_KIND = 4
 """Tips, modes, unknowns or events that are listed; the rest is counted."""
 
+ROUNDING = 1e-14
+"""Share of the largest entry of a vector below which an entry is shown as zero."""
+
+SMALLEST = 1e-300
+"""Keeps the scale of a vector of zeros away from zero."""
+
 
 def solution_facts(solution: Solution) -> Titled:
     """Outcome, tips, error and stability of an equilibrium."""
@@ -231,7 +237,16 @@ def _yes(value: bool) -> str:
 
 def _point(position: FloatArray) -> str:
     """A position with its unit."""
-    return f"({_numbers(position)}) m"
+    return f"({', '.join(digits(position))}) m"
+
+
+def digits(vector: FloatArray) -> list[str]:
+    """Entries with six digits; an entry that is negligible beside the largest one is shown as zero."""
+    magnitudes = np.abs(vector)
+    largest = max(float(magnitudes.max()), SMALLEST)
+    # What is left of a cancellation would look like a result.
+    rounded = np.where(magnitudes <= ROUNDING * largest, 0.0, vector)
+    return [f"{entry:.6g}" for entry in rounded]
 
 
 def _numbers(values: FloatArray) -> str:

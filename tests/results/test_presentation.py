@@ -41,6 +41,7 @@ from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.result import Result
+from cosserat_casadi.results.facts import digits
 from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, FramesUnavailableError, presentation_of
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.sweeps.outcome_file import read_sweep
@@ -402,3 +403,9 @@ def test_a_class_without_presentation_is_told() -> None:
 
     with pytest.raises(TypeError, match="Lost has no entry in PRESENTATIONS"):
         Lost().to_dict()
+
+
+def test_what_a_cancellation_leaves_of_a_position_is_zero() -> None:
+    assert digits(np.array([0.25, -4.7e-31, -1.0])) == ["0.25", "0", "-1"]
+    straight = solve(build(scene(push(force=[0.0, 0.0, 1.0]), strain="planar")))
+    assert "(0, 0, 0.8) m" in repr(replace(straight, x=straight.x + 1e-30))

@@ -11,9 +11,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
+from cosserat_casadi.results.facts import digits
 from cosserat_casadi.spelling import counted
 
 

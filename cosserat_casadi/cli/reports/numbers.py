@@ -2,30 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import table_of
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
-from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import STRAINS
-
-ROUNDING = 1e-14
-"""Share of the largest entry of a vector below which an entry is shown as zero."""
-
-SMALLEST = 1e-300
-"""Keeps the scale of a vector of zeros away from zero."""
-
-
-def digits(vector: FloatArray) -> list[str]:
-    """Entries with six digits; an entry that is negligible beside the largest one is shown as zero."""
-    magnitudes = np.abs(vector)
-    largest = max(float(magnitudes.max()), SMALLEST)
-    # What is left of a cancellation would look like a result.
-    rounded = np.where(magnitudes <= ROUNDING * largest, 0.0, vector)
-    return [f"{entry:.6g}" for entry in rounded]
 
 
 def error_words(error: float, within: bool | None, tolerance: float) -> str:

@@ -12,9 +12,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written
-from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
+from cosserat_casadi.results.facts import digits
 
 
 def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:

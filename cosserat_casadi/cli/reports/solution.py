@@ -12,9 +12,10 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import digits, error_words
+from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.results.facts import digits
 from cosserat_casadi.spelling import counted
 
 # Only named in signatures: what prints a solution needs no solver of inverse problems.

@@ -11,9 +11,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of, title_line
-from cosserat_casadi.cli.reports.numbers import digits
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.paths.tube_path import TubePath
+from cosserat_casadi.results.facts import digits
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
