@@ -52,5 +52,6 @@ def test_the_copied_notebook_runs_cell_by_cell(tmp_path: Path, monkeypatch: pyte
     names: dict[str, Any] = {"__name__": "__main__"}
     shown = [run_cell(cell.source, names) for cell in notebook.cells if cell.cell_type == "code"]
     results = [value for value in shown if value is not None]
-    assert [type(value).__name__ for value in results] == ["Solution", "Figure"]
+    assert [type(value).__name__ for value in results] == ["Solution", "ShownFigure"]
+    assert results[1]._repr_png_().startswith(b"\x89PNG")
     assert "data:image/png" in results[0]._repr_html_()

@@ -32,16 +32,16 @@ class PlotUnavailableError(CosseratError):
 
 
 def figure_class() -> Any:
-    """The class matplotlib.figure.Figure, which draws without a display and without pyplot's global state.
+    """The class of figures, matplotlib's, which draws without a display and without pyplot's global state.
 
     Raises:
         PlotUnavailableError: matplotlib is not installed.
     """
     try:
-        from matplotlib.figure import Figure
+        from cosserat_casadi.plots.shown_figure import ShownFigure
     except ImportError as missing:
         raise PlotUnavailableError from missing
-    return Figure
+    return ShownFigure
 
 
 def check_plot_path(path: str | Path) -> None:

@@ -301,7 +301,11 @@ def _draw_imbalance(panel: Any, motion: Motion) -> None:
     panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), color="0.2", linewidth=1.4)
     lowest, highest = panel.get_ylim()
     if lowest < ROUNDING < highest:
-        panel.set_ylim(bottom=ROUNDING)
+        lowest = ROUNDING
+    if highest < 10 * lowest:
+        # Within a power of ten numbers such as 1.3 × 10⁻¹³ would stand between the powers.
+        lowest, highest = 10.0 ** np.floor(np.log10([lowest, 10 * highest]))
+    panel.set_ylim(lowest, highest)
 
 
 def _say(panel: Any, word: str) -> None:

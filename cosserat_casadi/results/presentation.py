@@ -7,7 +7,6 @@ place in which a kind of result is entered; :class:`cosserat_casadi.result.Resul
 from __future__ import annotations
 
 import base64
-import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from html import escape
@@ -26,9 +25,6 @@ PICTURES = (".png", ".pdf", ".svg")
 
 MOST_LINES = 10
 """Lines of ``repr``."""
-
-NOTEBOOK_RESOLUTION = 72
-"""Dots per inch of the figure in a notebook."""
 
 
 @dataclass(frozen=True)
@@ -321,9 +317,7 @@ def _picture(result: Any) -> str:
         figure = figure_of(result)
     except CosseratError as error:
         return f"<p>{escape(str(error))}</p>"
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=NOTEBOOK_RESOLUTION)
-    encoded = base64.b64encode(content.getvalue()).decode()
+    encoded = base64.b64encode(figure._repr_png_()).decode()
     return f'<img alt="figure" src="data:image/png;base64,{encoded}"/>'
 
 

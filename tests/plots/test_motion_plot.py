@@ -160,6 +160,13 @@ def test_energies_and_their_imbalance(planar: Motion) -> None:
     assert_allclose(drawn[1:], np.abs(planar.energy.imbalance[1:]), rtol=0, atol=0)
 
 
+def test_an_imbalance_within_a_power_of_ten_is_between_two(planar: Motion) -> None:
+    """Else numbers such as 1.3e-13 stand at the axis."""
+    even = replace(planar.energy, imbalance=np.linspace(1.2e-13, 1.8e-13, len(planar.times)))
+    panel = panels(plot_motion(replace(planar, energy=even)))["imbalance /\nlargest energy"]
+    assert_allclose(panel.get_ylim(), [1e-13, 1e-12], rtol=1e-12, atol=0)
+
+
 def test_a_motion_that_rests_has_panels_that_say_so(planar: Motion) -> None:
     none = np.zeros(len(planar.times))
     still = replace(with_energies(planar, **dict.fromkeys(vars(planar.energy), none)), inputs=0 * planar.inputs)
