@@ -15,7 +15,8 @@ from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
-SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover", "-fno-omit-frame-pointer")
+SANITIZED = ("-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover", "-fno-omit-frame-pointer")
+"""Without lines of the source, which take the compiler two fifths of its time."""
 
 
 def fuzz(made: Exported, count: int) -> None:
