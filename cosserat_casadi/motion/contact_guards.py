@@ -22,6 +22,9 @@ SAME_PLACE = 0.02
 CLOSE = 1e-7
 """Gap, over the length, up to which a section of a rod that lies touches: it is held at that height."""
 
+ROLLING = 2.0 * FLATTEST
+"""Bend of the gap from which on a rod that lies on one section rolls on from there: it would not lie down at once."""
+
 NO_PULL = 1e-6
 """Force, in its unit, that one counts as which may pull: a guard that is zero would be an event at once."""
 
@@ -45,7 +48,7 @@ class GuardKind(IntEnum):
     """The least gap of what does not touch."""
 
     CLEAR = 4
-    """How little a rod that lies has got up."""
+    """How little a rod that lies has got up, or how far it is from rolling on over the section that it lies on."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,8 @@ class ContactPhase:
         moment: beginning of the moment in which changes are counted, s.
         changes: changes in it.
         closed: cables that are taut, and stops that hold their joints.
+        slopes: slope of the gap for each pair in which a rod lies on one section that it may roll on from; zero of
+            others.
     """
 
     touches: Touches = ()
@@ -72,6 +77,7 @@ class ContactPhase:
     moment: float = -np.inf
     changes: int = 0
     closed: tuple[bool, ...] = ()
+    slopes: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -117,11 +123,15 @@ class ContactGuards:
                 if number not in arrangement.laid:
                     others[number] = min(1.0, self.lowest(number, nodes, placed) - float(floor[0]))
                     continue
-                own = [touch.place for touch in placed if touch.facing == number]
-                untouched = ~np.isin(facing.laid_at, own)
+                own = [k for k, touch in enumerate(placed) if touch.facing == number]
+                untouched = ~np.isin(facing.laid_at, [placed[k].place for k in own])
                 others[number] = np.min((facing.laid_gaps(nodes) - floor)[untouched], initial=1.0)
                 if not own:
                     clear[number] = CLOSE - facing.deepest(nodes).gap
+                elif arrangement.slopes[number]:
+                    gap = followed.gaps[own[0]]
+                    turned = gap.slope / arrangement.slopes[number]
+                    clear[number] = max(turned, ROLLING - gap.bend)
             return np.concatenate([forces, ends, bends, others, clear])
 
         return values

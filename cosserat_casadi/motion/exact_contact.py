@@ -19,7 +19,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.coincident_ends import SMOOTH, MeetingEnds
+from cosserat_casadi.motion.coincident_ends import BASE, SMOOTH, TIP, MeetingEnds
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches, with_touches
 from cosserat_casadi.motion.contact_gap import FLATTEST, Facing, SectionGap
 from cosserat_casadi.motion.contact_guards import (
@@ -46,6 +46,9 @@ LEEWAY = 1e-8
 
 It has left, or has come to rest, to rounding: without that it would be back in no time.
 """
+
+LEVEL = 1e-9
+"""Slope of a gap that tells no way in which a rod rolls."""
 
 MOST_IN_A_MOMENT = 8
 """Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
@@ -147,7 +150,7 @@ class ExactContacts:
             case GuardKind.BEND:
                 return self._without_bend(known, number, phases.follower, before, inputs)
             case GuardKind.CLEAR:
-                return replace(known, laid=known.laid - {number})
+                return self._got_up(known, number)
             case GuardKind.GAP | None:
                 # What touches anew is looked for in any case.
                 return known
@@ -188,6 +191,11 @@ class ExactContacts:
             # Where it was last: beyond the event it is elsewhere.
             held[number] = held[number]._replace(place=follower.places[number])
         return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
+
+    def _got_up(self, known: _Known, number: int) -> _Known:
+        """Contacts where a rod no longer lies: where one section touches, the rod rolls on from there."""
+        held = [touch._replace(slides=True) if touch.facing == number else touch for touch in known.held]
+        return replace(known, held=tuple(held), laid=known.laid - {number})
 
     def _lying(self, known: _Known, first: MovingContact, before: Instant, inputs: FloatArray) -> _Known:
         """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
@@ -240,6 +248,7 @@ class ExactContacts:
             Follower(self.facings, pressing),
             self._floors(x, inputs, pressing, laid),
             onset.before.time + onset.horizon,
+            slopes=self._slopes(x, inputs, pressing, laid),
         )
         return Restart(after.start(pressing), arrangement, lost, work, tuple(events))
 
@@ -298,6 +307,21 @@ class ExactContacts:
                 gaps = np.array([self.guards.lowest(number, nodes, pressing)])
             floors.append(np.where(gaps > LEEWAY, 0.0, np.minimum(gaps, 0.0) - LEEWAY))
         return tuple(floors)
+
+    def _slopes(self, x: FloatArray, inputs: FloatArray, pressing: Touches, laid: frozenset[int]) -> tuple[float, ...]:
+        """Slopes of the gaps where rods lie on one section each, and may roll on from there; zero of all others."""
+        slopes = [0.0] * len(self.facings)
+        for number in laid:
+            own = [touch.place for touch in pressing if touch.facing == number]
+            if len(own) != 1:
+                continue
+            facing = self.facings[number]
+            slope = facing.at(facing.nodes(x, inputs), own[0]).slope
+            # Over an end no rod rolls on.
+            outwards = (own[0] == TIP and slope > 0.0) or (own[0] == BASE and slope < 0.0)
+            if abs(slope) > LEVEL and not outwards:
+                slopes[number] = slope
+        return tuple(slopes)
 
     def _touching(
         self, x: FloatArray, inputs: FloatArray, known: Sequence[MovingContact], laid: frozenset[int]
