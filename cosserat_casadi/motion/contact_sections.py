@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as polynomial
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
-from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, distances, surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -90,7 +90,7 @@ class RodFacing(Facing):
     def laid_gaps(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the sections at which the rod is held where it lies, over the length, shape (k,)."""
         weights, radii = self._laid
-        return np.asarray(distances(self.obstacle, weights @ nodes) - radii) / self.length
+        return (self._laid_distances((weights @ nodes).ravel()) - radii) / self.length
 
     @cached_property
     def laid_at(self) -> FloatArray:
@@ -313,6 +313,10 @@ class RodFacing(Facing):
     @cached_property
     def _looked_distances(self) -> RepeatedCall:
         return RepeatedCall(distance_from(self.obstacle).map(len(self.looked_at)))
+
+    @cached_property
+    def _laid_distances(self) -> RepeatedCall:
+        return RepeatedCall(distance_from(self.obstacle).map(len(self.laid_at)))
 
     @cached_property
     def _looked_radii(self) -> FloatArray:

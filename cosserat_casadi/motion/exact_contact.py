@@ -150,7 +150,7 @@ class ExactContacts:
             case GuardKind.BEND:
                 return self._without_bend(known, number, phases.follower, before, inputs)
             case GuardKind.CLEAR:
-                return self._got_up(known, number)
+                return self._got_up(known, number, before, inputs)
             case GuardKind.GAP | None:
                 # What touches anew is looked for in any case.
                 return known
@@ -192,9 +192,16 @@ class ExactContacts:
             held[number] = held[number]._replace(place=follower.places[number])
         return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
 
-    def _got_up(self, known: _Known, number: int) -> _Known:
-        """Contacts where a rod no longer lies: where one section touches, the rod rolls on from there."""
-        held = [touch._replace(slides=True) if touch.facing == number else touch for touch in known.held]
+    def _got_up(self, known: _Known, number: int, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts where a rod no longer lies: from one section that touches it rolls on, if its gap is least there."""
+        facing = self.facings[number]
+        held = list(known.held)
+        for k, touch in enumerate(held):
+            if touch.facing != number:
+                continue
+            if abs(facing.at(facing.nodes(before.x, inputs), touch.place).slope) > SMOOTH:
+                return known
+            held[k] = touch._replace(slides=True)
         return replace(known, held=tuple(held), laid=known.laid - {number})
 
     def _lying(self, known: _Known, first: MovingContact, before: Instant, inputs: FloatArray) -> _Known:

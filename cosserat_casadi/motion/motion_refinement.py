@@ -30,6 +30,7 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
     COARSER,
+    FAR_APART,
     MOST_TIGHTENINGS,
     SLOPE,
     TIGHTER,
@@ -343,7 +344,8 @@ def _with_tolerance(search: _Search) -> Motion:
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         search.levels.append(ResolvedMotion(simulator, history, found, rung, modes, distance, unseen))
-        if len(search.levels) == 1 and _is_erratic(search):
+        # Motions on two sets of modes that are near each other do not hang on rounding.
+        if len(search.levels) == 2 and distance > FAR_APART * search.tolerance and _is_erratic(search):
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
@@ -363,7 +365,7 @@ def _with_tolerance(search: _Search) -> Motion:
 
 def _is_erratic(search: _Search) -> bool:
     """Whether the first motion is as far from one of coarser steps as that is from one of still coarser."""
-    level = search.last
+    level = search.levels[0]
     if not np.isfinite(search.step_tolerance):
         return False
     paths, tolerance = level.paths, search.step_tolerance
@@ -387,7 +389,7 @@ def _is_erratic(search: _Search) -> bool:
 
 def _erratic(search: _Search) -> Motion:
     """The motion of the first level, where more exact steps do not converge: nor would more modes."""
-    motion = _judged(search, search.last, search.time_error, [])
+    motion = _judged(search, search.levels[0], search.time_error, [])
     return replace(motion, message=f"{motion.message} {ERRATIC}")
 
 

@@ -268,6 +268,12 @@ def _in_time(
 
     Values before the start may belong to a piece in which the inputs moved otherwise.
     """
+    exact = np.zeros(0), np.zeros(0)
+    if equations.rates_of_last is not None:
+        exact = equations.rates_of_last(instant.time, instant.x, instant.v)
+    first = int(np.count_nonzero(constraints)) - len(exact[0])
+    if first == 0:
+        return equations.residual_at(instant)[constraints], *exact
     nodes = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
     delays = interval * (1.0 + nodes) / 2.0
     samples = []
@@ -280,11 +286,7 @@ def _in_time(
     stretch = 2.0 / interval
     rates = np.asarray(stretch * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 1)))
     accelerations = np.asarray(stretch**2 * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 2)))
-    if equations.rates_of_last is not None:
-        exact_rates, exact_accelerations = equations.rates_of_last(instant.time, instant.x, instant.v)
-        first = len(rates) - len(exact_rates)
-        rates[first:] = exact_rates
-        accelerations[first:] = exact_accelerations
+    rates[first:], accelerations[first:] = exact
     return values[0], rates, accelerations
 
 
