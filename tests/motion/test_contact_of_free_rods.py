@@ -253,6 +253,28 @@ def test_a_thrown_rod_tumbles_and_comes_to_rest() -> None:
 
 
 @pytest.mark.slow
+def test_a_leaning_rod_rolls_over_its_sections_without_an_impact_at_each() -> None:
+    """Held at 36 sections in turn it took an impact at each; on its way it presses, and sections ahead are open."""
+    leaning = RUBBER.replace("8e-3", "5e-3").replace("0.48", "0.4")
+    text = FREE.format(modes=12, along=0.0, duration=0.15, strain="planar", stuff=leaning, tangent="1, 0, -0.2")
+    text = text.replace("nodes = 10", "nodes = 28").replace("time = 1e-3", "time = 5e-3").replace("0.4\n", "0.3\n")
+    scene = parse_scene(text.replace("frames = 41", "tolerance = 1e-3, frames = 151") + FLOOR.replace("-0.05", "-0.1"))
+    motion = simulate(build(scene.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    struck = [event for event in motion.events if event.kind == "impact"]
+    assert len(struck) < 25
+    rolling = [contacts[0] for contacts in motion.contacts if len(contacts) == 1 and 0.1 < contacts[0].at < 0.95]
+    assert len(rolling) > 10
+    assert not any(contact.lies for contact in rolling)
+    assert np.all(np.diff([contact.at for contact in rolling]) < 0.0)
+    assert min(contact.force[2] for contact in rolling) > 0.0
+    energy = motion.energy
+    total = energy.kinetic + energy.elastic + energy.potential
+    assert np.diff(total).max() < 1e-4 * np.ptp(total)
+    assert np.diff(energy.impacts).min() >= 0.0
+
+
+@pytest.mark.slow
 def test_a_rod_dropped_on_a_soft_table_is_as_exact_as_it_says() -> None:
     """At the default tolerance, on few modes of each of its four elements, vs a motion ten times as exact."""
     soft = RUBBER.replace("2e7", "5e6")

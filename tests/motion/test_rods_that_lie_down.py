@@ -73,7 +73,11 @@ def test_a_rod_that_has_fallen_on_a_table_lies_as_statics_has_it(fallen: Motion)
     assert line.kind == "line"
     last = fallen.contacts[-1]
     assert len(last) >= 2
-    assert any(contact.lies for contacts in fallen.contacts for contact in contacts)
+    # On so few modes it may rest on two sections that roll, between which it is off the table by next to nothing.
+    (facing,) = facings(fallen.model)
+    at_end = fallen.at(0.5)
+    gaps = facing.gaps(facing.nodes(at_end.x, at_end.inputs))
+    assert gaps[facing.looked_at >= min(contact.at for contact in last)].max() < 2e-3
     # Six modes of one element stand for a rod whose shear force jumps where it lifts off.
     resultant = np.sum([contact.force for contact in last], axis=0)
     assert_allclose(resultant, line.force, rtol=0, atol=0.02 * np.linalg.norm(line.force))
