@@ -180,7 +180,9 @@ class _Search:
             return UNKNOWN_ORDER
         first, second, third = (level.modes for level in self.levels[-3:])
         told = self.last.distance / self.levels[-2].distance
-        orders = np.linspace(SLOWEST, FASTEST, ORDERS)
+        # Impacts fall at other times and sections on other modes: distances may shrink by chance.
+        fastest = UNKNOWN_ORDER if self.last.history.lost > 0.0 else FASTEST
+        orders = np.linspace(SLOWEST, fastest, ORDERS)
         # By the law, the distance of the last two levels over that of the two before falls with the order.
         by_law = (1.0 - (third / second) ** -orders) / ((second / first) ** orders - 1.0)
         return float(np.interp(-told, -by_law, orders))
@@ -494,6 +496,9 @@ def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
 def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] | None, float]:
     """Modes of the next level: as many as it has, but of strains that do not need them.
 
+    After an impact a strain that moves needs them: how much of the rod an impact stops depends on its modes, and its last
+    coefficients do not tell.
+
     Returns:
         the modes, None where none lacks more than modes may leave, and what strains lack that get no further ones, over
         the length.
@@ -512,7 +517,7 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
             if moved.max() < FELT * search.tolerance:
                 counts.append(1)
                 unseen = max(unseen, REST * kept * float(moved.max()))
-            elif last < FELT * search.tolerance:
+            elif last < FELT * search.tolerance and history.lost == 0.0:
                 counts.append(kept)
                 unseen = max(unseen, REST * kept * last)
             else:

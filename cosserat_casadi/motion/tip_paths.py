@@ -1,4 +1,4 @@
-"""The paths that a tolerance of a motion binds: those of the tips of rods and of bodies, and how both turn."""
+"""The paths that a tolerance of a motion binds: those of tips, of bases that move and of bodies, and how they turn."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ WATCHED = 401
 
 @dataclass(frozen=True)
 class Paths:
-    """Paths of tips and bodies at T times, by which two motions are compared.
+    """Paths of tips, moving bases and bodies at T times, by which two motions are compared.
 
     A rod that only twists moves neither its tip nor any point of its axis: its tip's turn about the tangent counts too.
 
     Attributes:
-        points: positions of tips and of points of bodies over the length, shape (T, points, 3), without unit.
+        points: positions of tips, of bases that have unknowns and of points of bodies over the length,
+            shape (T, points, 3), without unit.
         section_axes: x and y axes of the tips' sections in world axes, shape (T, rods, 3, 2), an axis a column.
     """
 
@@ -41,7 +42,7 @@ def watched_times(history: History, duration: float) -> FloatArray:
 
 
 def paths(history: History, times: FloatArray, tips: Mapping[str, ca.Function] | None = None) -> Paths:
-    """The paths of all tips and bodies at T times.
+    """The paths of all tips, moving bases and bodies at T times.
 
     Args:
         history: the motion.
@@ -57,6 +58,11 @@ def paths(history: History, times: FloatArray, tips: Mapping[str, ca.Function] |
         tip = frames_of(tips[name], x, inputs)
         points.append(tip.position / rod.properties.length)
         section_axes.append(tip.rotation[:, :, :2])
+        base = model.discrete.unloaded.floating_base(name)
+        if base is not None:
+            frame = model.discrete.frames[base]
+            start = np.asarray(frame.start.position, dtype=float).ravel()
+            points.append(x[:, model.discrete.deviation(base)][:, :3] + start / frame.length)
     longest = longest_rod(model)
     for body in model.scene.bodies:
         frames = frames_of(model.body[body.name], x, inputs)

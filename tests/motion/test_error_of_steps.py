@@ -161,7 +161,7 @@ def test_motions_that_more_exact_steps_bring_no_nearer_end_a_search(
     monkeypatch.setattr(motion_refinement, "path_distance", lambda *_: next(backwards))
     level = ResolvedMotion(simulator, coarse, simulator.paths(coarse))
     search = motion_refinement._Search(
-        simulator.model.scene, simulator.simulation, None, None, None, (), 1e-3, [level], 1e-3
+        simulator.model.scene, simulator.simulation, None, None, None, (), 1e-3, (), [level], step_tolerance=1e-3
     )
     assert motion_refinement._is_erratic(search) is erratic
     assert list(backwards) == []

@@ -10,8 +10,10 @@ from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Motion, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import build
 from cosserat_casadi.motion.displacement import LEVER
-from cosserat_casadi.motion.tip_paths import Paths, _watched_arms, path_distance
+from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.tip_paths import Paths, _watched_arms, path_distance, paths
 from cosserat_casadi.scene.constraint_records import Body
 from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity, table
@@ -134,3 +136,23 @@ def test_points_of_bodies_that_are_followed() -> None:
     assert_allclose(_watched_arms(heavy, 2.0), [origin, CENTRE, *(CENTRE + radius * np.eye(3))], rtol=1e-15, atol=0)
     assert_allclose(_watched_arms(weightless, 2.0), [origin, *(2.0 * LEVER * np.eye(3))], rtol=1e-15, atol=0)
     assert_allclose(_watched_arms(Body(name="light"), 2.0), [origin], rtol=0, atol=0)
+
+
+def test_a_base_that_is_free_is_watched_too() -> None:
+    """A rod that slaps on a table by its base moves its tip little: the base falls as a stone does until then."""
+    start = np.array([0.1, 0.2, 0.3])
+    rod = {
+        "strain": "planar",
+        "base": {"position": start.tolist(), "tangent": [1, 0, 0], "free": True},
+        "rotary_inertia": [1e-3, 1e-3, 1e-3],
+    }
+    simulation = {"duration": 0.1, "frames": 2, "tolerance": 1e-3, "start": "unloaded"}
+    scene = scene_from_dict(table(rod, gravity(9.81), accuracy={"modes": 1, "nodes": 6}, simulation=simulation))
+    assert scene.simulation is not None
+    model = build(scene.with_motion_inputs(), moving=True)
+    history = Simulator(model, scene.simulation, started(model, scene.simulation, None)).controlled(1e-3)
+    times = np.linspace(0.0, 0.1, 5)
+    tip, base = np.moveaxis(paths(history, times).points, 1, 0)
+    fallen = np.outer(-0.5 * 9.81 * times**2, [0.0, 0.0, 1.0])
+    assert_allclose(base, start + fallen, rtol=0, atol=1e-9)
+    assert_allclose(tip, base + np.array([1.0, 0.0, 0.0]), rtol=0, atol=1e-9)
