@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,20 +12,21 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
-from cosserat_casadi.motion.felt_modes import SAFETY
+from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER
 from cosserat_casadi.motion.motion_refinement import FASTEST, SLOWEST, ResolvedMotion, _Search
 from cosserat_casadi.scene.simulation import Simulation
 from tests.motion import transients
 
 
-def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3) -> _Search:
-    """A search whose errors are modes^−order."""
+def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3, lost: float = 0.0) -> _Search:
+    """A search whose errors are modes^−order, and whose impacts took an energy, J."""
     anything: Any = None
+    history: Any = SimpleNamespace(lost=lost)
     found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance, VERIFIED_MODES)
     before = float("inf")
     for number in modes:
         error = float(number) ** -order
-        found.levels.append(ResolvedMotion(anything, anything, anything, 0, number, before - error))
+        found.levels.append(ResolvedMotion(anything, history, anything, 0, number, before - error))
         before = error
     return found
 
@@ -38,6 +40,7 @@ def test_errors_by_a_power_are_told_with_the_factor_of_safety(modes: tuple[int, 
 def test_orders_beyond_belief_are_bounded() -> None:
     assert search((6, 9, 12), 20.0).order == FASTEST
     assert search((6, 9, 12), 0.01).order == SLOWEST
+    assert search((6, 9, 12), 5.0, lost=1e-3).order == UNKNOWN_ORDER
 
 
 def test_waves_that_modes_do_not_see_yet_end_no_search() -> None:
