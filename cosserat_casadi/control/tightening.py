@@ -17,6 +17,7 @@ from cosserat_casadi.equilibrium.contact.contact_answer_error import estimated_i
 from cosserat_casadi.equilibrium.contact.relaxed_contact import FIRST_SMOOTHING, RelaxedContact
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 
 SMOOTHINGS = (FIRST_SMOOTHING, 1e-3, 1e-4)
@@ -72,7 +73,7 @@ class Tightened:
         unstable = [str(number) for number, solution in enumerate(self.equilibria) if solution.stable is False]
         note = f" Not stable: stages {', '.join(unstable)}." if unstable else ""
         if self.converged:
-            return f"Optimum found: {told}.{note}"
+            return f"Tight: {told}.{note}"
         remedy = "sections" if self.difference > self.error_estimate else "modes of the model"
         return f"Not tight: {told}, where {self.tolerance:.2g} was asked for: take more {remedy}.{note}"
 
@@ -88,7 +89,8 @@ def tightened(
     """Solve a problem again and again as its relaxed contacts become exact, and hold its end against the exact law.
 
     The smoothing ε goes to zero in a few solves. After each the exact contacts are found at the inputs of each stage,
-    and its sections move there; that goes on until the two agree.
+    and its sections move there; that goes on until the two agree. Each stage is an equilibrium by itself: whether rods
+    can go from one to the next without passing through an obstacle is not looked at.
 
     Args:
         contact: the model of the problem.
@@ -96,6 +98,9 @@ def tightened(
         stages: equilibria in the problem.
         near: an equilibrium of the scene at whose contacts there are sections from the beginning.
         tolerance: of the difference and the errors of the equilibria; by default that of the scene.
+
+    Raises:
+        SceneError: what the problem is solved by returns other shapes, or numbers that are not finite.
     """
     wanted = contact.model.scene.accuracy.tolerance if tolerance is None else tolerance
     first = contact.defaults if near is None else contact.moved_to(near, contact.defaults)
@@ -104,7 +109,9 @@ def tightened(
     for smoothing in smoothings:
         p = moved
         p[:, 0] = smoothing
-        z, inputs = (np.asarray(part, dtype=float).reshape(stages, -1) for part in optimum(p))
+        unknowns, controls = optimum(p)
+        z = _of_stages("unknowns", unknowns, (stages, contact.size))
+        inputs = _of_stages("inputs", controls, (stages, contact.inputs.size))
         found = list(zip(z, inputs, p, strict=True))
         equilibria = [contact.exact(*stage) for stage in found]
         difference = np.inf
@@ -116,3 +123,17 @@ def tightened(
             break
     judged = [with_notes(estimated_in_contact(solution)) if solution.converged else solution for solution in equilibria]
     return Tightened(z, inputs, p, tuple(judged), difference, wanted)
+
+
+def _of_stages(what: str, values: npt.ArrayLike, shape: tuple[int, int]) -> FloatArray:
+    """Finite numbers, one row a stage."""
+    array = np.asarray(values, dtype=float)
+    if 1 in shape and array.size == shape[0] * shape[1]:
+        array = array.reshape(shape)
+    if array.shape != shape:
+        problem = f"returned {what} of shape {array.shape}, wanted are stages × {what}, {shape}"
+        raise SceneError(Problem("optimum", problem, "transpose what the problem has in columns"))
+    if not np.isfinite(array).all():
+        problem = f"returned {what} that are not finite"
+        raise SceneError(Problem("optimum", problem, "start nearer to an equilibrium, or bound the variables"))
+    return array

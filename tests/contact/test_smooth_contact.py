@@ -213,7 +213,6 @@ def test_the_jacobian_is_exact_and_symmetric(pressed: Solution) -> None:
     assert_allclose(jacobian, jacobian.T, rtol=0, atol=1e-12)
 
 
-@pytest.mark.slow
 def test_width_and_stiffness_may_be_parameters() -> None:
     """The model at other values is that of a scene with them, on the same elements; places are no parameters."""
     path = EXAMPLES / "rod_over_bar.toml"
@@ -230,6 +229,7 @@ def test_width_and_stiffness_may_be_parameters() -> None:
         read_scene(path, ['parameters=["bar.radius"]'])
 
 
+@pytest.mark.slow
 def test_smooth_contact_becomes_exact_as_the_width_shrinks() -> None:
     """The error is proportional to the width: the layer holds the rod off by a part of it."""
     modes = ["accuracy.modes=4", "accuracy.nodes=12"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -25,7 +26,7 @@ OFFSET = 1.2e-3
 ROBOT = {
     "schema": 1,
     "inputs": ["flexor.tension", "robot.base.position"],
-    "accuracy": {"modes": 4, "nodes": 8},
+    "accuracy": {"modes": 3, "nodes": 5},
     "rods": [
         {
             "name": "robot",
@@ -49,15 +50,15 @@ AT_EDGE = np.array([0.5, 0.0, 0.0, -0.02])
 
 @cache
 def robot() -> tuple[Model, Solution, RelaxedContact]:
-    """The robot, its equilibrium in exact contact, and its relaxed contact at four sections."""
+    """The robot, its equilibrium in exact contact, and its relaxed contact at three sections."""
     model = build(scene_from_dict(ROBOT))
-    return model, solve(model, AT_EDGE), relaxed_contact(model, 4)
+    return model, solve(model, AT_EDGE, estimate_error=False), relaxed_contact(model, 3)
 
 
 def shaken(contact: RelaxedContact, z: FloatArray) -> list[FloatArray]:
     """Arguments of the functions a little off an equilibrium and off evenly spread sections."""
     rng = np.random.default_rng(7)
-    p = contact.defaults + np.array([0.02, 0.01, -0.02, 0.015])
+    p = contact.defaults + np.array([0.02, 0.01, -0.02])
     return [z + 0.05 * rng.standard_normal(len(z)), AT_EDGE, p]
 
 
@@ -84,7 +85,7 @@ def test_exact_law_is_the_limit() -> None:
     """Gap times force goes with the square of the smoothing; with a section at the contact so does the difference."""
     model, equilibrium, _ = robot()
     (touch,) = equilibrium.contacts
-    fine = relaxed_contact(model, 4, modes=4, nodes=8)
+    fine = relaxed_contact(model, 3, modes=3, nodes=5)
     p = fine.moved_to(equilibrium, fine.defaults)
     assert touch.start in p
     differences = []
@@ -95,12 +96,12 @@ def test_exact_law_is_the_limit() -> None:
         relaxed = fine.solution(z, AT_EDGE, p)
         differences.append(pose_distance(relaxed, equilibrium))
         gaps = gap_along(relaxed, "robot", model.scene.obstacles[0], np.array([*p[1:], 1.0]))
-        np.testing.assert_allclose(z[-4:] * gaps, smoothing**2 / 2, rtol=1e-3, atol=1e-12)
+        np.testing.assert_allclose(z[-3:] * gaps, smoothing**2 / 2, rtol=1e-3, atol=1e-12)
     assert 50 < differences[0] / differences[1] < 200
     assert differences[2] < 1e-7
     # Its force is that of the exact law.
     unit = BENDING / LENGTH**2
-    np.testing.assert_allclose(z[-4:].max() * unit, touch.ends[0], rtol=1e-5, atol=0)
+    np.testing.assert_allclose(z[-3:].max() * unit, touch.ends[0], rtol=1e-5, atol=0)
     exact = fine.exact(z, AT_EDGE, p)
     np.testing.assert_allclose(exact.contacts[0].start, touch.start, rtol=0, atol=1e-9)
     # Between evenly spread sections the rod is inside the edge.
@@ -160,24 +161,40 @@ def test_bodies_and_several_obstacles() -> None:
                 "base": {"tangent": [1, 0, 0], "position": [0, 0, -0.02]},
             }
         ],
-        "loads": [{"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.3]}],
+        "loads": [
+            {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.3]},
+            # Where the floor has a section, which makes way.
+            {"name": "side", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0, 0, 0.05]},
+        ],
         "inputs": ["push.force"],
-        "accuracy": {"modes": 3, "nodes": 6},
+        "accuracy": {"modes": 2, "nodes": 4},
         "obstacles": planes,
         "bodies": [{"name": "head", "mass": 1e-3, "radius": 5e-3}],
         "joints": [{"body": "head", "rod": "rod", "kind": "fixed"}],
     }
     model = build(scene_from_dict(tables))
-    contact = relaxed_contact(model, 3)
-    assert len(set(contact.defaults)) == len(contact.defaults)
-    exact = solve(model)
+    contact = relaxed_contact(model, 2)
+    assert len({*contact.defaults, 0.5}) == len(contact.defaults) + 1
+    exact = solve(model, estimate_error=False)
     (touch,) = exact.contacts
     assert touch.of_body
+    # No section passes a load.
+    for place, moved in ((0.45, 0.501), (0.55, 0.55)):
+        on_floor = replace(touch, owner="rod", of_body=False, start=place, end=place)
+        assert moved in contact.moved_to(replace(exact, contacts=(on_floor,)), contact.defaults)
     p = contact.defaults
     p[0] = 1e-4
     z = contact.near(exact, p)
     assert pose_distance(contact.solution(z, exact.inputs[:3], p), exact) < 1e-5
     assert contact.exact(z, exact.inputs[:3], p).contacts[0].of_body
+
+
+def test_sections_move_to_contacts_in_order() -> None:
+    """Each contact has a section of its own."""
+    _, near, contact = robot()
+    (touch,) = near.contacts
+    two = replace(near, contacts=tuple(replace(touch, start=X, end=X) for X in (0.6, 0.65)))
+    np.testing.assert_array_equal(contact.moved_to(two, contact.defaults)[1:], [0.6, 0.65])
 
 
 def test_what_has_no_relaxed_contact_is_refused() -> None:
@@ -196,6 +213,15 @@ def test_what_has_no_relaxed_contact_is_refused() -> None:
         compiled_stage(contact, sections={"robot": [0.5]})
     with pytest.raises(SceneError, match="an acados model"):
         acados_functions(contact, "robot", moving=True)
+
+
+def test_what_a_problem_returns_is_checked() -> None:
+    """Numbers that are not finite, and rows for columns."""
+    _, _, contact = robot()
+    with pytest.raises(SceneError, match="unknowns that are not finite"):
+        tightened(contact, lambda _: (np.full(contact.size, np.nan), AT_EDGE))
+    with pytest.raises(SceneError, match="transpose"):
+        tightened(contact, lambda _: (np.zeros((contact.size, 2)), np.tile(AT_EDGE, (2, 1))), 2)
 
 
 def test_relaxed_contact_becomes_tight() -> None:

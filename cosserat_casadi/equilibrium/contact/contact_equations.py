@@ -379,7 +379,7 @@ class ContactEquations:
         places = dict(zip(self._places_on(self.state, rod), self._places_on(moved, rod), strict=True))
         return np.array([places.get(end, end) for end in breaks])
 
-    def _in_order(self, p: FloatArray) -> bool:
+    def in_order(self, p: FloatArray) -> bool:
         """Whether the elements of all rods, which places of contact and parameters move, follow each other."""
         widths = [np.diff(self.ends(rod, p)).min() for rod in self.grids.rods]
         for own in self.parameters.moving:
@@ -419,7 +419,7 @@ class ContactEquations:
     def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Balance and gaps for inputs; not a number where elements would not follow each other along the rod."""
         x, f, p = self.parts(z)
-        if not self._in_order(p):
+        if not self.in_order(p):
             return np.full(len(z), np.nan)
         return column(self._functions[0](x, f, np.concatenate([p, self.theta]), given))
 

@@ -12,6 +12,7 @@ rods may enter obstacles between sections, so that sections which touch move to 
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,7 +25,14 @@ from cosserat_casadi.constraints.cable_length import pair_kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import BehindPlaces, ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
-from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, given_inputs, without_contacts
+from cosserat_casadi.equilibrium.contact.contact_state import (
+    TIP,
+    ContactState,
+    Touch,
+    given_inputs,
+    load_sections,
+    without_contacts,
+)
 from cosserat_casadi.equilibrium.contact.gap_rows import force_widths
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
@@ -167,20 +175,27 @@ class RelaxedContact:
 
     def moved_to(self, solution: Solution, p: FloatArray) -> FloatArray:
         """The parameters with the sections nearest to contacts of a solution at their places."""
-        state = self.equations.state.at(p[1:].tolist())
-        touches = list(state.touches)
-        for contact in solution.contacts:
-            for place in {contact.start, contact.end}:
-                own = [
-                    i
-                    for i, touch in enumerate(touches)
-                    if (touch.owner, touch.obstacle) == (contact.owner, contact.obstacle) and any(touch.moves)
-                ]
-                if place < TIP and own:
-                    nearest = min(own, key=lambda i: abs(touches[i].start - place))
-                    touches[nearest] = touches[nearest].moved([place])
-        moved = ContactState(tuple(touches))
-        return np.concatenate([p[:1], moved.places]) if moved.in_order else p
+        touches = list(self.equations.state.at(p[1:].tolist()).touches)
+        loads = load_sections(self.equations.scene)
+        for owner, obstacle in {(contact.owner, contact.obstacle) for contact in solution.contacts}:
+            numbers = [
+                number
+                for number, touch in enumerate(touches)
+                if (touch.owner, touch.obstacle) == (owner, obstacle) and any(touch.moves)
+            ]
+            places = {
+                place
+                for contact in solution.contacts
+                if (contact.owner, contact.obstacle) == (owner, obstacle)
+                for place in (contact.start, contact.end)
+                if place < TIP
+            }
+            if numbers:
+                sections = _nearest([touches[number].start for number in numbers], sorted(places), loads[owner])
+                for number, section in zip(numbers, sections, strict=True):
+                    touches[number] = touches[number].moved([section])
+        moved = ContactState(tuple(touches)).places
+        return np.concatenate([p[:1], moved]) if self.equations.in_order(moved) else p
 
     def _equilibrium(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[Solution, ContactState]:
         found = contact_equilibrium(self.equations, np.concatenate([z, p[1:]]), inputs)
@@ -262,6 +277,21 @@ class _Written:
         return cls(z, written.given, p, at, residual, jacobian)
 
 
+def _nearest(sections: list[float], places: list[float], loads: Sequence[float]) -> list[float]:
+    """Sections, of which the nearest to each of some places is there; both ascend.
+
+    Elements end at loads, so that a section stays between the same two of them.
+    """
+    stretches = [bisect(loads, section) for section in sections]
+    moved = dict[int, float]()
+    for place in places:
+        free = [i for i, stretch in enumerate(stretches) if stretch == bisect(loads, place) and i not in moved]
+        if free:
+            moved[min(free, key=lambda i: abs(sections[i] - place))] = place
+    in_order = dict(zip(sorted(moved), moved.values(), strict=True))
+    return [in_order.get(i, section) for i, section in enumerate(sections)]
+
+
 def _pressing(state: ContactState, forces: FloatArray, least: float) -> ContactState:
     """The contacts that forces of sections look like: neighbours that press are one point, or a line.
 
@@ -326,5 +356,7 @@ def relaxed_contact(
     grids = dict(model.discretisation)
     for name in {rod for rod, _ in of_rods}:
         grids[name] = replace(grids[name], modes=(modes,) * len(grids[name].modes), nodes=nodes)
-    equations = ContactEquations(without_contacts(scene), model.pack(), Grids(grids), ContactState.of(touches))
+    bare = without_contacts(scene)
+    state = ContactState.of(touches).split(load_sections(bare))
+    equations = ContactEquations(bare, model.pack(), Grids(grids), state)
     return RelaxedContact(model.at(), equations)
