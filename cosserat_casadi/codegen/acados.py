@@ -47,7 +47,7 @@ class AcadosExpressions:
         xdot: their derivatives.
         u: controls: the rates of the inputs, units per second.
         z: algebraic states: the unknowns of the model, shape (model.size,); in motion the algebraic ones of them.
-        p: parameters of the scene, shape (model.parameters.size,); often none.
+        p: parameters of the scene, shape (model.parameters.size,), often none; of relaxed contact its own.
         f_impl_expr: what the integrator holds at zero: ẋ − u, in motion q̇ − v before it, then the residual.
     """
 
@@ -101,7 +101,7 @@ def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool =
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
-        SceneError: it is to move, and a rod has no mass.
+        SceneError: it is to move, and a rod has no mass, or contact is exact.
     """
     _check(model, name, moving)
     dae, slopes = _dae(model, name, moving)
@@ -128,7 +128,7 @@ def write_acados(
     """Write the functions as C for ``external_function_param_casadi``, one file and header each.
 
     Args:
-        model: the model.
+        model: as in :func:`acados_expressions`.
         directory: a folder, new, empty, or of an earlier call.
         name: what every function begins with, a C identifier.
         moving: as in :func:`acados_expressions`.
@@ -138,7 +138,7 @@ def write_acados(
 
     Raises:
         ExportError: the name or the folder is refused, the model has no inputs or no scalar form; nothing was written.
-        SceneError: it is to move, and a rod has no mass; nothing was written.
+        SceneError: it is to move, and a rod has no mass, or contact is exact; nothing was written.
     """
     functions = acados_functions(model, name, moving=moving)
     folder = Path(directory)
@@ -158,9 +158,9 @@ Dae = tuple[AcadosExpressions, dict[str, ca.SX]]
 
 
 def _dae(model: Model | RelaxedContact, name: str, moving: bool) -> Dae:
-    if isinstance(model, RelaxedContact):
+    if isinstance(model, RelaxedContact) or not moving:
         return _dae_at_rest(model, name)
-    return _dae_in_motion(model, name) if moving else _dae_at_rest(model, name)
+    return _dae_in_motion(model, name)
 
 
 def _dae_at_rest(model: Model | RelaxedContact, name: str) -> Dae:
@@ -225,10 +225,13 @@ def _dae_in_motion(model: Model, name: str) -> Dae:
     return AcadosExpressions(name, x, xdot, u, z, p, value), slopes
 
 
-def _check(given: Model | RelaxedContact, name: str, moving: bool) -> None:
+def _check(model: Model | RelaxedContact, name: str, moving: bool) -> None:
     library_names(name)
-    model = given.model if isinstance(given, RelaxedContact) else given
-    if moving or model is given:
+    if isinstance(model, RelaxedContact):
+        model = model.model
+        if moving:
+            refuse_obstacles(model.scene, "an acados model in motion", WIDTH)
+    else:
         refuse_obstacles(model.scene, "an acados model", WIDTH if moving else RELAXED)
     check_scalar(model)
     if not model.inputs.size:

@@ -14,17 +14,21 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.answer_error import with_notes
 from cosserat_casadi.equilibrium.contact.contact_answer_error import estimated_in_contact
+from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.equilibrium.contact.relaxed_contact import FIRST_SMOOTHING, RelaxedContact
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 
-SMOOTHINGS = (FIRST_SMOOTHING, 1e-3, 1e-4)
-"""Values of ε of one solve after the other: at the last, gap times force is 5e-9 of the length and of EI/ℓ²."""
+SMOOTHINGS = (FIRST_SMOOTHING, 1e-3, 1e-4, 1e-5, 1e-6)
+"""Values of ε of one solve after the other: at the third, gap times force is 5e-9 of the length and of EI/ℓ²."""
 
-CLOSER = 4
-"""Solves at most after these, in which sections move to the contacts."""
+USUAL = 2
+"""Index of the one at which sections move to the contacts; where a contact just opens, gap and force are ε/√2 each."""
+
+SOLVES = 7
+"""Most solves."""
 
 Optimum = Callable[[FloatArray], tuple[npt.ArrayLike, npt.ArrayLike]]
 """Parameters of all stages, shape (stages, parameters.size) ↦ their unknowns and inputs at the optimum."""
@@ -41,6 +45,8 @@ class Tightened:
         equilibria: of the exact law at these inputs, with estimates of their errors.
         difference: largest distance of a tip or body between the two, over the length, or angle, rad.
         tolerance: wanted of the difference and these errors together.
+        passing: stages to which a rod goes through an obstacle, on the straight way from the stage before, or to the
+            first from the equilibrium that the problem was started near.
     """
 
     z: FloatArray
@@ -49,12 +55,13 @@ class Tightened:
     equilibria: tuple[Solution, ...]
     difference: float
     tolerance: float
+    passing: tuple[int, ...] = ()
 
     @property
     def converged(self) -> bool:
         """Whether the exact law has equilibria at all inputs that are, to the tolerance, where the problem has them."""
-        found = all(solution.converged for solution in self.equilibria)
-        return found and self.difference + self.error_estimate <= self.tolerance
+        balanced = all(solution.converged for solution in self.equilibria)
+        return balanced and self.difference + self.error_estimate <= self.tolerance
 
     @property
     def error_estimate(self) -> float:
@@ -70,8 +77,12 @@ class Tightened:
                 return f"Stage {number} has no equilibrium in exact contact that was found: {solution.message}"
         known = f"rods in exact contact, known to {self.error_estimate:.2g},"
         told = f"{known} are within {self.difference:.2g} of the problem's"
-        unstable = [str(number) for number, solution in enumerate(self.equilibria) if solution.stable is False]
-        note = f" Not stable: stages {', '.join(unstable)}." if unstable else ""
+        unstable = [number for number, solution in enumerate(self.equilibria) if solution.stable is False]
+        note = f" Not stable: stages {', '.join(map(str, unstable))}." if unstable else ""
+        if self.passing:
+            note += (
+                f" On the straight way to stages {', '.join(map(str, self.passing))} a rod goes through an obstacle."
+            )
         if self.converged:
             return f"Tight: {told}.{note}"
         remedy = "sections" if self.difference > self.error_estimate else "modes of the model"
@@ -89,8 +100,8 @@ def tightened(
     """Solve a problem again and again as its relaxed contacts become exact, and hold its end against the exact law.
 
     The smoothing ε goes to zero in a few solves. After each the exact contacts are found at the inputs of each stage,
-    and its sections move there; that goes on until the two agree. Each stage is an equilibrium by itself: whether rods
-    can go from one to the next without passing through an obstacle is not looked at.
+    and its sections move there; that goes on until the two agree. Each stage is an equilibrium by itself, on whichever
+    side of a thin obstacle the problem has it: see :attr:`Tightened.passing`.
 
     Args:
         contact: the model of the problem.
@@ -105,24 +116,38 @@ def tightened(
     wanted = contact.model.scene.accuracy.tolerance if tolerance is None else tolerance
     first = contact.defaults if near is None else contact.moved_to(near, contact.defaults)
     moved = np.tile(first, (stages, 1))
-    smoothings = (*SMOOTHINGS, *[SMOOTHINGS[-1]] * CLOSER)
-    for smoothing in smoothings:
+    level, last = 0, np.inf
+    for _ in range(SOLVES):
         p = moved
-        p[:, 0] = smoothing
+        p[:, 0] = SMOOTHINGS[level]
         unknowns, controls = optimum(p)
         z = _of_stages("unknowns", unknowns, (stages, contact.size))
         inputs = _of_stages("inputs", controls, (stages, contact.inputs.size))
-        found = list(zip(z, inputs, p, strict=True))
-        equilibria = [contact.exact(*stage) for stage in found]
+        optima = list(zip(z, inputs, p, strict=True))
+        equilibria = [contact.exact(*of_stage) for of_stage in optima]
         difference = np.inf
         if all(solution.converged for solution in equilibria):
-            relaxed = [contact.solution(*stage) for stage in found]
+            relaxed = [contact.solution(*of_stage) for of_stage in optima]
             difference = max(map(pose_distance, relaxed, equilibria))
-        moved = np.array([contact.moved_to(solution, own) for solution, own in zip(equilibria, p, strict=True)])
-        if smoothing == SMOOTHINGS[-1] and (difference <= wanted or np.array_equal(moved, p)):
+        moved = np.array(list(map(contact.moved_to, equilibria, p)))
+        if level < USUAL:
+            level += 1
+        elif difference <= wanted:
             break
+        elif np.array_equal(moved, p):
+            if not difference < last / 2 or level + 1 == len(SMOOTHINGS):
+                # Not the smoothing keeps rods apart.
+                break
+            level += 1
+        last = difference
     judged = [with_notes(estimated_in_contact(solution)) if solution.converged else solution for solution in equilibria]
-    return Tightened(z, inputs, p, tuple(judged), difference, wanted)
+    befores = [near, *judged[:-1]]
+    passing = [
+        number
+        for number, (before, after) in enumerate(zip(befores, judged, strict=True))
+        if before is not None and before.converged and after.converged and passes_through(before, after)
+    ]
+    return Tightened(z, inputs, p, tuple(judged), difference, wanted, tuple(passing))
 
 
 def _of_stages(what: str, values: npt.ArrayLike, shape: tuple[int, int]) -> FloatArray:

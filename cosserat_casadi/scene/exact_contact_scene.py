@@ -16,11 +16,12 @@ def with_exact_contact(scene: Scene) -> Scene:
         SceneError: exact contact of these rods is not found.
     """
     tables = scene_tables(scene)
-    gone = set()
-    for obstacle in tables.get("obstacles", []):
+    gone = set[str]()
+    for number, obstacle in enumerate(tables.get("obstacles", [])):
         for key in SMOOTH_KEYS:
             obstacle.pop(key, None)
-            gone.add(f"{obstacle['name']}.{key}")
+            gone |= {f"{owner}.{key}" for owner in (obstacle["name"], f"obstacles.{number}", f"obstacles[{number}]")}
     if scene.parameters:
-        tables["parameters"] = [names for names in scene.parameters if not gone.issuperset(names_in(names))]
+        left = ([name for name in names_in(names) if name not in gone] for names in scene.parameters)
+        tables["parameters"] = [names for names in left if names]
     return scene_from_dict(tables)

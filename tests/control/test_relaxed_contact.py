@@ -244,14 +244,48 @@ def test_relaxed_contact_becomes_tight() -> None:
 
 @pytest.mark.slow
 def test_an_optimum_that_is_not_tight_says_so() -> None:
-    """One section alone lets the robot into the edge: what the exact law says of it is told."""
+    """One section alone lets the robot into the edge, and nothing keeps it on one side: what the exact law says."""
     model, near, _ = robot()
     contact = relaxed_contact(model, 1)
+    behind = AT_EDGE - np.array([0.0, 0.08, 0.0, 0.0])
+    stages = [near, solve(model, behind)]
 
     def held(values: FloatArray) -> tuple[Any, Any]:
-        return contact.near(near, values[0]), AT_EDGE
+        return np.array(list(map(contact.near, stages, values))), [AT_EDGE, behind]
 
-    tight = tightened(contact, held, tolerance=1e-6)
+    tight = tightened(contact, held, 2, tolerance=1e-6)
     assert not tight.converged
     assert "take more sections" in tight.message
-    assert tight.equilibria[0].converged and tight.difference > 1e-3
+    assert all(solution.converged for solution in tight.equilibria) and tight.difference > 1e-3
+    assert tight.passing == (1,)
+    assert "to stages 1 a rod goes through" in tight.message
+
+
+@pytest.mark.slow
+def test_a_contact_that_just_opens_is_tight_with_less_smoothing() -> None:
+    """Force and gap are of the order of ε there, not of its square: ε is what has to become smaller."""
+    tables: dict[str, Any] = {
+        "schema": 1,
+        "accuracy": {"modes": 3, "nodes": 6},
+        "rods": [
+            {
+                "name": "rod",
+                "length": 1.0,
+                "strain": "planar",
+                "stiffness": {"bending_y": 0.5},
+                "base": {"tangent": [1, 0, 0]},
+            }
+        ],
+        "loads": [{"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.3]}],
+        "inputs": ["push.force"],
+    }
+    height = solve(build(scene_from_dict(tables)), estimate_error=False).pose(1.0).position[2]
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, float(height) + 1e-5], "normal": [0, 0, 1]}
+    model = build(scene_from_dict({**tables, "obstacles": [floor]}))
+    near = solve(model)
+    assert near.contacts
+    contact = relaxed_contact(model, 2)
+    push = np.array([0.0, 0.0, -0.3])
+    tight = tightened(contact, lambda p: (contact.near(near, p[0]), push), tolerance=1e-5)
+    assert tight.converged, tight.message
+    np.testing.assert_allclose(tight.p[0, 0], 1e-5, rtol=1e-9, atol=0)

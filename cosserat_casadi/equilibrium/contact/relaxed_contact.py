@@ -49,10 +49,10 @@ SECTIONS = 8
 """Sections of a rod that may touch an obstacle."""
 
 MODES = 2
-"""Polynomials of each strain between two of them: without other loads the moment is linear there."""
+"""Polynomials of each strain between two sections: without other loads the moment is linear there."""
 
 NODES = 4
-"""Intervals of their integration."""
+"""Intervals of the integration between two sections."""
 
 FIRST_SMOOTHING = 1e-2
 """Smoothing ε to begin with: gap times force is 5e-5 of the length and of EI/ℓ²."""
@@ -63,8 +63,8 @@ class RelaxedContact:
     """A scene in exact contact as functions of its unknowns z = (x, N), its inputs, and p = (ε, abscissae).
 
     Attributes:
-        model: of the scene, on whose modes the exact contacts are found.
-        equations: those of the sections that may touch.
+        model: the model of the scene, on whose modes the exact contacts are found.
+        equations: the equations of the sections that may touch.
     """
 
     model: Model
@@ -136,19 +136,19 @@ class RelaxedContact:
         Newton's method goes there; where it does not end the shape is that of the equilibrium.
 
         Args:
-            solution: of :attr:`model`, or of another model of the scene.
+            solution: an equilibrium of :attr:`model`, or of another model of the scene.
             p: smoothing and abscissae; by default :attr:`defaults`.
         """
         at = np.asarray(self.defaults if p is None else p, dtype=float)
         equations = replace(self.equations, state=self.equations.state.at(at[1:].tolist()))
-        given = given_inputs(solution.model, solution.inputs)
-        z = equations.start_from(projected(solution, equations.nominal.model), given)
+        inputs = given_inputs(solution.model, solution.inputs)
+        z = equations.start_from(projected(solution, equations.nominal.model), inputs)
         x, forces, places = equations.parts(z)
         start = np.concatenate([self.equations.moved_strains(places) * x, np.maximum(forces, 0.0)])
         relaxed = newton(
             Equations(
-                lambda z: column(self.residual(z, given, at)),
-                lambda z: np.asarray(self.jacobian(z, given, at)[0].full()),
+                lambda z: column(self.residual(z, inputs, at)),
+                lambda z: np.asarray(self.jacobian(z, inputs, at)[0].full()),
             ),
             start,
             NewtonSettings(),
@@ -198,8 +198,8 @@ class RelaxedContact:
         return np.concatenate([p[:1], moved]) if self.equations.in_order(moved) else p
 
     def _equilibrium(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[Solution, ContactState]:
-        found = contact_equilibrium(self.equations, np.concatenate([z, p[1:]]), inputs)
-        return found.solution, _pressing(found.state, found.forces, p[0] / np.sqrt(2))
+        equilibrium = contact_equilibrium(self.equations, np.concatenate([z, p[1:]]), inputs)
+        return equilibrium.solution, _pressing(equilibrium.state, equilibrium.forces, p[0] / np.sqrt(2))
 
     @cached_property
     def _written(self) -> _Written:
@@ -330,10 +330,10 @@ def relaxed_contact(
     """The model of a scene in exact contact for an optimisation problem, whose equations are the same in all contacts.
 
     Args:
-        model: of a scene with obstacles without a width; parameters have the scene's values.
+        model: a model of a scene with obstacles without a width; parameters have its values.
         sections: of each rod that may touch each obstacle, of which the last is the tip.
-        modes: polynomials of each strain of such a rod between two of them; other rods keep theirs.
-        nodes: intervals of their integration.
+        modes: polynomials of each strain of such a rod between two sections; other rods keep theirs.
+        nodes: intervals of the integration between two sections.
 
     Raises:
         SceneError: nothing touches exactly, or fewer than one section is asked for.
@@ -347,10 +347,10 @@ def relaxed_contact(
     of_rods = list(pairs(scene))
     touches = [Touch.ball(obstacle.name, body.name) for body, obstacle in body_pairs(scene)]
     for rod in scene.rods:
-        own = [obstacle for name, obstacle in of_rods if name == rod.name]
-        for number, obstacle in enumerate(own):
+        obstacles = [obstacle for name, obstacle in of_rods if name == rod.name]
+        for number, obstacle in enumerate(obstacles):
             # No two obstacles have a section in common but the tip.
-            late = number / len(own)
+            late = number / len(obstacles)
             inner = [(i + 1 - late) / sections for i in range(sections - (late == 0.0))]
             touches += [Touch.point(obstacle.name, rod.name, X) for X in (*inner, TIP)]
     grids = dict(model.discretisation)
