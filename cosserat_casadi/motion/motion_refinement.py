@@ -496,7 +496,7 @@ def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
 def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] | None, float]:
     """Modes of the next level: as many as it has, but of strains that do not need them.
 
-    After an impact a strain that moves needs them: how much of the rod an impact stops depends on its modes, and its last
+    After an impact a strain that moves needs them: its modes say how much of the rod the impact stops, which its last
     coefficients do not tell.
 
     Returns:
