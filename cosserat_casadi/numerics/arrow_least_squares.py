@@ -661,7 +661,9 @@ class ArrowFit(Generic[StateType]):
             back = (shared - there[0], own - there[1])
             parted = self._cost(*there, beyond) - other.decrease(*back) - search.cost
             rises = -sum(float(np.sum(part * change)) for part, change in zip(other.gradient(*back), back, strict=True))
-            meets = abs(parted) <= MEETING * (1.0 + search.cost)
+            allowed = MEETING * (1.0 + search.cost)
+            # From afar the linear models would meet where no kink is: the step must be short too.
+            meets = abs(parted) <= allowed and arrow.decrease(*changes) <= allowed
             return FitOutcome.AT_KINK if meets and rises >= 0.0 else False
         shared, own = self._stepped(search, kinked, search.along)
         predicted = arrow.decrease(shared - search.shared, own - search.own)

@@ -339,3 +339,31 @@ def test_the_least_sum_may_be_at_a_kink(slope: float) -> None:
     assert_allclose(found, expected.x, rtol=0, atol=1e-4)
     assert (abs(beyond(found)) < 1e-8) == (slope == 3.0)
     assert fit.iterations < 40
+
+
+@pytest.mark.parametrize(("gain", "target"), [(2.0, 3.0), (1.0, 5.0)])
+def test_no_kink_is_told_where_linear_models_from_afar_meet(gain: float, target: float) -> None:
+    """The sum is least at the root of a curved equation, far from the start; SciPy finds the root."""
+
+    def beyond(x: FloatArray) -> float:
+        return float(x[0] - 1.0 + 0.3 * np.sin(x[0]))
+
+    class Curved:
+        offsets = np.array([0, 2])
+
+        def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point:
+            return Point(shared, own, np.array([shared[0] - target, 4.0 + gain * max(beyond(shared), 0.0)]))
+
+        def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+            slope = gain * (beyond(state.shared) > 0.0) * (1.0 + 0.3 * np.cos(state.shared[0]))
+            return np.array([[1.0], [slope]]), np.zeros((2, 0))
+
+    def kinked(state: Point, other: Point) -> npt.NDArray[np.bool_]:
+        return np.array([(beyond(state.shared) > 0.0) != (beyond(other.shared) > 0.0)])
+
+    problem, own = Curved(), np.zeros((1, 0))
+    start = problem.at(np.array([-2.0]), own, None)
+    fit = ArrowFit(problem, free(1), free(0), kinked=kinked).run(start.shared, own, start)
+    root = scipy.optimize.brentq(lambda x: beyond(np.array([x])), -2.0, 2.0, xtol=1e-14)
+    assert fit.outcome is FitOutcome.AT_KINK
+    assert_allclose(fit.shared, [root], rtol=0, atol=1e-6)
