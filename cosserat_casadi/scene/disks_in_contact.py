@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from cosserat_casadi.scene.disk_record import Disks, tables_of
@@ -9,6 +10,12 @@ from cosserat_casadi.scene.faults import Table
 from cosserat_casadi.scene.joint_ends import add_unlisted_body
 from cosserat_casadi.scene.obstacle_records import OBSTACLES
 from cosserat_casadi.scene.records import sound
+
+SEATED = {"name", "listed", "radius", "thickness"}
+"""Keys of a body that stands for a disk."""
+
+SEAT = {"kind", "body", "rod", "at"}
+"""Keys of the joint that holds it."""
 
 
 def seat_disks(tables: dict[str, Any]) -> None:
@@ -18,6 +25,8 @@ def seat_disks(tables: dict[str, Any]) -> None:
     """
     if not all(isinstance(tables.get(key, []), list) for key in ("bodies", "joints")):
         return
+    for row in tables_of(tables, "disks"):
+        _unseat(tables, str(row.get("name")))
     seated: dict[str, list[str]] = {}
     free = [name for entry in _listed(tables, "parameters") for name in (entry if isinstance(entry, list) else [entry])]
     for obstacle in tables_of(tables, "obstacles"):
@@ -45,6 +54,31 @@ def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
         names.append(body)
         tables.setdefault("joints", []).append({"kind": "fixed", "body": body, "rod": row.rod, "at": at})
     return names
+
+
+def _unseat(tables: dict[str, Any], row: str) -> None:
+    """Write bodies that an earlier reading wrote for a row as the row again, whose sizes and places may have changed.
+
+    Bodies of which an obstacle names some alone stay.
+    """
+    bodies = [
+        body
+        for body in tables_of(tables, "bodies")
+        if re.fullmatch(re.escape(row) + r"\[\d+\]", str(body.get("name"))) and set(body) == SEATED
+    ]
+    names = [body["name"] for body in bodies]
+    touched = [obstacle for obstacle in tables_of(tables, "obstacles") if {*_listed(obstacle, "bodies")} & {*names}]
+    whole = all(touches_disks(obstacle) and {*names} <= {*obstacle["bodies"]} for obstacle in touched)
+    if not touched or not whole:
+        return
+    for obstacle in touched:
+        others = [name for name in obstacle["bodies"] if name not in names]
+        obstacle["bodies"] = others
+        if not others:
+            del obstacle["bodies"]
+        obstacle["disks"] = [*_listed(obstacle, "disks"), row]
+    tables["bodies"] = [body for body in tables["bodies"] if body not in bodies]
+    tables["joints"] = [joint for joint in tables["joints"] if joint.get("body") not in names or set(joint) != SEAT]
 
 
 def _listed(table: dict[str, Any], key: str) -> list[Any]:

@@ -142,6 +142,19 @@ def test_bodies_that_stand_for_disks_are_none_of_the_users() -> None:
     assert list(solve(build(scene)).to_dict()["bodies"]) == ["d_1"]
 
 
+def test_bodies_that_stand_for_disks_change_with_their_row() -> None:
+    """A sweep of a scene that was read changes numbers of its row: its bodies have them too."""
+    tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
+    assert scene_from_dict(tables) == finger(**HARD)
+    changed = scene_from_dict(tables, ["disks.d.radius=0.004"])
+    assert changed == finger(0.004, **HARD)
+    assert [body.radius for body in changed.bodies] == [0.004, 0.004]
+    three = scene_from_dict(tables, ["disks.d.count=3"])
+    assert [(joint.body, joint.at) for joint in three.joints] == [("d[0]", 1 / 3), ("d[1]", 2 / 3), ("d[2]", 1.0)]
+    with pytest.raises(SceneError):
+        scene_from_dict({**tables, "parameters": ["d.radius"]})
+
+
 def test_a_disk_that_stands_on_its_face_in_exact_contact() -> None:
     """A rod that is bent to the floor presses on it within the face, not by the rim: its arm is shorter."""
     tables = finger(**HARD).model_dump(exclude_unset=True, by_alias=True)
