@@ -162,8 +162,8 @@ def test_energies_and_their_imbalance(planar: Motion) -> None:
 
 def test_an_imbalance_within_a_power_of_ten_is_between_two(planar: Motion) -> None:
     """Else numbers such as 1.3e-13 stand at the axis."""
-    even = replace(planar.energy, imbalance=np.linspace(1.2e-13, 1.8e-13, len(planar.times)))
-    panel = panels(plot_motion(replace(planar, energy=even)))["imbalance /\nlargest energy"]
+    even = with_energies(planar, imbalance=np.linspace(1.2e-13, 1.8e-13, len(planar.times)))
+    panel = panels(plot_motion(even))["imbalance /\nlargest energy"]
     assert_allclose(panel.get_ylim(), [1e-13, 1e-12], rtol=1e-12, atol=0)
 
 

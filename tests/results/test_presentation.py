@@ -188,9 +188,11 @@ NO_RESULTS = {
     "Model",
     "MotionStage",
     "Problem",
+    "RelaxedContact",
     "Scene",
     "StageEquations",
     "TargetMiss",
+    "Tightened",
 }
 """Public classes that are inputs, models, compiled solvers, or parts of results."""
 
