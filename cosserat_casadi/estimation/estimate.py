@@ -127,7 +127,7 @@ def estimate_model(
     remarks = list(_remarks(result, known, drawn))
     if isinstance(solver, RowsInContact) and drawn is None:
         report("Looking for contacts that change", 0, 0)
-        remarks += _on_contacts(result.cases, solver.contact_changes(table, inputs[:, indices], covariance))
+        remarks += _on_contacts(result.cases, solver.contact_changes(table, inputs[:, indices], covariance, known))
     return replace(result, warnings=tuple(remarks))
 
 

@@ -151,23 +151,27 @@ class RowsInContact:
         rows = [self._estimated(cases.part(slice(i, i + 1)), known) for i in range(len(cases.inputs))]
         return Estimates.joined(rows)
 
-    def contact_changes(self, cases: MeasuredCases, numbers: FloatArray, covariance: FloatArray) -> dict[int, str]:
+    def contact_changes(
+        self, cases: MeasuredCases, numbers: FloatArray, covariance: FloatArray, known: Knowledge
+    ) -> dict[int, str]:
         """Contacts that come, go or change within a standard deviation of estimates, in words, by the row's number.
 
         Args:
             cases: all rows.
             numbers: their estimates, shape (cases, k); NaN where there is none.
             covariance: of the first j of them, the others held, shape (cases, j, j).
+            known: of these j numbers, which do not go beyond their bounds.
         """
         changes = {}
         for i in np.flatnonzero(np.isfinite(numbers).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))).tolist():
             row = _Row(self, cases.part(slice(i, i + 1)))
             state = row.first(numbers[i])
             squares, axes = np.linalg.eigh(covariance[i])
-            deviations = np.zeros((len(squares), numbers.shape[1]))
-            deviations[:, : len(squares)] = np.sqrt(np.maximum(squares, 0.0))[:, None] * axes.T
+            deviations = np.sqrt(np.maximum(squares, 0.0))[:, None] * axes.T
             for step in [*deviations, *-deviations]:
-                beside = None if state is None else row.at(numbers[i] + step, np.zeros((1, 0)), state)
+                moved = numbers[i].copy()
+                moved[: len(step)] = np.clip(moved[: len(step)] + step, known.lower, known.upper)
+                beside = None if state is None else row.at(moved, np.zeros((1, 0)), state)
                 if state is not None and beside is not None and state.case.touches_otherwise(beside.case):
                     changes[i] = state.case.difference(beside.case)
                     break

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from cosserat_casadi import build, scene_from_dict
+from cosserat_casadi.codegen.estimator import Knowledge
 from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.estimation.estimate_outcome import Estimate
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact
@@ -59,5 +61,9 @@ def test_contacts_that_change_within_a_deviation_are_named() -> None:
     rows = RowsInContact(model, sections, [model.inputs.slices["weight.force"].stop - 1])
     table = stacked(model, cases, sections)
     narrow, wide = ([[sigma**2]] for sigma in (1e-5, 5e-3))
-    changes = rows.contact_changes(table, np.array([[-0.006], [np.nan], [-0.014]]), np.array([narrow, wide, wide]))
-    assert changes == {2: "a point of 'rod' on 'floor'"}
+    numbers, covariance = np.array([[-0.006], [np.nan], [-0.014]]), np.array([narrow, wide, wide])
+    known = Knowledge(*(np.array([number]) for number in (-0.5, 0.1, 0.0, 0.0, 1.0)))
+    assert rows.contact_changes(table, numbers, covariance, known) == {2: "a point of 'rod' on 'floor'"}
+    # Within bounds that are nearer than a deviation contacts stay.
+    bounded = replace(known, lower=np.array([-0.0141]), upper=np.array([-0.0139]))
+    assert rows.contact_changes(table, numbers[[1, 1, 2]], covariance, bounded) == {}
