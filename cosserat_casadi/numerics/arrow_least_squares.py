@@ -662,9 +662,11 @@ class ArrowFit(Generic[StateType]):
             parted = self._cost(*there, beyond) - other.decrease(*back) - search.cost
             rises = -sum(float(np.sum(part * change)) for part, change in zip(other.gradient(*back), back, strict=True))
             allowed = MEETING * (1.0 + search.cost)
-            # From afar the linear models would meet where no kink is: the step must be short too.
-            meets = abs(parted) <= allowed and arrow.decrease(*changes) <= allowed
-            return FitOutcome.AT_KINK if meets and rises >= 0.0 else False
+            if arrow.decrease(*changes) > allowed:
+                # From afar the linear models would meet where no kink is: come nearer, in fewer tries.
+                search.damping *= BACK_OFF
+                return False
+            return FitOutcome.AT_KINK if abs(parted) <= allowed and rises >= 0.0 else False
         shared, own = self._stepped(search, kinked, search.along)
         predicted = arrow.decrease(shared - search.shared, own - search.own)
         state = self.problem.at(shared, own, search.state)
