@@ -25,6 +25,9 @@ REST = SAFETY / UNKNOWN_ORDER
 LAST = 3
 """One of so many coefficients counts as one of the last."""
 
+TINY = float(np.finfo(float).tiny)
+"""Keeps the share of no acceleration finite."""
+
 
 def felt(history: History, duration: float) -> dict[str, list[FloatArray]]:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
@@ -50,4 +53,32 @@ def last_of(moved: FloatArray) -> float:
 def lacking(history: History, duration: float) -> float:
     """Largest displacement over the length that coefficients would make which a strain of a motion lacks."""
     strains = [moved for of_rod in felt(history, duration).values() for moved in of_rod]
-    return max((REST * len(moved) * last_of(moved) for moved in strains), default=0.0)
+    # A motion that goes on had waves before: its lateness adds up.
+    late = out_of_phase(history) * duration / (duration - history.begin)
+    return max((REST * len(moved) * last_of(moved) for moved in strains), default=0.0) + late
+
+
+def out_of_phase(history: History) -> float:
+    """Largest displacement over the length by which waves come too early or too late, for the modes that they lack.
+
+    A frequency errs by half the square of what its mode lacks, relative to the mode. So the way of the last
+    coefficients, times half of what they are beside all, bounds what a wave is late by in the end. Accelerations tell
+    what they are of the shortest waves, which long and larger ones would hide.
+    """
+    if not history.steps:
+        return 0.0
+    model = history.model
+    ends = [history.of_model(history.flight.to_model(step.end)) for _, step in history.steps]
+    sizes = np.array([step.size for _, step in history.steps])
+    rates = np.abs([end.v for end in ends])
+    ways = sizes @ rates * displacements(model)
+    accelerations = np.abs([end.a for end in ends]).max(axis=0)
+    late = 0.0
+    for name, rod in model.discrete.rods.items():
+        span = model.discrete.unknowns.strain(name)
+        for columns in rod.columns.values():
+            of_way = ways[span][columns].reshape(rod.grid.elements, -1).max(axis=0)
+            of_acceleration = accelerations[span][columns].reshape(rod.grid.elements, -1).max(axis=0)
+            share = last_of(of_acceleration) / max(of_acceleration.max(), TINY)
+            late = max(late, 0.5 * last_of(of_way) * share)
+    return late

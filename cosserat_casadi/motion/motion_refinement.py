@@ -75,6 +75,9 @@ TOLD_ERROR_OF_DAMPED = 0.12
 FINE = 2e-4
 """Tolerance below which the search begins on the second rung: the first one would not do."""
 
+LOOSEST = 1e-2
+"""Largest tolerance whose steps tell their error: longer ones damp what grows, and agree on what they miss."""
+
 TOLD_AFTER = 3
 """Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
 
@@ -318,11 +321,14 @@ def _with_tolerance(search: _Search) -> Motion:
     ladder = search.ladder
     rung: int | None = 1 if search.tolerance < FINE else 0
     without_start = 0
+    timed = None
     while rung is not None:
         modes = ladder[rung]
         chosen, unseen = _next_modes(search, modes) if search.levels else (_uniform(search.scene, modes), 0.0)
         if chosen is None:
-            search.levels[-1] = replace(search.last, distance=0.0, unseen=unseen)
+            timed = _timed_on_last(search, unseen)
+            if timed is None:
+                continue
             break
         model = moving_model(search.scene, chosen)
         simulator = _simulator(search, model, f"with up to {modes} modes")
@@ -353,7 +359,7 @@ def _with_tolerance(search: _Search) -> Motion:
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb()
-    timed = _timed(search)
+    timed = timed or _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
         raise KeyboardInterrupt
     if not timed.history.completed:
@@ -413,7 +419,8 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
     if not search.levels:
         damped = all(rod.damping is not None for rod in search.scene.rods)
         foreseen = TOLD_ERROR_OF_DAMPED if damped else TOLD_ERROR
-        search.step_tolerance = (TIME_SHARE * search.tolerance / foreseen) ** (1.0 / SLOPE)
+        allowed = TIME_SHARE * min(search.tolerance, LOOSEST)
+        search.step_tolerance = (allowed / foreseen) ** (1.0 / SLOPE)
         if any(obstacle.is_smooth for obstacle in search.scene.obstacles):
             # Steps that happen to end where a rod meets an obstacle err less than their like.
             search.step_tolerance = min(search.step_tolerance, search.tolerance / TIGHTER)
@@ -444,6 +451,31 @@ def _timed(search: _Search) -> TimedHistory:
     # What the modes have left over of their share is the steps' to use.
     allowed = max(TIME_SHARE * search.tolerance, search.tolerance - search.space_error)
     return exact_in_time(level, search.step_tolerance, allowed)
+
+
+def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
+    """The motion on modes that are enough, as :func:`_timed`; None where more exact steps tell that they are not.
+
+    The level is then that of the more exact steps: long ones damp what grows, and waves.
+
+    Args:
+        search: whose last level has modes enough.
+        unseen: what its strains lack, over the length.
+    """
+    level = search.last
+    search.levels[-1] = replace(level, distance=0.0, unseen=unseen)
+    timed = _timed(search)
+    if timed.history is level.history or not timed.history.completed:
+        return timed
+    left = lacking(timed.history, search.simulation.duration)
+    are_exact = timed.error <= max(TIME_SHARE * search.tolerance, search.tolerance - unseen)
+    if are_exact and left + timed.error > search.tolerance:
+        search.step_tolerance = timed.tolerance
+        paths = level.simulator.paths(timed.history)
+        search.levels[-1] = replace(level, history=timed.history, paths=paths)
+        return None
+    search.levels[-1] = replace(search.last, unseen=left)
+    return timed
 
 
 def exact_in_time(level: ResolvedMotion, step_tolerance: float, allowed: float) -> TimedHistory:

@@ -12,10 +12,12 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
-from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER
+from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, lacking, out_of_phase
 from cosserat_casadi.motion.motion_refinement import FASTEST, SLOWEST, ResolvedMotion, _Search
+from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.scene.simulation import Simulation
 from tests.motion import transients
+from tests.motion.stepping import moving_model
 
 
 def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3, lost: float = 0.0) -> _Search:
@@ -60,3 +62,43 @@ def test_modes_whose_last_coefficients_do_not_tell_are_enough_and_their_error_is
     assert motion.converged
     assert motion.model.discretisation["rod"].modes == (VERIFIED_MODES[0],)
     assert max(error, 0.1 * tolerance) < motion.error_estimate
+
+
+def simulator_on(tables: transients.Table, modes: int) -> Simulator:
+    """The motion of a scene on so many modes."""
+    model = moving_model(tables, modes)
+    simulation = model.scene.simulation
+    assert simulation is not None
+    return Simulator(model, simulation, started(model, simulation, None))
+
+
+def test_what_grows_with_time_is_not_hidden_by_long_steps_nor_judged_by_them() -> None:
+    """A column above its critical weight, which a small push sets falling: with long steps it rested."""
+    rod = {"base": {"tangent": [0, 0, 1]}, "stiffness": {"bending_y": [1.0, 0.02]}}
+    knock = {"input": "push.force", "times": [0.0, 0.025, 0.05], "values": [[0, 0, 0], [1e-4, 0, 0], [0, 0, 0]]}
+    asked = {"duration": 6.0, "frames": 2, "start": "unloaded", "tolerance": 0.1}
+    tables = transients.table(rod, transients.gravity(12.0), transients.at_tip(), motions=[knock], simulation=asked)
+    motion = simulate(scene_from_dict(tables))
+    assert np.linalg.norm(motion.tip().position[-1] - [0, 0, 1]) > 0.5
+    history: Any = motion.interpolant
+    assert motion.converged
+    assert motion.error_estimate > lacking(history.__self__, 6.0)
+
+
+@pytest.mark.slow
+def test_coefficients_that_modes_lack_put_waves_out_of_phase() -> None:
+    """Waves in the third mode of a cantilever: their last coefficients stay, their error grows with time."""
+    frequency = 61.70 / (2 * np.pi)
+    times = np.linspace(0.0, 10.0 / frequency, 81)
+    force = 0.2 * np.sin(np.pi * times / times[-1]) * np.sin(2 * np.pi * frequency * times)
+    values = [[0.0, 0.0, float(value)] for value in force]
+    burst = {"input": "push.force", "times": times.tolist(), "values": values, "interpolation": "cubic"}
+    asked = {"duration": 6.0, "frames": 2, "start": "unloaded"}
+    tables = transients.table({}, transients.at_tip(), motions=[burst], simulation=asked)
+    simulators = [simulator_on(tables, modes) for modes in (6, 12)]
+    histories = [simulator.controlled(1e-5) for simulator in simulators]
+    few, many = (simulator.paths(history).points for simulator, history in zip(simulators, histories, strict=True))
+    errors = np.linalg.norm(few - many, axis=2).max(axis=1)
+    third = len(errors) // 3
+    assert errors[-third:].max() > 2.0 * errors[:third].max()
+    assert errors.max() < out_of_phase(histories[0]) < 50.0 * errors.max()
