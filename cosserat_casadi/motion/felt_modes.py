@@ -61,9 +61,9 @@ def lacking(history: History, duration: float) -> float:
 def out_of_phase(history: History) -> float:
     """Largest displacement over the length by which waves come too early or too late, for the modes that they lack.
 
-    A frequency errs by half the square of what its mode lacks, relative to the mode. So the way of the last
-    coefficients, times half of what they are beside all, bounds what a wave is late by in the end. Accelerations tell
-    what they are of the shortest waves, which long and larger ones would hide.
+    A frequency errs by half the square of the share of its mode that coefficients lack. So the way of the last
+    coefficients, times half of their share, bounds the displacement by which a wave is late in the end. Accelerations
+    tell their share of the shortest waves, which long and larger ones would hide.
     """
     if not history.steps:
         return 0.0

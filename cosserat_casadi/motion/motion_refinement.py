@@ -76,7 +76,7 @@ FINE = 2e-4
 """Tolerance below which the search begins on the second rung: the first one would not do."""
 
 LOOSEST = 1e-2
-"""Largest tolerance whose steps tell their error: longer ones damp what grows, and agree on what they miss."""
+"""Largest tolerance whose steps tell their error: longer ones damp growth, and agree on the rest."""
 
 TOLD_AFTER = 3
 """Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
@@ -456,7 +456,7 @@ def _timed(search: _Search) -> TimedHistory:
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
     """The motion on modes that are enough, as :func:`_timed`; None where more exact steps tell that they are not.
 
-    The level is then that of the more exact steps: long ones damp what grows, and waves.
+    The level is then that of the more exact steps: long ones damp growth, and waves.
 
     Args:
         search: whose last level has modes enough.
