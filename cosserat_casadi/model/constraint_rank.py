@@ -103,7 +103,8 @@ def _own_units(probe: DiscreteScene) -> FloatArray:
 def _constraint_rows(system: System) -> FloatArray:
     """Derivatives of all constraint residuals with strains and floating frames, one row each."""
     unknowns = system.discrete.unknowns
-    jacobian = ca.DM(SceneEquations(system).assembly.constraint_jacobian).full()
+    # Rods that touch each other leave an expression of numbers.
+    jacobian = ca.evalf(ca.MX(SceneEquations(system).assembly.constraint_jacobian)).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
     rows = np.delete(jacobian[first:last], slice(first, last), axis=1)

@@ -58,10 +58,10 @@ def libraries(asked: Scene) -> Libraries:
     return found
 
 
-def assert_same(library: Libraries, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
-    """Compare with the rows one after the other."""
-    found = library.together.solve(inputs, parameters)
-    expected = library.apart.solve(inputs, parameters)
+def assert_same(library: Libraries, given: FloatArray) -> FloatArray:
+    """Compare with the rows one after the other; parameters stand behind inputs."""
+    found = library.together.solve(given)
+    expected = library.apart.solve(given)
     # The order of sums is the same too, but for a residual that is nothing but rounding.
     assert_array_equal(found[:, :2], expected[:, :2])
     assert_allclose(found[:, 2:], expected[:, 2:], rtol=1e-12, atol=1e-12)
@@ -145,13 +145,13 @@ def test_rows_of_parameters_are_the_same() -> None:
     library = libraries(with_parameters())
     inputs = pushes(30, 2.0)
     parameters = drawn_parameters(model, 30)
-    found = assert_same(library, inputs, parameters)
+    found = assert_same(library, np.hstack([inputs, parameters]))
     assert_array_equal(found[:, 0], CONVERGED)
     assert np.ptp(found[:, 3]) > 1e-3
     # One row of parameters that are no numbers, and loads that grow in steps.
     parameters[4, 0] = np.nan
     inputs[11:] *= 1000
-    found = assert_same(library, inputs, parameters)
+    found = assert_same(library, np.hstack([inputs, parameters]))
     assert found[4, 0] == NOT_FINITE
     assert found[:, 1].max() > 20
 
