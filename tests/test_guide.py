@@ -70,6 +70,16 @@ def test_the_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert MADE[page] <= {path.name for path in tmp_path.iterdir()}
 
 
+def test_the_guide_meets_its_circle(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first scene and its check against a closed form; the whole page takes longer and runs with the slow tests."""
+    monkeypatch.chdir(tmp_path)
+    found = blocks("guide.md")
+    (finger,) = [text for _, text, name in found if name == "finger.toml"]
+    Path("finger.toml").write_text(finger)
+    (check,) = [text for language, text, _ in found if language == "python" and "circle" in text and "opti" not in text]
+    exec(compile(check, "guide.md", "exec"), {})
+
+
 def test_every_kind_of_block_is_there() -> None:
     assert {language for language, *_ in blocks("guide.md")} == {"toml", "sh", "python", "c"}
     assert [name for *_, name in blocks("guide.md") if name] == ["finger.toml", "target.toml", "controller.c"]

@@ -240,18 +240,6 @@ def test_assembly_that_cannot_close_says_what_is_left() -> None:
     assert metres > 0.3
 
 
-def test_stability_of_a_carried_column_vs_eulers_load() -> None:
-    """Two rods in series under a dead load on a body: straight, stable below Euler's critical load, unstable above."""
-    critical = np.pi**2 * 1.0 / (4 * 0.8**2)
-    for share, stable in ((0.98, True), (1.02, False)):
-        push = {"name": "p", "kind": "body_wrench", "body": "cap", "force": [0, 0, -share * critical]}
-        parts = (rod("a", 0.5, "kirchhoff"), rod("b", 0.3, "kirchhoff", base={"rod": "a"}))
-        cap = {"body": "cap", "rod": "b", "kind": "fixed"}
-        fixed = {"modes": 5, "nodes": 12}
-        own = solved(scene(*parts, accuracy=fixed, bodies=[{"name": "cap"}], joints=[cap], loads=[push]))
-        assert own.stable is stable
-
-
 CASES = [path for path in case_files("robots") if "platform" in path.stem]
 
 

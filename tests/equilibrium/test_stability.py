@@ -88,6 +88,19 @@ def test_standing_column_about_its_critical_weight(weight: float, stable: bool) 
     assert solution.stable is stable
 
 
+def test_a_carried_column_vs_eulers_load() -> None:
+    """Two rods in series under a dead load on a body: straight, stable below Euler's critical load, unstable above."""
+    critical = np.pi**2 * 1.4 / (4 * 0.8**2)
+    rods = [rod("planar", name="a", length=0.5), rod("planar", name="b", length=0.3, base={"rod": "a"})]
+    cap = {"bodies": [{"name": "cap"}], "joints": [{"body": "cap", "rod": "b", "kind": "fixed"}]}
+    load = {"name": "push", "kind": "body_wrench", "body": "cap", "force": [0, 0, 0]}
+    model = build(scene(load, rods=rods, inputs=["push.force"], accuracy={"modes": 3, "nodes": 6}, **cap))
+    for share, stable in ((0.98, True), (1.02, False)):
+        solution = solve(model, {"push.force": [0, 0, -share * critical]})
+        assert solution.converged, solution.message
+        assert solution.stable is stable
+
+
 def test_standing_column_beyond_its_weight_settles() -> None:
     solution = solve(standing("planar", 9.0), stable=True)
     assert (solution.converged, solution.stable) == (True, True)

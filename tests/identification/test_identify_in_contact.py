@@ -137,20 +137,40 @@ def test_a_load_moves_past_a_contact() -> None:
     assert_allclose(found.shared, [0.7], rtol=0, atol=1e-6)
 
 
-@pytest.mark.slow
+def lying(accuracy: dict[str, int], **more: Any) -> dict[str, Any]:
+    """The rod on the floor, with a load on a section that its weight holds there."""
+    scene = poked(0.9, **more) | {"accuracy": accuracy}
+    scene["loads"][0]["force"] = [0, 0, -0.3]
+    return scene
+
+
 def test_a_load_moves_inside_a_line_of_contact() -> None:
-    at = 0.9
-    lying = poked(at, force=[0, 0, 0], moment=[0, -0.005, 0])
-    lying["loads"][0]["force"] = [0, 0, -0.3]
-    true = solve(build(scene_from_dict(lying)))
-    assert true.contacts[0].kind == "line" and true.contacts[0].start < at
-    first = started(poked_and_measured(lying), table([-0.3], np.zeros((1, len(AT), 3))))
+    """The floor carries it wherever it is: nothing else moves."""
+    scene = poked_and_measured(lying({"modes": 2, "nodes": 4}))
+    first = started(scene, table([-0.3], np.zeros((1, len(AT), 3))))
+    (solution,) = first.misfit.solutions(first.state)
+    (line,) = solution.contacts
+    (section,) = line.inside
+    assert line.kind == "line" and line.start < section.at < line.end
+    assert_allclose([section.at, section.force], [0.9, 0.02], rtol=1e-9, atol=0)
+    assert_allclose(first.misfit.jacobians(first.state)[0], 0, rtol=0, atol=1e-8)
+
+
+@pytest.mark.slow
+def test_a_moment_moves_beside_a_line_of_contact() -> None:
+    """It lifts the tip: the line ends before it, and moves with it."""
+    scene = lying({"modes": 3, "nodes": 6}, force=[0, 0, 0], moment=[0, -0.005, 0])
+    true = solve(build(scene_from_dict(scene)))
+    (line,) = true.contacts
+    assert line.kind == "line" and line.end < 0.9
+    first = started(poked_and_measured(scene), table([-0.3], np.zeros((1, len(AT), 3))))
     (by_place,) = first.misfit.jacobians(first.state)[0].T
     sides = []
     for change in (1e-4, -1e-4):
-        lying["loads"][1]["at"] = at + change
-        solution = solve(build(scene_from_dict(lying)), start=true)
+        scene["loads"][1]["at"] = 0.9 + change
+        solution = solve(build(scene_from_dict(scene)), start=true)
         sides.append(solution.pose(np.array(AT)).position.ravel() / SIGMA)
+    assert np.abs(by_place).max() > 1.0
     assert_allclose(by_place, (sides[0] - sides[1]) / 2e-4, rtol=0, atol=1e-6 * np.abs(by_place).max())
 
 
