@@ -59,7 +59,7 @@ def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
 def _unseat(tables: dict[str, Any], row: str) -> None:
     """Write bodies that an earlier reading wrote for a row as the row again, whose sizes and places may have changed.
 
-    Bodies of which an obstacle names some alone stay.
+    The row is written at the obstacles that name all of these bodies; at others their names stay.
     """
     bodies = [
         body
@@ -67,11 +67,11 @@ def _unseat(tables: dict[str, Any], row: str) -> None:
         if re.fullmatch(re.escape(row) + r"\[\d+\]", str(body.get("name"))) and set(body) == SEATED
     ]
     names = [body["name"] for body in bodies]
-    touched = [obstacle for obstacle in tables_of(tables, "obstacles") if {*_listed(obstacle, "bodies")} & {*names}]
-    whole = all(touches_disks(obstacle) and {*names} <= {*obstacle["bodies"]} for obstacle in touched)
-    if not touched or not whole:
+    planes = [obstacle for obstacle in tables_of(tables, "obstacles") if touches_disks(obstacle)]
+    touching = [obstacle for obstacle in planes if names and {*names} <= {*_listed(obstacle, "bodies")}]
+    if not touching:
         return
-    for obstacle in touched:
+    for obstacle in touching:
         others = [name for name in obstacle["bodies"] if name not in names]
         obstacle["bodies"] = others
         if not others:

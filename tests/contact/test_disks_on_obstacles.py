@@ -149,6 +149,10 @@ def test_bodies_that_stand_for_disks_change_with_their_row() -> None:
     changed = scene_from_dict(tables, ["disks.d.radius=0.004"])
     assert changed == finger(0.004, **HARD)
     assert [body.radius for body in changed.bodies] == [0.004, 0.004]
+    wall = {"name": "wall", "kind": "plane", "point": [1, 0, 0], "normal": [-1, 0, 0], "bodies": ["d[1]"]}
+    beside = scene_from_dict({**tables, "obstacles": [*tables["obstacles"], wall]}, ["disks.d.radius=0.004"])
+    assert [body.radius for body in beside.bodies] == [0.004, 0.004]
+    assert [obstacle.bodies for obstacle in beside.obstacles] == [("d[0]", "d[1]"), ("d[1]",)]
     three = scene_from_dict(tables, ["disks.d.count=3"])
     assert [(joint.body, joint.at) for joint in three.joints] == [("d[0]", 1 / 3), ("d[1]", 2 / 3), ("d[2]", 1.0)]
     with pytest.raises(SceneError):
