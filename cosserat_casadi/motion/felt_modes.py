@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import watched_times
@@ -29,20 +30,24 @@ TINY = float(np.finfo(float).tiny)
 """Keeps the share of no acceleration finite."""
 
 
-def felt(history: History, duration: float) -> dict[str, list[FloatArray]]:
+ByStrain = dict[str, list[FloatArray]]
+"""Of every rod and each of its strains: a number for the coefficients of each degree."""
+
+
+def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
-    model = history.model
     x, _ = history.rough_positions(watched_times(history, duration))
-    moved = np.abs(x).max(axis=0) * displacements(model)
-    by_rod = {}
+    return _by_strain(history.model, np.abs(x).max(axis=0) * displacements(history.model))
+
+
+def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
+    """Largest entries of all elements, of numbers for each unknown, shape (model.size,)."""
+    by_strain = {}
     for name, rod in model.discrete.rods.items():
-        of_rod = moved[model.discrete.unknowns.strain(name)]
-        by_degree = []
-        for columns in rod.columns.values():
-            by_element = of_rod[columns].reshape(rod.grid.elements, -1)
-            by_degree.append(by_element.max(axis=0))
-        by_rod[name] = by_degree
-    return by_rod
+        of_rod = sizes[model.discrete.unknowns.strain(name)]
+        by_element = [of_rod[columns].reshape(rod.grid.elements, -1) for columns in rod.columns.values()]
+        by_strain[name] = [of_strain.max(axis=0) for of_strain in by_element]
+    return by_strain
 
 
 def last_of(moved: FloatArray) -> float:
@@ -50,9 +55,16 @@ def last_of(moved: FloatArray) -> float:
     return float(moved[-max(2, len(moved) // LAST) :].max())
 
 
-def lacking(history: History, duration: float) -> float:
-    """Largest displacement over the length that coefficients would make which a strain of a motion lacks."""
-    strains = [moved for of_rod in felt(history, duration).values() for moved in of_rod]
+def lacking(history: History, duration: float, moved_by: ByStrain | None = None) -> float:
+    """Largest displacement over the length that coefficients would make which a strain of a motion lacks.
+
+    Args:
+        history: the motion.
+        duration: its end, s.
+        moved_by: the displacements of :func:`felt`, where they are known.
+    """
+    moved_by = felt(history, duration) if moved_by is None else moved_by
+    strains = [moved for of_rod in moved_by.values() for moved in of_rod]
     # A motion that goes on had waves before: its lateness adds up.
     late = out_of_phase(history) * duration / (duration - history.begin)
     return max((REST * len(moved) * last_of(moved) for moved in strains), default=0.0) + late
@@ -67,18 +79,14 @@ def out_of_phase(history: History) -> float:
     """
     if not history.steps:
         return 0.0
-    model = history.model
     ends = [history.of_model(history.flight.to_model(step.end)) for _, step in history.steps]
     sizes = np.array([step.size for _, step in history.steps])
     rates = np.abs([end.v for end in ends])
-    ways = sizes @ rates * displacements(model)
-    accelerations = np.abs([end.a for end in ends]).max(axis=0)
+    ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
+    accelerations = _by_strain(history.model, np.abs([end.a for end in ends]).max(axis=0))
     late = 0.0
-    for name, rod in model.discrete.rods.items():
-        span = model.discrete.unknowns.strain(name)
-        for columns in rod.columns.values():
-            of_way = ways[span][columns].reshape(rod.grid.elements, -1).max(axis=0)
-            of_acceleration = accelerations[span][columns].reshape(rod.grid.elements, -1).max(axis=0)
-            share = last_of(of_acceleration) / max(of_acceleration.max(), TINY)
-            late = max(late, 0.5 * last_of(of_way) * share)
+    for rod, of_rod in ways.items():
+        for way, acceleration in zip(of_rod, accelerations[rod], strict=True):
+            share = last_of(acceleration) / max(acceleration.max(), TINY)
+            late = max(late, 0.5 * last_of(way) * share)
     return late

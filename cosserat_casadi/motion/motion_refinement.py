@@ -535,15 +535,20 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
         the modes, None where none lacks more than modes may leave, and what strains lack that get no further ones, over
         the length.
     """
+    history = search.last.history
+    moved_by = felt(history, search.simulation.duration)
+    # Sections find contact, and more modes have more of them.
+    if not search.scene.has_contact:
+        left = lacking(history, search.simulation.duration, moved_by)
+        if left <= SPACE_SHARE * search.tolerance:
+            return None, left
     chosen = {}
     unseen = 0.0
-    history = search.last.history
-    of_strains = felt(history, search.simulation.duration)
     for name, discretisation in _uniform(search.scene, modes).items():
         counts = []
         coarse = search.last.simulator.model.discretisation[name]
         for strain, count in enumerate(discretisation.modes):
-            moved = of_strains[name][strain]
+            moved = moved_by[name][strain]
             kept = coarse.modes[strain]
             last = last_of(moved)
             if moved.max() < FELT * search.tolerance:
@@ -555,10 +560,6 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
             else:
                 counts.append(count)
         chosen[name] = replace(discretisation, modes=tuple(counts))
-    # What touches is found at sections, of which more modes have more.
-    left = lacking(history, search.simulation.duration)
-    if left <= SPACE_SHARE * search.tolerance and not search.scene.has_contact:
-        return None, left
     return chosen, unseen
 
 
