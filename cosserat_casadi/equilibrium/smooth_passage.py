@@ -85,7 +85,7 @@ class SmoothBarriers:
         if layer.body is not None:
             length = discrete.body_frame(layer.body).length
         else:
-            assert layer.rod is not None, "what is of no body is of a rod"
+            assert layer.rod is not None, "a layer of no body is of a rod"
             length = discrete.rods[layer.rod].properties.length
         radius = min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius
         assert layer.obstacle.width is not None
@@ -93,12 +93,12 @@ class SmoothBarriers:
         return ball_is_inside_between(layer.obstacle, radius, length, start, end, allowed)
 
     def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Position of a body or a disk in the axes that its obstacle is given in, shape (3,), m."""
+        """Position of a body or a disk in the axes of its obstacle, shape (3,), m."""
         if layer.body is not None:
             place = self.model.body[layer.body](x, inputs)[0].full().T
             return np.asarray(seen_from(self.model, layer.obstacle, x, inputs, place)[0])
-        assert layer.rod is not None, "what is of no body is of a rod"
-        along = LookedAt(self.model, layer.rod).positions(layer.obstacle, x, inputs)
+        assert layer.rod is not None, "a layer of no body is of a rod"
+        along = self._looked_at[layer.rod].positions(layer.obstacle, x, inputs)
         return np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T])
 
     def rods_pass(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
@@ -126,4 +126,5 @@ class SmoothBarriers:
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:
-        return {rod: LookedAt(self.model, rod) for rod, _ in self.watched}
+        of_disks = {layer.rod for layer in self.watched_bodies if layer.rod is not None}
+        return {rod: LookedAt(self.model, rod) for rod in {rod for rod, _ in self.watched} | of_disks}
