@@ -47,7 +47,8 @@ class AcadosExpressions:
         xdot: their derivatives.
         u: controls: the rates of the inputs, units per second.
         z: algebraic states: the unknowns of the model, shape (model.size,); in motion the algebraic ones of them.
-        p: parameters of the scene, shape (model.parameters.size,), often none; of relaxed contact its own.
+        p: parameters of the scene, shape (model.parameters.size,), often none; of relaxed contact the smoothing and the
+            abscissae.
         f_impl_expr: what the integrator holds at zero: ẋ − u, in motion q̇ − v before it, then the residual.
     """
 

@@ -350,7 +350,7 @@ class CompiledMotion(ABC):
         return taken, StepSensitivity(by_start.T, **derivatives)
 
     def _input_derivatives(self, rows: int) -> tuple[dict[str, FloatArray], list[FloatArray]]:
-        """Room for derivatives by what is given, by name, and their columns in the order of the functions in C."""
+        """Room for derivatives by inputs and parameters, by name; their columns in the order of the functions in C."""
         words = ("by_inputs", "by_parameters", "by_inputs_rate", "by_inputs_acceleration")
         counts = (self.inputs.size, self.parameters.size, self.inputs.size, self.inputs.size)
         columns = {word: np.zeros((count, rows)) for word, count in zip(words, counts, strict=True)}

@@ -97,26 +97,25 @@ class RowLibrary:
     results: int
     in_lanes: bool = False
 
-    def solve(self, given: FloatArray) -> FloatArray:
+    def solve(self, rows: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs with parameters behind them.
 
         Other threads run meanwhile. A row depends on its inputs alone, in exact contact on the rows before it too.
 
         Args:
-            given: shape (count, inputs + parameters).
+            rows: inputs with parameters behind them, shape (count, inputs + parameters).
 
         Raises:
             ExportError: there is no C compiler, or it fails.
             MemoryError: there is none for the workspace.
         """
         width = self.inputs + self.parameters
-        if given.ndim != 2 or given.shape[1] != width:
-            raise ValueError(f"inputs and parameters must have shape (count, {width}), got {given.shape}")
-        tables = [np.ascontiguousarray(own, dtype=np.float64) for own in np.split(given, [self.inputs], axis=1)]
-        if not self.parameters:
-            del tables[1]
-        results = np.empty((len(given), self.results))
-        if self.compiled()[f"{NAME}_rows"](len(given), *map(pointer, tables), pointer(results)):
+        if rows.ndim != 2 or rows.shape[1] != width:
+            raise ValueError(f"inputs and parameters must have shape (count, {width}), got {rows.shape}")
+        spans = [slice(self.inputs), slice(self.inputs, width)] if self.parameters else [slice(width)]
+        tables = [np.ascontiguousarray(rows[:, span], dtype=np.float64) for span in spans]
+        results = np.empty((len(rows), self.results))
+        if self.compiled()[f"{NAME}_rows"](len(rows), *map(pointer, tables), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 

@@ -24,8 +24,9 @@ from cosserat_casadi.maths.typing import FloatArray
 SMOOTHINGS = (FIRST_SMOOTHING, 1e-3, 1e-4, 1e-5, 1e-6)
 """Values of ε of one solve after the other: at the third, gap times force is 5e-9 of the length and of EI/ℓ²."""
 
-USUAL = 2
-"""Index of the one at which sections move to the contacts; where a contact just opens, gap and force are ε/√2 each."""
+LAST_SECTIONS = 2
+"""Index of the value at which sections move until they stay; smaller ones are for contacts that just open, where gap
+and force are ε/√2 each."""
 
 SOLVES = 7
 """Most solves."""
@@ -111,12 +112,13 @@ def tightened(
         tolerance: of the difference and the errors of the equilibria; by default that of the scene.
 
     Raises:
-        SceneError: what the problem is solved by returns other shapes, or numbers that are not finite.
+        SceneError: ``optimum`` returns other shapes, or numbers that are not finite.
     """
     wanted = contact.model.scene.accuracy.tolerance if tolerance is None else tolerance
     first = contact.defaults if near is None else contact.moved_to(near, contact.defaults)
     moved = np.tile(first, (stages, 1))
-    level, last = 0, np.inf
+    level = 0
+    before = np.inf
     for _ in range(SOLVES):
         p = moved
         p[:, 0] = SMOOTHINGS[level]
@@ -130,28 +132,28 @@ def tightened(
             relaxed = [contact.solution(*of_stage) for of_stage in optima]
             difference = max(map(pose_distance, relaxed, equilibria))
         moved = np.array(list(map(contact.moved_to, equilibria, p)))
-        if level < USUAL:
+        if level < LAST_SECTIONS:
             level += 1
         elif difference <= wanted:
             break
         elif np.array_equal(moved, p):
-            if not difference < last / 2 or level + 1 == len(SMOOTHINGS):
-                # Not the smoothing keeps rods apart.
+            # A difference that does not fall with the smoothing has another cause.
+            if not difference < before / 2 or level + 1 == len(SMOOTHINGS):
                 break
             level += 1
-        last = difference
+        before = difference
     judged = [with_notes(estimated_in_contact(solution)) if solution.converged else solution for solution in equilibria]
-    befores = [near, *judged[:-1]]
+    ways = zip([near, *judged[:-1]], judged, strict=True)
     passing = [
         number
-        for number, (before, after) in enumerate(zip(befores, judged, strict=True))
-        if before is not None and before.converged and after.converged and passes_through(before, after)
+        for number, (start, end) in enumerate(ways)
+        if start is not None and start.converged and end.converged and passes_through(start, end)
     ]
     return Tightened(z, inputs, p, tuple(judged), difference, wanted, tuple(passing))
 
 
 def _of_stages(what: str, values: npt.ArrayLike, shape: tuple[int, int]) -> FloatArray:
-    """Finite numbers, one row a stage."""
+    """The numbers of all stages, a row each; refuse other shapes, and numbers that are not finite."""
     array = np.asarray(values, dtype=float)
     if 1 in shape and array.size == shape[0] * shape[1]:
         array = array.reshape(shape)

@@ -123,13 +123,13 @@ class ContactGuards:
                 if number not in arrangement.laid:
                     others[number] = min(1.0, self.lowest(number, nodes, placed) - float(floor[0]))
                     continue
-                own = [k for k, touch in enumerate(placed) if touch.facing == number]
-                untouched = ~np.isin(facing.laid_at, [placed[k].place for k in own])
+                pressing = [k for k, touch in enumerate(placed) if touch.facing == number]
+                untouched = ~np.isin(facing.laid_at, [placed[k].place for k in pressing])
                 others[number] = np.min((facing.laid_gaps(nodes) - floor)[untouched], initial=1.0)
-                if not own:
+                if not pressing:
                     clear[number] = CLOSE - facing.deepest(nodes).gap
                 elif arrangement.slopes[number]:
-                    gap = followed.gaps[own[0]]
+                    gap = followed.gaps[pressing[0]]
                     turned = gap.slope / arrangement.slopes[number]
                     clear[number] = max(turned, ROLLING - gap.bend)
             return np.concatenate([forces, ends, bends, others, clear])

@@ -193,7 +193,7 @@ class ExactContacts:
         return self._lying(replace(known, held=tuple(held)), held[number], before, inputs)
 
     def _got_up(self, known: _Known, number: int, before: Instant, inputs: FloatArray) -> _Known:
-        """Contacts where a rod no longer lies: from one section that touches it rolls on, if its gap is least there."""
+        """Contacts where a rod no longer lies: it rolls on from a section that touches, if the gap is least there."""
         facing = self.facings[number]
         held = list(known.held)
         for k, touch in enumerate(held):
@@ -319,13 +319,14 @@ class ExactContacts:
         """Slopes of the gaps where rods lie on one section each, and may roll on from there; zero of all others."""
         slopes = [0.0] * len(self.facings)
         for number in laid:
-            own = [touch.place for touch in pressing if touch.facing == number]
-            if len(own) != 1:
+            places = [touch.place for touch in pressing if touch.facing == number]
+            if len(places) != 1:
                 continue
+            (place,) = places
             facing = self.facings[number]
-            slope = facing.at(facing.nodes(x, inputs), own[0]).slope
+            slope = facing.at(facing.nodes(x, inputs), place).slope
             # Over an end no rod rolls on.
-            outwards = (own[0] == TIP and slope > 0.0) or (own[0] == BASE and slope < 0.0)
+            outwards = (place == TIP and slope > 0.0) or (place == BASE and slope < 0.0)
             if abs(slope) > LEVEL and not outwards:
                 slopes[number] = slope
         return tuple(slopes)

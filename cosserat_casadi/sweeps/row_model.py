@@ -189,8 +189,8 @@ def contact_numbers(contacts: Sequence[Contact]) -> list[float]:
 def _in_units_of(measure: Scene, solution: Solution) -> Solution:
     """An equilibrium in contact with the eigenvalue that it has under the scaling of another scene."""
     unknown = replace(solution, smallest_eigenvalue=None)
-    found = equilibrium_in(solution)
-    touched = with_contacts(measure, found.state, found.placed.modes)
+    placed = equilibrium_in(solution)
+    touched = with_contacts(measure, placed.state, placed.placed.modes)
     scaling = build(touched, Grids(solution.model.discretisation).discretisation(touched))
     model = _scaled(solution.model.scene, scaling)
     corrected = None if model is None else correct(model, solution.inputs, solution.x, NewtonSettings())
@@ -202,15 +202,15 @@ def _in_units_of(measure: Scene, solution: Solution) -> Solution:
 
 @lru_cache(maxsize=2)
 def _measured(scene: str, measure: str) -> Model | None:
-    """The model of a scene under the scaling of another; None where its loads or its places do not allow that."""
+    """As :func:`_scaled`, of scenes as texts."""
     return _scaled(parse_scene(scene), _model(measure))
 
 
-def _scaled(own: Scene, scaling: Model) -> Model | None:
-    """The same of a model."""
-    if any(len(element_ends(own, rod.name)) != len(element_ends(scaling.scene, rod.name)) for rod in own.rods):
+def _scaled(scene: Scene, scaling: Model) -> Model | None:
+    """The model of a scene under the scaling of a model; None where its loads or its places do not allow that."""
+    if any(len(element_ends(scene, rod.name)) != len(element_ends(scaling.scene, rod.name)) for rod in scene.rods):
         return None
-    discrete = with_numbers(scaling.discrete, own)
+    discrete = with_numbers(scaling.discrete, scene)
     try:
         check_loads(discrete)
     except SceneError:

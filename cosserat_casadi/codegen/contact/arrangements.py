@@ -136,10 +136,10 @@ def chosen_arrangements(
     free = build(scene, grids.discretisation(scene))
     before = given
     for number, row in enumerate(np.zeros((0, layout.size)) if load_cases is None else load_cases, start=1):
-        inputs, own_theta = np.split(row, [layout.size])
-        if own_theta.size:
-            own_scene = parameters.set_in(named, parameters.unpack(own_theta)).baked()
-            free = build(own_scene, grids.discretisation(own_scene))
+        inputs, of_case = np.split(row, [layout.size])
+        if of_case.size:
+            in_case = parameters.set_in(named, parameters.unpack(of_case)).baked()
+            free = build(in_case, grids.discretisation(in_case))
         # Where a path ends early, at a fold or a change that it does not find, the load case is solved all the same.
         case = solve_contact(free.scene, grids, layout.unpack(inputs))
         if leave_out and not case.converged:

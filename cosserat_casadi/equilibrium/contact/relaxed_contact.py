@@ -251,7 +251,7 @@ class _Written:
         written = equations.written
         x, forces, places = written.unknowns
         size, count = x.shape[0], forces.shape[0]
-        # Slopes of gaps ask where contact is: here sections are given.
+        # Rows without a width are slopes of gaps, which place a contact: sections have their places.
         widths = force_widths(equations.state, written.modes)
         gap_rows = [size + number for number, width in enumerate(widths) if width is not None]
         smoothing = ca.MX.sym("smoothing")
@@ -278,7 +278,7 @@ class _Written:
 
 
 def _nearest(sections: list[float], places: list[float], loads: Sequence[float]) -> list[float]:
-    """Sections, of which the nearest to each of some places is there; both ascend.
+    """Move to each place the nearest section; both ascend, and sections keep their order.
 
     Elements end at loads, so that a section stays between the same two of them.
     """
