@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.held_directions import FLAT, confines, keeps_plane
+from cosserat_casadi.constraints.held_directions import FLAT, confines, keeps_plane, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import place_of
@@ -23,11 +23,11 @@ from cosserat_casadi.model.floating_frames import UnloadedScene
 
 
 class _Link(NamedTuple):
-    """A joint between bodies, a rod in a plane, and the world.
+    """A joint between bodies, rods in a plane, and the world.
 
     Attributes:
         number: place of the joint in the scene's list.
-        ends: names of the bodies; None for the world, in which a rod in a plane stands.
+        ends: names of the bodies, and of rods that start on bodies; None for the world, in which the other rods stand.
         first: pose of the place at the first end, world axes.
         second: that at the other end, which is the held one.
         held: directions, in the axes of the held place.
@@ -103,17 +103,21 @@ def _links_of_bodies(unloaded: UnloadedScene) -> Iterator[_Link]:
 
 
 def _links_of_rods(unloaded: UnloadedScene) -> Iterator[_Link]:
+    on_bodies = {joint.rod for joint in unloaded.scene.joints if joint.body is not None and joint.holds_base}
     for number, joint in enumerate(unloaded.scene.joints):
-        if joint.carries is not None or joint.body is None or joint.holds_base:
+        if joint.carries is not None or joint.body is None:
             continue
-        plane = unloaded.plane(joint.rod)
-        if plane is None:
+        starts_on_body = joint.rod in on_bodies
+        in_plane = stays_in_plane(unloaded.rods[joint.rod].properties) if starts_on_body else unloaded.plane(joint.rod)
+        if not in_plane:
             continue
         held = JOINT_KINDS[joint.kind].directions(joint)
         section = unloaded.section(joint.rod, joint.at)
         # The section turns in its plane; what matters is its normal.
         in_body = _start(unloaded, joint.body).then(place_of(joint))
-        yield _Link(number, (None, joint.body), _turned_free(in_body, section, joint), section, held)
+        # No body has a name with a blank.
+        rod = f"rod {joint.rod}" if starts_on_body else None
+        yield _Link(number, (rod, joint.body), _turned_free(in_body, section, joint), section, held)
 
 
 def _turned_free(in_body: NumericPose, section: NumericPose, joint: scenes.Joint) -> NumericPose:

@@ -221,7 +221,7 @@ def decisive_axes(unloaded: UnloadedScene) -> set[int]:
     return {
         i
         for i, joint in enumerate(joints)
-        if (closed and joint.carries is not None) or len(list(_coplanar(unloaded, joint))) > 1
+        if (closed and (joint.carries or joint.body) is not None) or len(list(_coplanar(unloaded, joint))) > 1
     }
 
 

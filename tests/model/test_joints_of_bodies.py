@@ -173,6 +173,32 @@ def test_slider_crank(angle: float) -> None:
     assert [placed.size for placed in model.discrete.constraints] == [6, 5, 5, 2]
 
 
+@pytest.mark.parametrize("load", [0.0, 40.0])
+def test_slider_crank_with_a_coupler_that_bends(load: float) -> None:
+    """A planar coupler is a spatial one, whose joints are all whole; straight it has the closed form of a rigid one."""
+    tables = slider_crank()
+    tables["bodies"] = [body for body in tables["bodies"] if body["name"] != "coupler"]
+    first, _, _, guide = tables["joints"]
+    first["angle"] = 1.0
+    rod = link("coupler", length=COUPLER, base={"tangent": [1, 0, 0]})
+    pin = hinge({"body": "arm", "position": [CRANK, 0, 0]}, {"rod": "coupler", "at": 0.0})
+    wrist = hinge({"rod": "coupler"}, {"body": "slider"})
+    middle = {"name": "middle", "kind": "point_wrench", "rod": "coupler", "at": 0.5, "force": [0, 0, load]}
+    solutions = []
+    for strain in ("planar", "kirchhoff"):
+        changes = {"joints": [first, pin, wrist, guide], "loads": [middle], "accuracy": {"tolerance": 1e-8}}
+        described = scene_from_dict({**tables, "rods": [{**rod, "strain": strain}], **changes})
+        solutions.append(solve(build(described), {"crank.angle": 0.3}))
+    planar, spatial = solutions
+    assert planar.converged and spatial.converged
+    assert [placed.size for placed in planar.model.discrete.constraints] == [6, 5, 2, 5]
+    assert [placed.size for placed in spatial.model.discrete.constraints] == [6, 5, 5, 5]
+    assert_allclose(planar.body("slider").position, spatial.body("slider").position, rtol=0, atol=1e-9)
+    assert_allclose(planar.joint("crank")["moment"], spatial.joint("crank")["moment"], rtol=1e-7, atol=1e-12)
+    shortened = reach(0.3)[0] - planar.body("slider").position[0]
+    assert abs(shortened) < 1e-10 if load == 0.0 else shortened > 1e-5
+
+
 @pytest.mark.parametrize(
     ("strain", "kind"),
     mostly_slow(
