@@ -34,6 +34,9 @@ STYLES = {
 }
 """Forces at a point, moments, forces per length. Arrows are scaled within their own sort."""
 
+MOST_LINE_ARROWS = 24
+"""Arrows of forces per length from which on some are left out, evenly: those of many rods hide the rods."""
+
 
 def lies_in_plane(arrow: Arrow, normal: int) -> bool:
     """Whether the plane across a world axis shows it: a force lies in the plane, a moment stands across it."""
@@ -49,7 +52,8 @@ def draw_arrows(canvas: Canvas, arrows: Sequence[Arrow]) -> None:
     """Draw the arrows of all loads, a moment across a plane as a turning sign."""
     for sort, style in STYLES.items():
         of_sort = [arrow for arrow in arrows if arrow.sort == sort]
-        _draw_sort(canvas, of_sort, style)
+        every = -(-len(of_sort) // MOST_LINE_ARROWS) if sort == "line" else 1
+        _draw_sort(canvas, of_sort, style, every)
     if canvas.plane is None:
         return
     for arrow in arrows:
@@ -57,11 +61,14 @@ def draw_arrows(canvas: Canvas, arrows: Sequence[Arrow]) -> None:
             canvas.turning_sign(arrow.start, arrow.vector, MOMENTS)
 
 
-def _draw_sort(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle) -> None:
+def _draw_sort(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle, every: int) -> None:
+    """Draw arrows of one sort: one of so many, and those that the legend names."""
     magnitudes = [float(np.linalg.norm(arrow.vector)) for arrow in arrows]
     largest = max(magnitudes, default=0.0)
     # The largest arrow of a sort has the length that its style gives it, whatever its unit.
-    for arrow in arrows:
+    for index, arrow in enumerate(arrows):
+        if index % every and not arrow.label:
+            continue
         if arrow.sort == "moment" and canvas.plane is not None:
             # Drawn as a turning sign; the legend still gives its value.
             canvas.legend_entry(arrow.label or None, color=style.colour, linewidth=style.width)

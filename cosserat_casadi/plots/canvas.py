@@ -50,6 +50,9 @@ MARGIN, SMALL_MARGIN = 0.25, 0.2
 FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
 
+CORNER = 0.12
+"""Distance from the front corner of the box, relative to its longest side, in which one axis alone has a number."""
+
 
 @dataclass(frozen=True)
 class Canvas:
@@ -206,12 +209,26 @@ class Canvas:
             # Short axes have room for few ticks.
             most = FEW_TICKS if self.small else TICKS
             self.axes.locator_params(axis=name, nbins=max(1 if self.small else 2, round(most * width / widths.max())))
+        self._clear_corner(limits, CORNER * widths.max())
         self.axes.view_init(elev=np.degrees(ELEVATION), azim=np.degrees(AZIMUTH))
         # Beside the axis its name would stand on the ticks of a tall box, and outside of a small panel.
         right, back, top = limits[:, 1]
         self.axes.text(
             right, back, top + LABEL_HEIGHT * widths.max(), "z, m", ha="center", fontsize=SMALL if self.small else None
         )
+
+    def _clear_corner(self, limits: FloatArray, room: float) -> None:
+        """Leave out the first ticks of y where those of x end beside them, at the front corner of the box.
+
+        Args:
+            limits: of the axes, a row each, shape (3, 2), m.
+            room: distance from the corner in which numbers of both axes would stand on each other, m.
+        """
+        ticks = [axis.get_majorticklocs() for axis in (self.axes.xaxis, self.axes.yaxis)]
+        right, (front, back) = limits[0, 1], limits[1]
+        if np.any((ticks[0] > right - room) & (ticks[0] <= right)):
+            # A tick beyond the limits would move these.
+            self.axes.set_yticks(ticks[1][(ticks[1] > front + room) & (ticks[1] <= back)])
 
     def _zoom(self, widths: FloatArray) -> float:
         """Zoom by which a box with these sides fills its panel but for the labels."""

@@ -30,6 +30,9 @@ SECTIONS = np.linspace(0.0, 1.0, 101)
 MARKED = slice(None, None, 10)
 """Sections that are marked, so that one sees them move along the rod and turn."""
 
+ENDS_MARKED = slice(None, None, len(SECTIONS) // 2)
+"""Those of each of several rods, ends and middles: dots of many rods hide their shapes."""
+
 SHARE = 0.2
 """Size of the largest displacement that is drawn, relative to the scene's extent."""
 
@@ -212,14 +215,15 @@ def _arms(positions: FloatArray, axes: FloatArray, turns: FloatArray, length: fl
 
 
 def _draw_mode(canvas: Canvas, modes: Modes, drawn: _ModeLines) -> None:
+    marked = MARKED if len(drawn.equilibrium) == 1 else ENDS_MARKED
     for index, (name, resting) in enumerate(drawn.equilibrium.items()):
         colour = rod_colour(index)
         canvas.line(resting, color=EQUILIBRIUM, linewidth=1.5)
-        canvas.markers(resting[MARKED], color=EQUILIBRIUM, marker=".", markersize=5)
+        canvas.markers(resting[marked], color=EQUILIBRIUM, marker=".", markersize=5)
         there, back = drawn.ends[name]
         canvas.line(back, color=colour, linewidth=1.5, alpha=0.35)
         canvas.line(there, color=colour, linewidth=2.5)
-        canvas.markers(there[MARKED], color=colour, marker=".", markersize=7)
+        canvas.markers(there[marked], color=colour, marker=".", markersize=7)
         if modes.model.discrete.unloaded.floating_base(name) is None:
             canvas.markers(resting[:1], **CLAMP)
     for index, (before, after) in enumerate(drawn.arms.values()):

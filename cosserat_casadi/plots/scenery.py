@@ -26,8 +26,8 @@ from cosserat_casadi.scene import Body, Disks, Scene
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
 
-AXES_SECTIONS = np.linspace(0.0, 1.0, 9)
-"""Abscissae of the sections whose axes are drawn."""
+AXES_SECTIONS = 9
+"""Most sections whose axes are drawn: the rods share them. Where there is not one for each end no axes are drawn."""
 
 AXES_LENGTH = 0.06
 """Length of their axes, relative to the scene."""
@@ -67,7 +67,7 @@ def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
             label = name
         canvas.line(deformed, linewidth=3.5, label=label, **rod_style(index))
         canvas.markers(deformed[:1], **_base_style(unloaded, name))
-        _draw_section_axes(canvas, solution, name)
+        _draw_section_axes(canvas, solution, name, AXES_SECTIONS // len(shapes.deformed))
 
 
 def _base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
@@ -78,8 +78,11 @@ def _base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
     return CLAMP if unloaded.floating_base(rod) is None else FIXED
 
 
-def _draw_section_axes(canvas: Canvas, solution: Solution, name: str) -> None:
-    pose = solution.pose(AXES_SECTIONS, name)
+def _draw_section_axes(canvas: Canvas, solution: Solution, name: str, count: int) -> None:
+    """Draw the axes of this many sections of a rod, both ends among them; of one alone none."""
+    if count < 2:
+        return
+    pose = solution.pose(np.linspace(0.0, 1.0, count), name)
     length = AXES_LENGTH * canvas.size
     for position, rotation in zip(pose.position, pose.rotation, strict=True):
         for axis, colour in enumerate(AXES):

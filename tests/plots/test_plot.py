@@ -18,6 +18,9 @@ from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
+from cosserat_casadi.plots.arrows import MOST_LINE_ARROWS
+from cosserat_casadi.plots.canvas import CORNER
+from cosserat_casadi.plots.colours import AXES
 from cosserat_casadi.plots.figure import PlotUnavailableError, check_plot_path
 from cosserat_casadi.plots.material_plot import plot_materials, stress_curves
 from cosserat_casadi.plots.modes_plot import mode_words, plot_modes
@@ -127,6 +130,27 @@ def test_several_rods_are_named() -> None:
             named = [text.get_text() for text in legend.get_texts()]
             assert len(named) == len(set(named))
             assert {handle.get_color() for handle in legend.get_lines()} == {"0.3"}
+
+
+@pytest.mark.parametrize(("count", "frames"), [(2, 4), (5, 0)])
+def test_many_rods_are_not_hidden_by_axes_and_arrows(count: int, frames: int) -> None:
+    several = [rod("planar", name=f"rod_{i}", base={"position": [0.1 * i, 0, 0]}) for i in range(count)]
+    scenery = plot_solution(solve(build(scene({**WEIGHT, "acceleration": [0, 0, -2.0]}, rods=several)))).axes[0]
+    drawn = scenery.get_lines()
+    colours = [line.get_color() for line in drawn]
+    assert [colours.count(colour) for colour in AXES] == [count * frames] * 3
+    arrows = [text for text in scenery.texts if getattr(text, "arrow_patch", None) is not None]
+    assert 9 < len(arrows) <= MOST_LINE_ARROWS
+
+
+def test_axes_of_space_have_one_number_at_their_corner(spatial: Solution) -> None:
+    scenery = plot_solution(spatial).axes[0]
+    (_, right), (front, _) = scenery.get_xlim(), scenery.get_ylim()
+    room = CORNER * np.ptp([scenery.get_xlim(), scenery.get_ylim(), scenery.get_zlim()], axis=1).max()
+    at_right = [tick for tick in scenery.get_xticks() if right - room < tick <= right]
+    at_front = [tick for tick in scenery.get_yticks() if front <= tick < front + room]
+    assert len(scenery.get_yticks()) >= 2
+    assert not (at_right and at_front)
 
 
 def boxes(figure: Any) -> tuple[list[Any], list[Any]]:
