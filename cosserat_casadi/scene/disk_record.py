@@ -34,6 +34,8 @@ def lead_through_disks(tables: dict[str, Any]) -> None:
         holes = [at for at in places if len(span) == 2 and span[0] <= at <= span[1]]
         if holes:
             tendon["holes"] = holes
+        # A row that is faulty itself says so; its tendons are not told besides that there is none.
+        if holes or None in rows:
             del tendon["routing"]
 
 

@@ -31,6 +31,10 @@ MOST_NAMES = 12
 """Names that a remedy lists."""
 
 
+_NOTHING = "there is no {} to set"
+"""Problem of a key that leads to nothing."""
+
+
 @dataclass(frozen=True)
 class Assignment:
     """An override that was applied.
@@ -102,15 +106,17 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
     path: list[str | int] = []
     created: Path | None = None
     segments = _from_root(tables, key, known)
-    for segment in segments[:-1]:
-        index = _index(container, segment)
+    for depth in range(len(segments) - 1):
+        index = _index(container, segments, depth)
         path.append(index)
         # Tables that a scene leaves out, such as accuracy, are made on the way.
         if isinstance(container, dict) and index not in container:
+            if re.fullmatch(r"[0-9]+", segments[depth + 1]):
+                raise RefusedOverride(_NOTHING.format(shown(segments[depth + 1])), _no_list(segments[: depth + 1]))
             container[index] = {}
             created = created or tuple(path)
         container = container[index]
-    last = _index(container, segments[-1])
+    last = _index(container, segments, len(segments) - 1)
     container[last] = value
     leaf = (*path, last)
     if created is None:
@@ -131,7 +137,7 @@ def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> lis
     if first in lists:
         if len(segments) == 1:
             entry = _entry(tables[lists[first]], first)
-            raise RefusedOverride("is a whole table, not one of its values", _fields(first, entry))
+            raise RefusedOverride("is a whole table, not one of its values", _fields_in_words(first, entry))
         return [lists[first], *segments]
     if first not in known:
         problem = f"no load, actuator, rod, support or table is named {shown(first)}"
@@ -165,15 +171,25 @@ def _entry(entries: list[Any], name: str) -> dict[str, Any]:
     return next(entry for entry in entries if isinstance(entry, dict) and entry.get("name") == name)
 
 
-def _fields(name: str, entry: Mapping[str, Any]) -> str:
+def _fields(entry: Mapping[str, Any]) -> list[str]:
+    """Keys of the values that an entry of a list has."""
+    return [field for field in entry if field not in ("name", "kind")]
+
+
+def _fields_in_words(name: str, entry: Mapping[str, Any]) -> str:
     """A remedy for a key that stops at the name of an entry: the values that the entry has."""
-    fields = [f"{name}.{field}" for field in entry if field not in ("name", "kind")]
-    return f"name one of {', '.join(fields)}"
+    return f"name one of {', '.join(f'{name}.{field}' for field in _fields(entry))}"
 
 
-def _index(container: Any, segment: str) -> Any:
-    """The key or index that a segment means; entries of lists go by name or number."""
-    if isinstance(container, dict) and segment:
+def _index(container: Any, segments: Sequence[str], depth: int) -> Any:
+    """The key or index that a segment of a key means; entries of lists go by name or number.
+
+    Raises:
+        RefusedOverride: the container has no such entry.
+    """
+    segment = segments[depth]
+    is_number = re.fullmatch(r"[0-9]+", segment) is not None
+    if isinstance(container, dict) and segment and (segment in container or not is_number):
         return segment
     if isinstance(container, list):
         for i, entry in enumerate(container):
@@ -182,16 +198,42 @@ def _index(container: Any, segment: str) -> Any:
         # At most nine digits: Python refuses to read integers of thousands.
         if re.fullmatch(r"[0-9]{1,9}", segment) and int(segment) < len(container):
             return int(segment)
-    raise RefusedOverride(f"there is no {shown(segment)} to set", _entries_in_words(container))
+    raise RefusedOverride(_NOTHING.format(shown(segment)), _what_to_write(container, segments, depth))
 
 
-def _entries_in_words(container: Any) -> str:
-    """Names or indices that a list has, for an override that leads to another; empty for a value that is no list."""
-    if not isinstance(container, list) or not container:
-        return ""
+def _what_to_write(container: Any, segments: Sequence[str], depth: int) -> str:
+    """A remedy for an override whose segment at this depth leads to nothing."""
+    after = segments[depth + 1 :]
+    there = _written(segments[:depth])
+    if isinstance(container, dict):
+        written = _written([there, *after]) if after else f"{there}.{next(iter(_fields(container)), 'key')}"
+        return f"{there} is one table, without entries of numbers: write {written}"
+    if not isinstance(container, list):
+        return f"{there} is one value: write {there}=…"
     names = [entry["name"] for entry in container if isinstance(entry, dict) and isinstance(entry.get("name"), str)]
     if names:
-        return f"there are {', '.join(names)}"
+        # Whoever leaves the name out goes on with a key of the entry.
+        rest = (
+            after
+            if re.fullmatch(r"[0-9]*", segments[depth]) or segments[depth] not in container[0]
+            else [segments[depth], *after]
+        )
+        return f"write {' or '.join(_written([name, *rest]) for name in names[:MOST_NAMES])}"
+    if not container:
+        return f"{there} has no entries"
     if len(container) == 1:
-        return "it has one entry, [0]"
-    return f"its entries are [0] to [{len(container) - 1}]"
+        return f"it has one entry, {there}[0]"
+    return f"its entries are {there}[0] to {there}[{len(container) - 1}]"
+
+
+def _no_list(segments: Sequence[str]) -> str:
+    """A remedy for an override of an entry of a list that the scene leaves out."""
+    there = _written(segments)
+    return f"the scene has no {there}: set all of it, {there}=[…], or write it into the scene"
+
+
+def _written(segments: Sequence[str]) -> str:
+    """Segments as a user would write the key: names with points between, numbers in brackets."""
+    named = segments[1:] if segments[0] in NAMED_LISTS and len(segments) > 1 else segments
+    shortest = segments if re.fullmatch(r"[0-9]+", named[0]) else named
+    return re.sub(r"\.([0-9]+)(?=\.|$)", r"[\1]", ".".join(shortest))

@@ -3,6 +3,7 @@
 import copy
 import datetime
 import math
+import tomllib
 
 import pytest
 
@@ -531,10 +532,19 @@ def test_a_bad_override_is_refused_where_it_stands(override, where, piece):
     ("override", "remedy"),
     [
         # Columns of sweeps are written so.
-        ("push.force.x=1", "its entries are [0] to [2]"),
-        ("push.force[3]=1", "its entries are [0] to [2]"),
-        ("loads.pull.force=[1, 0, 0]", "there are push"),
-        ("finger.length.x=1", ""),
+        ("push.force.x=1", "its entries are push.force[0] to push.force[2]"),
+        ("push.force[3]=1", "its entries are push.force[0] to push.force[2]"),
+        ("loads[0].force.y=1", "its entries are loads[0].force[0] to loads[0].force[2]"),
+        ("loads.pull.force=[1, 0, 0]", "write push.force"),
+        ("loads[1].force=[1, 0, 0]", "write push.force"),
+        ("rods.length=0.3", "write finger.length"),
+        ("finger.length.x=1", "finger.length is one value: write finger.length=…"),
+        ("push[1].force=[1, 0, 0]", "push is one table, without entries of numbers: write push.force"),
+        ("push[1]=3", "push is one table, without entries of numbers: write push.rod"),
+        (
+            "joints[0].axis=[1, 0, 0]",
+            "the scene has no joints: set all of it, joints=[…], or write it into the scene",
+        ),
         ("push=3", "name one of push.rod, push.force"),
         ("pusj.force=3", "did you mean 'push'?"),
         ("zzz.another=3", "the scene has finger, push, and tables such as accuracy.tolerance"),
@@ -544,6 +554,28 @@ def test_an_override_of_what_is_not_there_is_told_what_is(override, remedy):
     with pytest.raises(SceneError) as caught:
         parse_scene(scene(PUSH), overrides=[override])
     assert [problem.remedy for problem in caught.value.problems] == [remedy]
+
+
+@pytest.mark.parametrize("key", ["spacers[1].radius", "disks[1].radius", "disks.radius"])
+def test_a_disk_of_a_row_alone_has_no_size_to_set(key):
+    disks = {"name": "spacers", "rod": "finger", "count": 3, "mass": 0.0, "radius": 0.01, "thickness": 0.001}
+    tendon = {
+        "name": "cable",
+        "kind": "tendon",
+        "rod": "finger",
+        "tension": 1.0,
+        "offset": [0.01, 0],
+        "routing": "disks",
+    }
+    tables = {**tomllib.loads(scene()), "disks": [disks], "actuators": [tendon]}
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(tables, [f"{key}=0.02"])
+    (problem,) = caught.value.problems
+    assert problem.remedy.endswith("write spacers.radius")
+    # Its tendons are not told that there are no disks.
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(tables, ["spacers.rim=0.02"])
+    assert [problem.problem for problem in caught.value.problems] == ["unknown key"]
 
 
 def test_bad_overrides_are_told_together_with_the_faults_of_the_file():
