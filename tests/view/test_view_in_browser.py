@@ -101,6 +101,8 @@ def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     # WebM and MP4 say what they are in their first bytes.
     content = film.value.path().read_bytes()
     assert content.startswith(b"\x1aE\xdf\xa3") or content[4:8] == b"ftyp"
+    # Without a picture a file is a hundred bytes long.
+    assert len(content) > 2000
     with page.expect_download(timeout=PATIENCE) as picture:
         page.get_by_role("button", name="Save picture").click()
     assert picture.value.suggested_filename == "robot.png"

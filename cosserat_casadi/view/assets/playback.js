@@ -94,11 +94,13 @@ class Theatre {
 
   tick(now) {
     if (this.paused || !this.film) return;
-    const elapsed = ((now - this.last) / 1000) * Number(this.speed.value);
+    const elapsed = (now - this.last) / 1000;
     this.last = now;
-    const share = this.share + elapsed / this.film.duration;
-    if (this.recorder && share >= 1) this.recorder.stop();
-    this.seek(share % 1);
+    // A machine that draws slowly leaves no picture of a film out: it films for longer.
+    const shown = this.recorder ? Math.min(elapsed, 1 / FILM_RATE) : elapsed;
+    const share = this.share + (shown * Number(this.speed.value)) / this.film.duration;
+    if (this.share >= 1 && this.recorder?.state === "recording") this.recorder.stop();
+    this.seek(this.recorder ? Math.min(share, 1) : share % 1);
     if (this.recorder) this.panel.scenery.printOn(this.sheet);
     requestAnimationFrame((later) => this.tick(later));
   }
