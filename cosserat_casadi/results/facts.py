@@ -36,6 +36,9 @@ MOST_OF_A_KIND = 4
 ROUNDING = 1e-14
 """Share of the largest entry of a vector below which an entry is shown as zero."""
 
+UNSOLVED = 1e-12
+"""Share of the size of a scene below which an entry is shown as zero: equations are not solved to less."""
+
 SMALLEST = 1e-300
 """Keeps the scale of a vector of zeros away from zero."""
 
@@ -240,12 +243,17 @@ def _point(position: FloatArray) -> str:
     return f"({', '.join(digits(position))}) m"
 
 
-def digits(vector: FloatArray) -> list[str]:
-    """Entries with six digits; an entry that is negligible beside the largest one is shown as zero."""
+def digits(vector: FloatArray, size: float = 0.0) -> list[str]:
+    """Entries with six digits; an entry that is negligible beside the largest one is shown as zero.
+
+    Args:
+        vector: any number of entries.
+        size: what such a quantity is counted in, such as a rod's length for positions; rounding of it is zero, too.
+    """
     magnitudes = np.abs(vector)
     largest = max(float(magnitudes.max()), SMALLEST)
     # What is left of a cancellation would look like a result.
-    rounded = np.where(magnitudes <= ROUNDING * largest, 0.0, vector)
+    rounded = np.where(magnitudes <= max(ROUNDING * largest, UNSOLVED * size), 0.0, vector)
     return [f"{entry:.6g}" for entry in rounded]
 
 

@@ -409,5 +409,7 @@ def test_a_class_without_presentation_is_told() -> None:
 
 def test_what_a_cancellation_leaves_of_a_position_is_zero() -> None:
     assert digits(np.array([0.25, -4.7e-31, -1.0])) == ["0.25", "0", "-1"]
+    # All that there is may be rounding.
+    assert digits(np.array([6e-144, -3e-13, 2e-12]), 1.0) == ["0", "0", "2e-12"]
     straight = solve(build(scene(push(force=[0.0, 0.0, 1.0]), strain="planar")))
     assert "(0, 0, 0.8) m" in repr(replace(straight, x=straight.x + 1e-30))

@@ -41,12 +41,13 @@ def _end_table(motion: Motion) -> Table:
     table = table_of(f"at t = {motion.times[-1]:.6g} s", "quantity")
     for axis in ("x", "y", "z"):
         table.add_column(axis, justify="right")
+    longest = max(rod.length for rod in motion.model.discrete.rods.values())
     for name in motion.model.discrete.rods:
         position = motion.tip(name).position[-1]
-        table.add_row(escape(name), "tip position, m", *digits(position))
+        table.add_row(escape(name), "tip position, m", *digits(position, longest))
     for body in motion.model.scene.listed_bodies:
         position = motion.body(body.name).position[-1]
-        table.add_row(escape(body.name), "body position, m", *digits(position))
+        table.add_row(escape(body.name), "body position, m", *digits(position, longest))
     return table
 
 

@@ -111,17 +111,20 @@ def _rod_table(solution: Solution) -> Table:
     table = table_of("rod", "quantity")
     for axis in ("x", "y", "z"):
         table.add_column(axis, justify="right")
-    for name in solution.model.discrete.rods:
+    longest = max(rod.length for rod in solution.model.discrete.rods.values())
+    for name, rod in solution.model.discrete.rods.items():
         tip = solution.tip(name)
         base_wrench = solution.base_wrench(name)
-        table.add_row(escape(name), "tip position, m", *digits(tip.position))
-        table.add_row("", "tip tangent", *digits(tip.rotation[:, 2]))
-        table.add_row("", "clamp force, N", *digits(base_wrench.force))
-        table.add_row("", "clamp moment, N m", *digits(base_wrench.moment), end_section=True)
+        end = "clamp" if solution.model.discrete.unloaded.floating_base(name) is None else "base"
+        moment, force = rod.energy_unit, rod.energy_unit / rod.length
+        table.add_row(escape(name), "tip position, m", *digits(tip.position, longest))
+        table.add_row("", "tip tangent", *digits(tip.rotation[:, 2], 1.0))
+        table.add_row("", f"{end} force, N", *digits(base_wrench.force, force))
+        table.add_row("", f"{end} moment, N m", *digits(base_wrench.moment, moment), end_section=True)
     for body in solution.model.scene.listed_bodies:
         pose = solution.body(body.name)
-        table.add_row(escape(body.name), "body position, m", *digits(pose.position))
-        table.add_row("", "body z axis", *digits(pose.rotation[:, 2]), end_section=True)
+        table.add_row(escape(body.name), "body position, m", *digits(pose.position, longest))
+        table.add_row("", "body z axis", *digits(pose.rotation[:, 2], 1.0), end_section=True)
     return table
 
 
@@ -159,12 +162,21 @@ def _actuator_table(solution: Solution) -> Table:
 
 def _joint_table(solution: Solution) -> Table:
     """Efforts along joints, their angles or displacements, and the pushes of their stops, parts of the efforts."""
-    table = table_of("joint", "effort", "at", "of stops")
-    for name in solution.model.joint:
-        state = solution.joint(name)
-        units = {"moment": "N m", "angle": "rad", "displacement": "m", "force": "N"}
-        units["stop"] = units["moment" if "moment" in state else "force"]
-        table.add_row(escape(name), *(f"{quantity} {value:.6g} {units[quantity]}" for quantity, value in state.items()))
+    states = {name: solution.joint(name) for name in solution.model.joint}
+    stops = ["of stops"] if any("stop" in state for state in states.values()) else []
+    table = table_of("joint", "effort", "at", *stops)
+    rods = solution.model.discrete.rods.values()
+    energy, length = max(rod.energy_unit for rod in rods), max(rod.length for rod in rods)
+    units = {"moment": "N m", "angle": "rad", "displacement": "m", "force": "N"}
+    sizes = {"moment": energy, "angle": 1.0, "displacement": length, "force": energy / length}
+    for name, state in states.items():
+        effort = "moment" if "moment" in state else "force"
+        cells = []
+        for quantity, value in state.items():
+            of = effort if quantity == "stop" else quantity
+            (number,) = digits(np.array([value]), sizes[of])
+            cells.append(f"{quantity} {number} {units[of]}")
+        table.add_row(escape(name), *cells)
     return table
 
 
