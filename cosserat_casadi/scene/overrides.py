@@ -76,6 +76,7 @@ def apply_overrides(
             if not equals or not key:
                 raise RefusedOverride("must read name.field=value", "such as push.force=[0.2,0,0]")
             assignment = assign(tables, key, _value(right.strip()), known)
+            _refuse_missing_list(tables, assignment)
         except RefusedOverride as error:
             refused.append(Problem(f"--set {key or text}", *error.args))
         else:
@@ -111,8 +112,6 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
         path.append(index)
         # Tables that a scene leaves out, such as accuracy, are made on the way.
         if isinstance(container, dict) and index not in container:
-            if re.fullmatch(r"[0-9]+", segments[depth + 1]):
-                raise RefusedOverride(_NOTHING.format(shown(segments[depth + 1])), _no_list(segments[: depth + 1]))
             container[index] = {}
             created = created or tuple(path)
         container = container[index]
@@ -130,8 +129,7 @@ def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> lis
     Raises:
         RefusedOverride: nothing has the name that the key begins with, or the key ends there.
     """
-    # Both loads[0].force and loads.0.force are read.
-    segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
+    segments = _segments(key)
     lists = _lists_by_name(tables)
     first = segments[0]
     if first in lists:
@@ -143,6 +141,11 @@ def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> lis
         problem = f"no load, actuator, rod, support or table is named {shown(first)}"
         raise RefusedOverride(problem, _known_names(first, lists, known))
     return segments
+
+
+def _segments(key: str) -> list[str]:
+    """Names and numbers of a key: both loads[0].force and loads.0.force are read."""
+    return re.sub(r"\[(\d+)\]", r".\1", key).split(".")
 
 
 def _known_names(word: str, lists: Mapping[str, str], known: Sequence[str]) -> str:
@@ -189,7 +192,7 @@ def _index(container: Any, segments: Sequence[str], depth: int) -> Any:
     """
     segment = segments[depth]
     is_number = re.fullmatch(r"[0-9]+", segment) is not None
-    if isinstance(container, dict) and segment and (segment in container or not is_number):
+    if isinstance(container, dict) and segment and (segment in container or not container or not is_number):
         return segment
     if isinstance(container, list):
         for i, entry in enumerate(container):
@@ -226,10 +229,24 @@ def _what_to_write(container: Any, segments: Sequence[str], depth: int) -> str:
     return f"its entries are {there}[0] to {there}[{len(container) - 1}]"
 
 
-def _no_list(segments: Sequence[str]) -> str:
-    """A remedy for an override of an entry of a list that the scene leaves out."""
-    there = _written(segments)
-    return f"the scene has no {there}: set all of it, {there}=[…], or write it into the scene"
+def _refuse_missing_list(tables: dict[str, Any], assignment: Assignment) -> None:
+    """Undo an override of an entry of a list that the scene leaves out, which has become a table.
+
+    Raises:
+        RefusedOverride: it was one.
+    """
+    leaf = assignment.leaf
+    for depth in range(len(assignment.created), len(leaf)):
+        entry = leaf[depth]
+        if not isinstance(entry, str) or not entry.isdigit():
+            continue
+        holder: Any = tables
+        for part in assignment.created[:-1]:
+            holder = holder[part]
+        del holder[assignment.created[-1]]
+        there = _written(_segments(assignment.key)[: depth - len(leaf)])
+        remedy = f"the scene has no {there}: set all of it, {there}=[…], or write it into the scene"
+        raise RefusedOverride(_NOTHING.format(shown(entry)), remedy)
 
 
 def _written(segments: Sequence[str]) -> str:
