@@ -164,7 +164,8 @@ def table_of(columns: Mapping[str, npt.ArrayLike], scratch: Scratch = MEMORY) ->
             problems.append(Problem(name, problem))
     if len(lengths) > 1:
         listed = ", ".join(map(str, sorted(lengths)))
-        problems.append(Problem("table", f"has columns of {listed} rows"))
+        remedy = "columns stand side by side, a row each; numpy.meshgrid and ravel() make those of a grid"
+        problems.append(Problem("table", f"has columns of {listed} rows", remedy))
     if not arrays or not min(lengths):
         problems.append(Problem("table", "holds no row"))
     for name, array in arrays.items():
