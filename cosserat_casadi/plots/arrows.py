@@ -62,7 +62,7 @@ def draw_arrows(canvas: Canvas, arrows: Sequence[Arrow]) -> None:
 
 
 def _draw_sort(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle, every: int) -> None:
-    """Draw arrows of one sort: one of so many, and those that the legend names."""
+    """Draw arrows of one sort: one of every few, and each that the legend names."""
     magnitudes = [float(np.linalg.norm(arrow.vector)) for arrow in arrows]
     largest = max(magnitudes, default=0.0)
     # The largest arrow of a sort has the length that its style gives it, whatever its unit.

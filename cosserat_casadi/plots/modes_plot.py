@@ -31,7 +31,7 @@ MARKED = slice(None, None, 10)
 """Sections that are marked, so that one sees them move along the rod and turn."""
 
 ENDS_MARKED = slice(None, None, len(SECTIONS) // 2)
-"""Those of each of several rods, ends and middles: dots of many rods hide their shapes."""
+"""Sections that are marked of each of several rods, ends and middles: dots of many rods hide their shapes."""
 
 SHARE = 0.2
 """Size of the largest displacement that is drawn, relative to the scene's extent."""
