@@ -206,18 +206,10 @@ class Compiled(LoadedLibrary, CompiledMotion):
             ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
             SceneError: the names of parameters are not those of the scene.
         """
-        given = np.atleast_2d(np.asarray(inputs, dtype=np.float64))
-        if given.ndim != 2 or given.shape[1] != self.inputs.size:
-            raise ValueError(f"inputs must have shape (count, {self.inputs.size}), got {given.shape}")
-        p = self.parameters.rows(parameters)
-        count = len(p) if len(given) == 1 else len(given)
-        if len(p) not in (1, count):
-            raise ValueError(f"there are {len(p)} rows of parameters for {len(given)} rows of inputs")
-        given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
-        p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
+        given, passed = self._rows(inputs, parameters)
+        count = len(given)
         x = np.zeros((count, self.size))
         infos = (self.info_type * count)()
-        passed = [pointer(p)] if self.parameters.size else []
         side_by_side = lanes_files(self._names.name)[0] in self.manifest["files"]
         work = room(self._function("batch_workspace_size")()) if side_by_side else self._workspace()
         self._function("solve_batch")(count, pointer(given), *passed, pointer(x), work, 1, infos)

@@ -69,7 +69,8 @@ def export(
             and their linearisation.
         stability: whether it holds the function that says whether an equilibrium is stable.
         batches: whether its function for many load cases solves them four at a time in the vectors of the processor; a
-            compiler takes about twice as long.
+            compiler takes about twice as long. In exact contact: whether there is that function, which solves one
+            after the other.
         cuda: whether the folder holds the source of batches on a GPU too. Experimental: it was never run on one.
         load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
             arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
@@ -106,7 +107,7 @@ def export(
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
         arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, stability=stability)
-        files = contact_files(model, arrangements, names, error_estimate, verified)
+        files = contact_files(model, arrangements, names, error_estimate, verified, batches=batches)
     else:
         files = folder_files(
             model,

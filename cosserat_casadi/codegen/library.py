@@ -278,10 +278,25 @@ def title_words(
     }
 
 
+ROWS_OF_UNKNOWNS = {
+    "solutions": "real *x",
+    "solution_info": "solver_info",
+    "solution_found": "SOLVER_CONVERGED",
+    "own_of_row": "real *own = x + (size_t)i * N",
+    "own_size": "N * sizeof *own",
+}
+"""Words of a batch whose solutions are unknowns."""
+
+
 def _batch_words(name: str, rows: InLanes | None) -> dict[str, Any]:
     """Words of the function for many load cases, which are solved side by side or one after the other."""
     if rows is None:
-        return {"batch_solve": "solver_solve", "batch_workspace": f"{name}_workspace", "batch_stack": ""}
+        return {
+            **ROWS_OF_UNKNOWNS,
+            "batch_solve": "solver_solve",
+            "batch_workspace": f"{name}_workspace",
+            "batch_stack": "",
+        }
     return {
         **rows.words,
         "in_lanes": True,
@@ -309,7 +324,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
 
     return {
         **sizes,
-        **dict.fromkeys(("of_rods", "with_axes"), True),
+        **dict.fromkeys(("of_rods", "on_cores", "with_axes"), True),
         "family": "solver_",
         **solver_constants(continuation_limits(model), near=MAX_DISTANCE),
         "step_weights": numbers(weights.tolist()),

@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs, listed_values
 from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
+from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -90,6 +92,27 @@ class LoadedLibrary(ABC):
     def clamp(self, inputs: ArgumentValues = None) -> FloatArray:
         """All inputs, stacked, those beyond their ranges moved to the ends of these; what is no number stays."""
         return np.clip(self.inputs.stacked(inputs), self.inputs.lower, self.inputs.upper)
+
+    def _rows(self, inputs: npt.ArrayLike, parameters: ArgumentValues) -> tuple[FloatArray, list[Any]]:
+        """Inputs of many load cases, shape (count, size of the inputs), and what C takes behind them.
+
+        Args:
+            inputs: shape (count, size of the inputs), or those of all rows.
+            parameters: shape (count, size of the parameters), or those of all rows, by name or stacked.
+
+        Raises:
+            ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
+        """
+        given = np.atleast_2d(np.asarray(inputs, dtype=np.float64))
+        if given.ndim != 2 or given.shape[1] != self.inputs.size:
+            raise ValueError(f"inputs must have shape (count, {self.inputs.size}), got {given.shape}")
+        p = self.parameters.rows(parameters)
+        count = len(p) if len(given) == 1 else len(given)
+        if len(p) not in (1, count):
+            raise ValueError(f"there are {len(p)} rows of parameters for {len(given)} rows of inputs")
+        given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
+        p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
+        return given, [pointer(p)] if self.parameters.size else []
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:

@@ -77,7 +77,7 @@ def pulled(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
     )
     folder = tmp_path_factory.mktemp("pulled") / "pulled"
     cases = np.array([[0.0, 0.0, -2.0, 3.0], [0.0, 0.0, -4.0, 3.0]])
-    return exported_contact(wanted, folder, cases, modes=2, nodes=4, stability=True)
+    return exported_contact(wanted, folder, cases, modes=2, nodes=4, stability=True, batches=True)
 
 
 @pytest.mark.slow
@@ -424,6 +424,31 @@ def test_parameters_in_contact(pulled: ContactLibrary) -> None:
         assert_allclose(derivatives["rod"][:, column], tips, rtol=1e-5, atol=1e-8)
         forces = (ends[0].contacts[0].ends[0] - ends[1].contacts[0].ends[0]) / (2 * step[0])
         assert_allclose(of_contacts[0][2, column], forces, rtol=1e-5, atol=0)
+
+
+def test_many_load_cases_in_contact(pulled: ContactLibrary) -> None:
+    """Each is that of a solve from the scene's own inputs, to the last digit; what fails says so and has no pose."""
+    library = pulled.loaded
+    stiffness, *_ = library.parameters.pack()
+    inputs = np.array([[0.0, 0.0, -4.0, 3.0], [0.0, 0.0, -0.1, 3.0], [0.0, np.nan, -1.0, 3.0], [0.0, 0.0, -2.0, 3.0]])
+    p = np.array(
+        [[stiffness, -0.01, 0.0], [1.1 * stiffness, -0.02, 0.0], [stiffness, -0.01, 0.0], [stiffness, 0.0, 0.0]]
+    )
+    found = library.solve_batch(inputs, parameters=p)
+    assert [len(own.contacts) for own in found] == [2, 0, 0, 1]
+    for own, given, values in zip(found, inputs, p, strict=True):
+        alone = library.solve(given, parameters=values)
+        assert own.converged == alone.converged == bool(np.isfinite(given).all())
+        assert own.error_estimate == alone.error_estimate
+        assert own.tips.keys() == alone.tips.keys()
+        for rod_name, tip in own.tips.items():
+            assert_allclose(tip, alone.tips[rod_name], rtol=0, atol=0)
+    assert not found[2].tips and found[2].message == library.solve(inputs[2]).message
+    assert_same(found[3], solve(pulled.model, inputs[3], parameters=p[3]))
+    (shared,) = library.solve_batch(inputs[:1])
+    assert_allclose(shared.tips["rod"], found[0].tips["rod"], rtol=0, atol=0)
+    with pytest.raises(ValueError, match="there are 4 rows of parameters for 3 rows of inputs"):
+        library.solve_batch(inputs[:3], parameters=p)
 
 
 @pytest.mark.slow

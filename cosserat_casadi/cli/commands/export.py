@@ -165,7 +165,11 @@ def export(
         bool, typer.Option("--stability", help="With a function that says whether an equilibrium is stable.")
     ] = False,
     batches: Annotated[
-        bool, typer.Option("--batches", help="With many load cases solved four at a time, in vectors of the processor.")
+        bool,
+        typer.Option(
+            "--batches",
+            help="With many load cases, solved four at a time, in vectors of the processor; in contact one by one.",
+        ),
     ] = False,
     cuda: Annotated[
         bool,
@@ -257,7 +261,7 @@ def _checked_scene(scene: Scene, targets: Targets, sources: SourceOptions, name:
     scene_names(name, scene)
     if sources.parts["stability"]:
         check_stability(build(scene, discretise(scene, 1, 2)))
-    if sources.parts["batches"]:
+    if sources.parts["batches"] and not scene.touches_exactly:
         check_batches(build(scene, discretise(scene, 1, 2)))
     if targets.page is not None:
         # Last: a scene that has no page has none with a compiler either.

@@ -18,7 +18,6 @@ from cosserat_casadi.model.parameters import parameter_layout
 SENTENCES = {
     "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
     "dynamics": "motions in C know no exact contact",
-    "batches": "rods in exact contact have no function for many load cases",
     "cuda": "rods in exact contact have no batches on a GPU",
 }
 """What a folder may hold of other scenes, and why not of these."""

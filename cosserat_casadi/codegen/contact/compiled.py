@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import (
     SOLVED,
@@ -176,6 +177,31 @@ class CompiledContact(LoadedLibrary):
         status = self._function("solve")(pointer(given), *p, state, self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
         return self._answer(state, info, solved=outcome in SOLVED)
+
+    def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ArgumentValues = None) -> list[CompiledContactSolution]:
+        """Equilibria of many load cases, each by itself from the solution of the scene's own inputs.
+
+        Args:
+            inputs: shape (count, size of the inputs), or those of all rows.
+            parameters: shape (count, size of the parameters), or those of all rows, by name or stacked.
+
+        Raises:
+            AttributeError: the folder was exported without batches.
+            ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
+            SceneError: the names of parameters are not those of the scene.
+        """
+        given, passed = self._rows(inputs, parameters)
+        size = self._function("state_size")()
+        states = room(len(given) * size)
+        infos = (ContactInfo * len(given))()
+        self._function("solve_batch")(len(given), pointer(given), *passed, states, self._workspace(), 1, infos)
+        whole = bytes(states)
+        answers = []
+        for row, info in enumerate(infos):
+            state = room(size)
+            ctypes.memmove(state, whole[row * size : (row + 1) * size], size)
+            answers.append(self._answer(state, info, solved=CONTACT_OUTCOMES[info.status] in SOLVED))
+        return answers
 
     def track(
         self,

@@ -119,7 +119,13 @@ SHORTER = 0.7
 
 
 def contact_files(
-    model: Model, chosen: Chosen, names: Names, error_estimate: float | None, verified: Verified | None = None
+    model: Model,
+    chosen: Chosen,
+    names: Names,
+    error_estimate: float | None,
+    verified: Verified | None = None,
+    *,
+    batches: bool = False,
 ) -> dict[str, str]:
     """Text of every file of a folder by name; the manifest, which lists the others, is last.
 
@@ -129,6 +135,7 @@ def contact_files(
         names: what things are called.
         error_estimate: error of the tip pose at the scene's inputs relative to the length.
         verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
+        batches: whether it has a function for many load cases.
     """
     kernels = distance_kernels(chosen, names.kernel("distance"))
     for number, own in enumerate(chosen.equations):
@@ -140,6 +147,8 @@ def contact_files(
     words = _words(chosen, names, tables, generated) | contact_parameter_words(model, names)
     if chosen.judges_stability:
         words |= _stability_words(model, tables)
+    if batches:
+        words |= _batch_words(model, names)
     words |= accuracy_words(chosen.scene, error_estimate, verified)
     further = (*(ERROR_FILES if chosen.richer else ()), *(STABILITY_FILES if chosen.judges_stability else ()))
     files = {
@@ -204,6 +213,24 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "default_parts": TRACK_PARTS,
         **_limits(chosen),
         **status_words(names, CONTACT_OUTCOMES, "CONTACT"),
+    }
+
+
+def _batch_words(model: Model, names: Names) -> dict[str, Any]:
+    """Words of the function for many load cases, whose solutions are states."""
+    given = "inputs + (size_t)i * INPUTS"
+    if model.parameters.size:
+        given = "inputs + (size_t)i * OWN_INPUTS, parameters + (size_t)i * PARAMETERS"
+    return {
+        **dict.fromkeys(("batches", "on_cores"), True),
+        "parameters_in_source": ", const real *parameters" if model.parameters.size else "",
+        "solutions": "contact_state *states",
+        "solution_info": "contact_info",
+        "solution_found": "CONTACT_CONVERGED",
+        "own_of_row": "contact_state *own = states + i",
+        "own_size": "sizeof *own",
+        "batch_solve": f"{names.name}_solve",
+        "given_of_row": given,
     }
 
 

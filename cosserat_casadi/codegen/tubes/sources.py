@@ -12,6 +12,7 @@ from cosserat_casadi.codegen.block_sources import dense_words, numbers
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
+    ROWS_OF_UNKNOWNS,
     SHARED,
     input_words,
     rendered,
@@ -143,6 +144,7 @@ def _words(
         "kept_steps": newton.MAX_REUSES,
         "default_iterations": ALWAYS.iterations,
         "default_continuation_steps": ALWAYS.steps,
+        **ROWS_OF_UNKNOWNS,
         "batch_solve": "tubes_solve",
         "unknowns_under_loads": under_loads if robot.loads else "",
         "pose_macros": _number_macros(names, robot),
