@@ -25,20 +25,28 @@ def seat_disks(tables: dict[str, Any]) -> None:
     """
     if not all(isinstance(tables.get(key, []), list) for key in ("bodies", "joints")):
         return
-    for row in tables_of(tables, "disks"):
-        _unseat(tables, str(row.get("name")))
-    seated: dict[str, list[str]] = {}
     free = [name for entry in _listed(tables, "parameters") for name in (entry if isinstance(entry, list) else [entry])]
+    rows: dict[str, Disks] = {}
+    seated: dict[str, list[str]] = {}
+    for row in tables_of(tables, "disks"):
+        record = sound(Disks, row)
+        if record is None:
+            continue
+        name = str(record.name)
+        stood_alone = _unseat(tables, name)
+        named = [str(entry) for entry in free if str(entry).startswith(f"{name}.")]
+        if any(entry != f"{name}.mass" for entry in named):
+            continue
+        rows.setdefault(name, record)
+        if stood_alone:
+            seated[name] = _seated(tables, record)
     for obstacle in tables_of(tables, "obstacles"):
         for name in list(_listed(obstacle, "disks")) if touches_disks(obstacle) else []:
-            rows = [row for row in tables_of(tables, "disks") if row.get("name") == name]
-            record = sound(Disks, rows[0]) if rows else None
-            named = [str(entry) for entry in free if str(entry).startswith(f"{name}.")]
-            is_parametric = any(entry != f"{name}.mass" for entry in named)
-            if record is None or is_parametric or not isinstance(obstacle.get("bodies", []), list):
+            is_row = isinstance(name, str) and name in rows
+            if not is_row or not isinstance(obstacle.get("bodies", []), list):
                 continue
             if name not in seated:
-                seated[name] = _seated(tables, record)
+                seated[name] = _seated(tables, rows[name])
             obstacle["disks"].remove(name)
             obstacle.setdefault("bodies", []).extend(seated[name])
         if obstacle.get("disks") == [] and "bodies" in obstacle:
@@ -56,10 +64,13 @@ def _seated(tables: dict[str, Any], row: Disks) -> list[str]:
     return names
 
 
-def _unseat(tables: dict[str, Any], row: str) -> None:
+def _unseat(tables: dict[str, Any], row: str) -> bool:
     """Write bodies that an earlier reading wrote for a row as the row again, whose sizes and places may have changed.
 
     The row is written at the obstacles that name all of these bodies; at others their names stay.
+
+    Returns:
+        whether there were such bodies, and no obstacle that the row is written at.
     """
     bodies = [
         body
@@ -67,10 +78,10 @@ def _unseat(tables: dict[str, Any], row: str) -> None:
         if re.fullmatch(re.escape(row) + r"\[\d+\]", str(body.get("name"))) and set(body) == SEATED
     ]
     names = [body["name"] for body in bodies]
+    if not names:
+        return False
     planes = [obstacle for obstacle in tables_of(tables, "obstacles") if touches_disks(obstacle)]
-    touching = [obstacle for obstacle in planes if names and {*names} <= {*_listed(obstacle, "bodies")}]
-    if not touching:
-        return
+    touching = [obstacle for obstacle in planes if {*names} <= {*_listed(obstacle, "bodies")}]
     for obstacle in touching:
         others = [name for name in obstacle["bodies"] if name not in names]
         obstacle["bodies"] = others
@@ -79,6 +90,7 @@ def _unseat(tables: dict[str, Any], row: str) -> None:
         obstacle["disks"] = [*_listed(obstacle, "disks"), row]
     tables["bodies"] = [body for body in tables["bodies"] if body not in bodies]
     tables["joints"] = [joint for joint in tables["joints"] if joint.get("body") not in names or set(joint) != SEAT]
+    return not touching
 
 
 def _listed(table: dict[str, Any], key: str) -> list[Any]:

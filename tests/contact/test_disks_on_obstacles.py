@@ -153,6 +153,15 @@ def test_bodies_that_stand_for_disks_change_with_their_row() -> None:
     beside = scene_from_dict({**tables, "obstacles": [*tables["obstacles"], wall]}, ["disks.d.radius=0.004"])
     assert [body.radius for body in beside.bodies] == [0.004, 0.004]
     assert [obstacle.bodies for obstacle in beside.obstacles] == [("d[0]", "d[1]"), ("d[1]",)]
+    (plane,) = tables["obstacles"]
+    single = {**tables, "obstacles": [plane | {"bodies": ["d[1]"]}]}
+    of_one = scene_from_dict(single, ["disks.d.radius=0.004"])
+    assert [body.radius for body in of_one.bodies] == [0.004, 0.004]
+    assert [obstacle.bodies for obstacle in of_one.obstacles] == [("d[1]",)]
+    with pytest.raises(SceneError, match="no body is named 'd\\[1\\]'"):
+        scene_from_dict(single, ["disks.d.count=1"])
+    with pytest.raises(SceneError):
+        scene_from_dict({**single, "parameters": ["d.radius"]})
     three = scene_from_dict(tables, ["disks.d.count=3"])
     assert [(joint.body, joint.at) for joint in three.joints] == [("d[0]", 1 / 3), ("d[1]", 2 / 3), ("d[2]", 1.0)]
     with pytest.raises(SceneError):
