@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.contact.arrangements import chosen_arrangements
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernel_files import external_sources, kernel_sources
+from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sources
 from cosserat_casadi.codegen.kernels import differentiable, kernels
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import FolderContents, library_sources
@@ -64,7 +64,8 @@ def export(
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
         verified: over which ranges the discretisation keeps the tolerance, for header, README and manifest.
         derivatives: whether the equations are written once more with first and second derivatives, for CasADi: what
-            :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again.
+            :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again. In
+            exact contact they are those of each arrangement of contacts.
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
             and their linearisation.
         stability: whether it holds the function that says whether an equilibrium is stable.
@@ -107,7 +108,9 @@ def export(
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
         arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, stability=stability)
-        files = contact_files(model, arrangements, names, error_estimate, verified, batches=batches)
+        files = contact_files(
+            model, arrangements, names, error_estimate, verified, derivatives=derivatives, batches=batches
+        )
     else:
         files = folder_files(
             model,
@@ -215,7 +218,7 @@ def folder_files(
         "scene.toml": scene_text(with_discretisation(model.scene, model.discretisation)),
     }
     if derivatives:
-        files |= _derivative_source(model, names)
+        files |= derivative_source(differentiable(model, names), names)
     described = manifest(model, names, functions, error_estimate, verified)
     if motion is not None:
         described["motion"] = motion_entry(model)
@@ -265,12 +268,3 @@ def _side_by_side(model: Model, names: Names) -> InLanes:
         remedy = "leave it out: NAME_solve_batch solves them one after the other; one rod with fewer modes may have one"
         raise ExportError(Problem("--batches", problem, remedy))
     return found
-
-
-def _derivative_source(model: Model, names: Names) -> dict[str, str]:
-    stem = f"{names.name}_derivatives"
-    # casadi.external expects the integers that CasADi itself was built with.
-    written = external_sources(differentiable(model, names), stem, "long long int")
-    # Nothing else includes their prototypes.
-    del written[f"{stem}.h"]
-    return written

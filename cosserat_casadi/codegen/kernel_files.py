@@ -123,6 +123,16 @@ def external_sources(functions: Sequence[ca.Function], stem: str, integer: str) 
     return _files(functions, stem, integer, QUIET + OF_EXTERNALS, described=True)
 
 
+def derivative_source(functions: Sequence[ca.Function], names: Names) -> dict[str, str]:
+    """Source of a library's functions with derivatives, for ``casadi.external``, by file name."""
+    stem = f"{names.name}_derivatives"
+    # casadi.external expects the integers that CasADi itself was built with.
+    written = external_sources(functions, stem, "long long int")
+    # Nothing else includes their prototypes.
+    del written[f"{stem}.h"]
+    return written
+
+
 def in_c(kernel: Kernel) -> Kernel:
     """A kernel as printed here; the function itself where CasADi has to print it."""
     if not isinstance(kernel, ca.Function) or chooses(kernel):

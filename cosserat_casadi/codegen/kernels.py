@@ -170,7 +170,11 @@ def differentiable(model: Model, names: Names) -> list[ca.Function]:
     """
     functions = []
     for entry in differentiable_functions(model, names):
-        plain = kernel(model, entry.function, entry.external)
-        reverse = plain.reverse(1)
-        functions += [plain, plain.forward(1), reverse, reverse.forward(1)]
+        functions += with_derivatives(kernel(model, entry.function, entry.external))
     return functions
+
+
+def with_derivatives(plain: ca.Function) -> list[ca.Function]:
+    """A function, its forward and reverse derivatives, and the forward derivative of the latter."""
+    reverse = plain.reverse(1)
+    return [plain, plain.forward(1), reverse, reverse.forward(1)]

@@ -64,7 +64,8 @@ class ContactLibrary:
         manifest = json.loads((self.folder / "manifest.json").read_text())
         name = manifest["name"]
         library = self.folder.parent / f"{name}.so"
-        sources = [self.folder / file for file in (f"{name}.c", f"{name}_kernels.c")]
+        wanted = (f"{name}.c", f"{name}_kernels.c", f"{name}_derivatives.c")
+        sources = [self.folder / file for file in wanted if file in manifest["files"]]
         compile_quickly("-std=c99", *QUICK, "-shared", *sources, "-o", library, "-lm")
         return CompiledContact(library, manifest)
 

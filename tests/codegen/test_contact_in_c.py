@@ -7,6 +7,7 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -138,6 +139,44 @@ def test_derivatives_of_the_tip(bar: ContactLibrary, force: float) -> None:
     assert np.linalg.norm(derivatives["rod"][:3]) > 1e-3
     assert errors[0] < 1e-4
     assert np.log2(errors[0] / errors[1]) > 1.8
+
+
+def test_second_derivatives_of_a_solution(tmp_path: Path, bar: ContactLibrary) -> None:
+    """By the equations of an arrangement for CasADi: the first are those of C, the second are their differences."""
+    own = exported_contact(over_bar(), tmp_path / "bar", down(8.0)[None], 1, 2, derivatives=True, estimate_errors=False)
+    library = own.loaded
+    with pytest.raises(AttributeError, match="export the folder with derivatives"):
+        assert bar.loaded.residual
+    kinds = set()
+    for force in (0.2, 3.0):
+        inputs = down(force)
+        found = library.solve(inputs)
+        kinds.add(len(found.contacts))
+        residual, poses = library.residual[found.arrangement], library.poses[found.arrangement]
+        assert_allclose(residual(found.z, inputs).full(), 0.0, rtol=0, atol=1e-9)
+        assert_allclose(poses(found.z, inputs).full()[:, 0], found.tips["rod"], rtol=0, atol=1e-12)
+        symbols = [ca.MX.sym("z", len(found.z)), ca.MX.sym("inputs", 3)]
+        multipliers = ca.MX.sym("multipliers", len(found.z))
+        tip = poses(*symbols)[2]
+        whole = ca.vertcat(*symbols)
+        hessian, _ = ca.hessian(tip + ca.dot(multipliers, residual(*symbols)), whole)
+        slopes = [ca.jacobian(residual(*symbols), whole), ca.jacobian(tip, whole), hessian]
+        function = ca.Function("second", [*symbols, multipliers], slopes)
+        by_all, tip_by_all, _ = (np.asarray(value.full()) for value in function(found.z, inputs, 0))
+        by_z, by_force = by_all[:, : len(found.z)], by_all[:, -1]
+        direction = np.concatenate([np.linalg.solve(by_z, -by_force), [0, 0, 1]])
+        adjoint = np.linalg.solve(by_z.T, -tip_by_all[0, : len(found.z)])
+        curvature = direction @ function(found.z, inputs, adjoint)[2].full() @ direction
+        derivatives = library.sensitivity(found)
+        assert derivatives is not None
+        assert_allclose(tip_by_all[0] @ direction, derivatives["rod"][2, 2], rtol=1e-9, atol=0)
+        columns = []
+        for step in (1e-3, -1e-3):
+            beside = library.sensitivity(library.solve(down(force - step), found))
+            assert beside is not None
+            columns.append(beside["rod"][2, 2])
+        assert_allclose(curvature, (columns[0] - columns[1]) / 2e-3, rtol=1e-4, atol=0)
+    assert kinds == {0, 1}
 
 
 def test_derivatives_of_a_contact(bar: ContactLibrary) -> None:
@@ -484,8 +523,6 @@ def test_refused_uses(tmp_path: Path) -> None:
     model = build(wanted, discretise(wanted, 1, 2))
     with pytest.raises(ExportError, match=r"no exact contact(?s:.*)no batches on a GPU"):
         export(model, tmp_path / "folder", dynamics=True, cuda=True)
-    with pytest.raises(ExportError, match="no one function for CasADi"):
-        export(model, tmp_path / "folder", derivatives=True)
     with pytest.raises(ExportError, match=r"of shape \(k, 3\), got shape \(1, 2\)"):
         export(model, tmp_path / "folder", load_cases=np.zeros((1, 2)))
     named = ["rod.section.radius", "hook.at"]

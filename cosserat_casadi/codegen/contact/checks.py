@@ -16,7 +16,6 @@ from cosserat_casadi.model.obstacle_checks import held_by_contact
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
-    "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
     "dynamics": "motions in C know no exact contact",
     "cuda": "rods in exact contact have no batches on a GPU",
 }

@@ -6,8 +6,10 @@ import ctypes
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
@@ -22,6 +24,7 @@ from cosserat_casadi.codegen.compiled_results import (
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, budget, by_tip, room
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS
+from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
 from cosserat_casadi.equilibrium.solution import Contact
@@ -89,6 +92,7 @@ class CompiledContactSolution(JudgedAnswer):
         parts: parts of the way of the inputs.
         derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
         body_derivatives: the same of each body.
+        z: unknowns, forces and places of contact of the arrangement, without unit; empty without a solution.
         state: what the next call begins with.
     """
 
@@ -101,6 +105,7 @@ class CompiledContactSolution(JudgedAnswer):
     parts: int
     derivatives: Mapping[str, FloatArray] | None
     body_derivatives: Mapping[str, FloatArray] | None
+    z: FloatArray = field(repr=False)
     state: bytes = field(repr=False)
 
 
@@ -142,6 +147,35 @@ class CompiledContact(LoadedLibrary):
     def _posed(self) -> int:
         """Number of poses: tips of rods, then bodies."""
         return len(self.rods) + len(self.bodies)
+
+    @cached_property
+    def residual(self) -> list[ca.Function]:
+        """For each arrangement (z, inputs) ↦ residual, with exact first and second derivatives.
+
+        z is that of a solution: unknowns, forces and places of contact; parameters stand behind the inputs. Derivatives
+        of a solution follow from these, and hold while its contacts stay: see :meth:`margins`.
+
+        Raises:
+            AttributeError: the folder was exported without derivatives.
+        """
+        return self._externals("residual")
+
+    @cached_property
+    def poses(self) -> list[ca.Function]:
+        """Likewise (z, inputs) ↦ position and quaternion of the tip of each rod, then of each body, stacked.
+
+        Raises:
+            AttributeError: the folder was exported without derivatives.
+        """
+        return self._externals("poses")
+
+    def _externals(self, word: str) -> list[ca.Function]:
+        """A function of each arrangement, for CasADi."""
+        names = Names(self.manifest["name"], tuple(self.rods))
+        if f"{names.name}_derivatives.c" not in self.manifest["files"]:
+            raise AttributeError("export the folder with derivatives: export(..., derivatives=True)")
+        symbols = [f"{names.differentiable(str(number))}_{word}" for number in range(len(self.arrangements))]
+        return [ca.external(symbol, str(self.library)) for symbol in symbols]
 
     @property
     def arrangements(self) -> list[list[dict[str, Any]]]:
@@ -305,8 +339,16 @@ class CompiledContact(LoadedLibrary):
             parts=info.parts,
             derivatives=None if derivatives is None else by_tip(self.rods, derivatives[: len(self.rods)]),
             body_derivatives=None if derivatives is None else by_tip(self.bodies, derivatives[len(self.rods) :]),
+            z=self._z(state) if solved else np.zeros(0),
             state=bytes(state),
         )
+
+    def _z(self, state: Any) -> FloatArray:
+        """Third member of the state, as long as that of its arrangement."""
+        own = self.manifest[ARRANGEMENTS][self._arrangement_of(state)]
+        size = own["unknowns"] + own["forces"] + own["places"]
+        # Two whole numbers come before it.
+        return np.frombuffer(bytes(state), dtype=float, count=size, offset=2 * ctypes.sizeof(ctypes.c_int)).copy()
 
     def _arrangement_of(self, state: Any) -> int:
         """Second member of the state."""

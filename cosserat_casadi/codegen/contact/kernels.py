@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,7 +12,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
-from cosserat_casadi.codegen.kernels import by_columns, kernel
+from cosserat_casadi.codegen.kernels import by_columns, kernel, with_derivatives
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
@@ -79,6 +79,11 @@ class ArrangementKernels:
             BENDS: lambda: self._kernel(BENDS, [self._bends()]),
         }
         return [kernels[word]() for word in self.words]
+
+    def differentiable(self) -> Iterator[ca.Function]:
+        """Residual and poses, each with its derivatives, named as ``casadi.external`` looks for them."""
+        for word, result in (("residual", self._written.residual), ("poses", self._tips())):
+            yield from with_derivatives(self._kernel(word, [result]))
 
     def _jacobian(self) -> Kernel:
         """The Jacobian, by columns where it has such a form that is not too long."""

@@ -17,7 +17,7 @@ from cosserat_casadi.codegen.contact.kernels import (
     words_of,
 )
 from cosserat_casadi.codegen.contact.tables import Tables, described
-from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sources
 from cosserat_casadi.codegen.library import (
     PLAIN_BUILD,
     SECOND_VARIATION,
@@ -125,6 +125,7 @@ def contact_files(
     error_estimate: float | None,
     verified: Verified | None = None,
     *,
+    derivatives: bool = False,
     batches: bool = False,
 ) -> dict[str, str]:
     """Text of every file of a folder by name; the manifest, which lists the others, is last.
@@ -135,6 +136,7 @@ def contact_files(
         names: what things are called.
         error_estimate: error of the tip pose at the scene's inputs relative to the length.
         verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
+        derivatives: whether the equations of each arrangement are written once more with derivatives, for CasADi.
         batches: whether it has a function for many load cases.
     """
     kernels = distance_kernels(chosen, names.kernel("distance"))
@@ -156,6 +158,13 @@ def contact_files(
         **generated,
         "scene.toml": scene_text(with_discretisation(without_contacts(model.scene), model.discretisation)),
     }
+    if derivatives:
+        functions = [
+            function
+            for number, own in enumerate(chosen.equations)
+            for function in ArrangementKernels(own, names.differentiable(str(number))).differentiable()
+        ]
+        files |= derivative_source(functions, names)
     accuracy = accuracy_entries(chosen.scene, error_estimate, verified)
     return with_manifest(files, {**_manifest(model, chosen, names), **accuracy})
 
