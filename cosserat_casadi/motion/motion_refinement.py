@@ -29,9 +29,7 @@ from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
-    COARSER,
     FAR_APART,
-    MOST_TIGHTENINGS,
     SLOPE,
     TIGHTER,
     Companion,
@@ -43,7 +41,6 @@ from cosserat_casadi.motion.simulate import (
     factor_for,
     hangs_on_rounding,
     judged,
-    left_by,
     motion_of,
     not_started,
     started,
@@ -66,10 +63,10 @@ TIME_SHARE = 0.3
 SPACE_SHARE = 0.7
 """Share of the tolerance that the modes and nodes may use up."""
 
-TOLD_ERROR = 0.28
-"""Error of the paths by steps, as a coarser motion tells it, over the power SLOPE of their tolerance: a usual one."""
+TOLD_ERROR = 0.14
+"""Usual error of the paths, as a coarser motion tells it, over the power SLOPE of that one's tolerance of a step."""
 
-TOLD_ERROR_OF_DAMPED = 0.12
+TOLD_ERROR_OF_DAMPED = 0.06
 """The same of rods that are all damped."""
 
 FINE = 2e-4
@@ -289,7 +286,7 @@ def _with_fixed(search: _Search) -> Motion:
     simulator = _simulator(search, model, "on the scene's own modes")
     if not simulator.start.found:
         return not_started(model, simulator.start)
-    timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
+    timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=_first_step_tolerance(search))
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
     level = ResolvedMotion(simulator, timed.history, simulator.paths(timed.history))
@@ -417,15 +414,11 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
         search.time_error = timed.error
         return timed.history
     if not search.levels:
-        damped = all(rod.damping is not None for rod in search.scene.rods)
-        foreseen = TOLD_ERROR_OF_DAMPED if damped else TOLD_ERROR
-        allowed = TIME_SHARE * min(search.tolerance, LOOSEST)
-        search.step_tolerance = (allowed / foreseen) ** (1.0 / SLOPE)
-        if any(obstacle.is_smooth for obstacle in search.scene.obstacles):
-            # Steps that happen to end where a rod meets an obstacle err less than their like.
-            search.step_tolerance = min(search.step_tolerance, search.tolerance / TIGHTER)
+        search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
-        told = told_by_coarser(search.last, search.step_tolerance)
+        told = search.last.simulator.tightened(search.last.history, search.step_tolerance, np.inf)
+        if told.history.outcome is StepOutcome.INTERRUPTED:
+            raise KeyboardInterrupt
         search.time_error = told.error
         wanted = TIME_SHARE * search.tolerance
         if told.error > wanted:
@@ -434,6 +427,18 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
         return simulator.controlled(search.step_tolerance)
     # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
     return simulator.stepped(search.last.history.statistics.largest_step)
+
+
+def _first_step_tolerance(search: _Search) -> float:
+    """Tolerance of a step, over the length, with which motions usually keep to the share of the steps."""
+    damped = all(rod.damping is not None for rod in search.scene.rods)
+    foreseen = TOLD_ERROR_OF_DAMPED if damped else TOLD_ERROR
+    allowed = TIME_SHARE * min(search.tolerance, LOOSEST)
+    first = float((allowed / foreseen) ** (1.0 / SLOPE))
+    if any(obstacle.is_smooth for obstacle in search.scene.obstacles):
+        # Steps that happen to end where a rod meets an obstacle err less than their like.
+        return min(first, search.tolerance / TIGHTER)
+    return first
 
 
 def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
@@ -450,7 +455,7 @@ def _timed(search: _Search) -> TimedHistory:
         return TimedHistory(level.history, search.time_error)
     # What the modes have left over of their share is the steps' to use.
     allowed = max(TIME_SHARE * search.tolerance, search.tolerance - search.space_error)
-    return exact_in_time(level, search.step_tolerance, allowed)
+    return level.simulator.tightened(level.history, search.step_tolerance, allowed)
 
 
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
@@ -470,48 +475,13 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
     left = lacking(timed.history, search.simulation.duration)
     are_exact = timed.error <= max(TIME_SHARE * search.tolerance, search.tolerance - unseen)
     if are_exact and left + timed.error > search.tolerance:
-        search.step_tolerance = timed.tolerance
+        # The first motion that tells an error is TIGHTER times as exact as those of the levels.
+        search.step_tolerance = TIGHTER * timed.tolerance
         paths = level.simulator.paths(timed.history)
         search.levels[-1] = replace(level, history=timed.history, paths=paths)
         return None
     search.levels[-1] = replace(search.last, unseen=left)
     return timed
-
-
-def exact_in_time(level: ResolvedMotion, step_tolerance: float, allowed: float) -> TimedHistory:
-    """The motion of a level with steps that are told to be exact enough, and their error.
-
-    Args:
-        level: the motion.
-        step_tolerance: tolerance of a step, over the length, that it was computed with.
-        allowed: error of the paths over the length.
-    """
-    told = told_by_coarser(level, step_tolerance)
-    for _ in range(MOST_TIGHTENINGS):
-        if not told.history.completed or told.error <= allowed:
-            break
-        told = level.simulator.finer(told, factor_for(told.error, allowed))
-    return told
-
-
-def told_by_coarser(level: ResolvedMotion, step_tolerance: float) -> TimedHistory:
-    """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
-
-    Args:
-        level: the motion.
-        step_tolerance: tolerance of a step, over the length, that it was computed with.
-    """
-    simulator = level.simulator
-    coarse = simulator.controlled(COARSER * step_tolerance)
-    if coarse.outcome is StepOutcome.INTERRUPTED:
-        return TimedHistory(coarse, float("nan"))
-    if coarse.completed and coarse.statistics.steps >= level.history.statistics.steps:
-        # Its steps are no longer ones, whatever the tolerance: the two motions say nothing of their error.
-        return simulator.told_by_half(level.history, step_tolerance)
-    error = float("inf")
-    if coarse.completed:
-        error = left_by(COARSER) * path_distance(simulator.paths(coarse), level.paths)
-    return TimedHistory(level.history, error, step_tolerance, Companion(coarse, left_by(COARSER)))
 
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:

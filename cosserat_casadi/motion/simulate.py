@@ -53,16 +53,22 @@ Tell = Callable[[MotionProgress], None]
 """A function that is called with the progress after every step."""
 
 TIGHTER = 10.0
-"""Factor between the tolerances of a step of two motions that are compared."""
+"""Factor between the tolerances of a step of the first two motions that are compared."""
 
-COARSER = 3.0
-"""Factor between the tolerances of a step of a motion and of the coarser one that tells its error."""
+LEAST_TIGHTENING = 3.0
+"""Least factor between those of further ones."""
 
 SLOPE = 0.8
 """Power of a step's tolerance that the error of the paths is taken to go with."""
 
-LEAST_SLOPE = 0.5
-"""Power that it is at least taken to go with, where two motions tell an error."""
+LEAST_SLOPE = 0.3
+"""Power that it is at least taken to go with, where two motions tell an error.
+
+It is 0.8 in the mean, but less between some motions: steps of one may happen to suit the motion.
+"""
+
+FEW_STEPS = 10.0
+"""Number of steps at which a told error counts twice: a few steps may happen to suit the motion."""
 
 HALVED = 4.0 / 3.0
 """Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
@@ -132,6 +138,11 @@ class TimedHistory:
     error: float
     tolerance: float = float("nan")
     companion: Companion | None = None
+
+    @property
+    def distance(self) -> float:
+        """Distance of the paths from those of the motion by which the error was told; nan without one."""
+        return float("nan") if self.companion is None else self.error / self.companion.factor
 
 
 @dataclass(frozen=True)
@@ -247,7 +258,7 @@ class Simulator:
             if not timed.history.completed:
                 break
             timed = self.finer(timed, factor)
-            distance = timed.error / left_by(factor)
+            distance = timed.distance
             if hangs_on_rounding(timed.history, distance, before, tolerance):
                 return replace(timed, error=distance)
             if timed.error <= tolerance:
@@ -260,10 +271,14 @@ class Simulator:
 
     def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
         """The motion with a tolerance of a step that is smaller by a factor, and its error by the distance."""
-        fine = self.controlled(timed.tolerance / factor)
+        tolerance = timed.tolerance / factor
+        fine = self.controlled(tolerance)
+        if fine.completed and fine.statistics.steps <= timed.history.statistics.steps:
+            # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
+            return self.told_by_half(fine, tolerance)
         distance = path_distance(self.paths(timed.history), self.paths(fine))
-        left = left_by(factor)
-        return TimedHistory(fine, left * distance, timed.tolerance / factor, Companion(timed.history, left))
+        left = left_by(factor) * (1.0 + FEW_STEPS / max(fine.statistics.steps, 1))
+        return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:
         history = self.stepped(size)
@@ -336,7 +351,7 @@ class Simulator:
 def hangs_on_rounding(history: History, distance: float, before: float, tolerance: float) -> bool:
     """Whether impacts make a motion erratic: more exact steps do not bring its paths nearer to a limit.
 
-    Errors that go with LEAST_SLOPE or faster fall to a third from one distance to the next.
+    Errors that go with LEAST_SLOPE or faster fall to a half from one distance to the next.
 
     Args:
         history: the motion.
@@ -356,8 +371,8 @@ def left_by(factor: float) -> float:
 def factor_for(error: float, tolerance: float) -> float:
     """Factor by which a smaller tolerance of a step has the error meet a tolerance."""
     if not np.isfinite(error):
-        return COARSER
-    return float(np.clip((error / tolerance) ** (1.0 / SLOPE), COARSER, TIGHTER))
+        return LEAST_TIGHTENING
+    return float(np.clip((error / tolerance) ** (1.0 / SLOPE), LEAST_TIGHTENING, TIGHTER))
 
 
 def simulate(
