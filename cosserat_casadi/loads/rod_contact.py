@@ -35,7 +35,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 
-PANEL = 32
+PANEL = 16
 """Sections of a panel."""
 
 DATA = 3
@@ -317,6 +317,37 @@ def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix], al
 
 
 @cache
+def panel_friction_rates(along_path: bool, first: int, second: int) -> ca.Function:
+    """The same, and derivatives of positions and data with numbers ↦ derivatives of friction with these.
+
+    Args:
+        along_path: whether motions are those since the last point of a path.
+        first: numbers n on which the sections of the first panel depend.
+        second: numbers m of those of the second.
+
+    Returns:
+        function whose last arguments are the derivatives of the second panel, m×(3 PANEL) and m×((DATA + MOTION)
+        PANEL), and those of the first. Its results are the derivatives of [force; moment] on the sections of the first
+        panel and of the second with the numbers of the first, n×(6 PANEL), then with those of the second, m×(6 PANEL).
+    """
+    arguments = _panels(DATA + MOTION)
+    loads = [ca.MX(6, PANEL), ca.MX(6, PANEL)]
+    blocks = _friction_jacobian(arguments, loads, along_path).call([*arguments, *loads])
+    sizes = {"second": second, "first": first}
+    rates = [
+        ca.MX.sym(f"rates_of_{owner}_{index}", count, symbol.numel())
+        for owner, count in sizes.items()
+        for index, symbol in enumerate(arguments[:2])
+    ]
+    results = [
+        sum(rate @ block.T for rate, block in zip(own, blocks[start + place : start + place + 2], strict=True))
+        for own, place in ((rates[2:], 0), (rates[:2], 2))
+        for start in (0, len(arguments))
+    ]
+    return ca.Function("friction_rates", [*arguments, *rates], results)
+
+
+@cache
 def panel_stiffness(count: int) -> ca.Function:
     """The same, and a motion of the second panel ↦ second derivatives of the energy.
 
@@ -466,6 +497,22 @@ class SectionPairs:
         other = _with_coordinates(self._of_second(by_second), second)
         return own, across, other
 
+    def friction_rates(self, first: Sequence[Matrix], second: Sequence[Matrix]) -> tuple[list[Matrix], list[Matrix]]:
+        """Derivatives of :attr:`friction` with n numbers of the first sections and with m of the second.
+
+        Args:
+            first: derivatives of positions, n×3S, and of data with motions behind them, n×(DATA + MOTION)S.
+            second: the same of the second, m×….
+
+        Returns:
+            derivatives of the loads on the first, n×6S, and on the second; the same with the numbers of the second.
+        """
+        function = panel_friction_rates(self.along_path, first[0].shape[0], second[0].shape[0])
+        fields = self._moving._over_pairs(function, *second, *first)
+        on_both = [self._of_first, self._of_second] * 2
+        by_first, by_second, *others = (add(field, width=6) for add, field in zip(on_both, fields, strict=True))
+        return [by_first, by_second], others
+
     def _over_pairs(self, function: ca.Function, *motion: Matrix) -> list[Matrix]:
         """Results of a function of two panels for all pairs, the first running faster; zeros where rods are apart."""
         of_all = _all_pairs(function, self.first.panels, self.second.panels)
@@ -481,12 +528,13 @@ class SectionPairs:
         summed: Matrix = ca.reshape(ca.sum2(by_panel), rows, columns)
         return summed
 
-    def _of_second(self, field: Matrix) -> Matrix:
-        """Sum over the panels of the first of what each pair gives to the second, one column for each section."""
-        rows, columns = field.shape[0], self.first.positions.shape[1]
+    def _of_second(self, field: Matrix, width: int = 1) -> Matrix:
+        """Sum over the panels of the first of what each pair gives to the second, width columns for each section."""
+        rows, columns = field.shape[0], width * self.first.positions.shape[1]
         by_panel = ca.reshape(field, rows * columns, self.second.panels)
-        summed: Matrix = ca.reshape(ca.repsum(by_panel, self.first.panels, 1), rows, self.second.positions.shape[1])
-        return summed
+        summed = ca.repsum(by_panel, self.first.panels, 1)
+        by_section: Matrix = ca.reshape(summed, rows, width * self.second.positions.shape[1])
+        return by_section
 
 
 @cache
@@ -494,19 +542,19 @@ def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
     """A function of two panels for all pairs of so many panels, the first running faster.
 
     Args:
-        function: of two panels, the law, and a motion of the second where there is one.
+        function: of two panels, the law, and what else ARGUMENTS names.
         first: panels of the first rod.
         second: panels of the second.
 
     Returns:
         the arguments for all panels, and their balls ↦ its results side by side.
     """
-    counts = {"first": first, "second": second, "motion": second, "law": 1}
+    counts = {"first": first, "second": second, "law": 1}
     symbols = []
     arguments = []
     for i in range(function.n_in()):
         rows, columns = function.size_in(i)
-        owner = ARGUMENTS[min(i, len(ARGUMENTS) - 1)]
+        owner = ARGUMENTS[i]
         symbol = ca.MX.sym(f"all_{i}", rows, columns * counts[owner])
         symbols.append(symbol)
         arguments.append(_arranged(symbol, owner, first, second))
@@ -519,8 +567,8 @@ def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
     return ca.Function(f"{function.name()}_of_pairs", [*symbols, *balls], results)
 
 
-ARGUMENTS = ("first", "first", "second", "second", "law", "motion")
-"""Owners of the arguments of a function of two panels."""
+ARGUMENTS = ("first", "first", "second", "second", "law", "second", "second", "first", "first")
+"""Owners of the arguments of a function of two panels: behind the law how they move, or their derivatives."""
 
 LAW_ARGUMENT = ARGUMENTS.index("law")
 """Place of the law among them."""

@@ -8,6 +8,7 @@ model/scene_motion_equations.py.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -62,8 +63,21 @@ def seen_motion(system: System, rod: str, body: str | None) -> SeenMotion:
     return SeenMotion(own.velocity - carried, own.angular_velocity - turning)
 
 
+class Drag(ABC):
+    """A drag, and its derivatives."""
+
+    @property
+    @abstractmethod
+    def frictions(self) -> Sequence[Matrix]:
+        """The drag on what it acts on, and on what bears the opposite."""
+
+    def friction_jacobian(self, argument: Matrix) -> Matrix:
+        """Derivative of the drag on the rod and on the body, stacked, with an argument."""
+        return ca.jacobian(ca.vertcat(*map(ca.vec, self.frictions)), argument)
+
+
 @dataclass(frozen=True)
-class RodDrag:
+class RodDrag(Drag):
     """The drag of a load on a rod, whose opposite a body bears.
 
     Attributes:
@@ -127,7 +141,7 @@ class RodDrag:
 
 
 @dataclass(frozen=True)
-class BodyDrag:
+class BodyDrag(Drag):
     """The drag of a load on a body.
 
     Attributes:

@@ -289,6 +289,24 @@ class PairTerms:
         first, second = self.section_pairs.friction
         return [first + second] if self.pair.itself else [first, second]
 
+    def friction_jacobian(self, argument: Matrix) -> Matrix:
+        """Derivative of the frictions, stacked, with an argument that nothing but places and motions depend on."""
+        columns = []
+        rates = []
+        for sections in (self.section_pairs.first, self.section_pairs.second):
+            fields = (sections.positions, ca.vertcat(sections.data, sections.motion))
+            derivatives = [ca.jacobian(ca.vec(field), argument) for field in fields]
+            columns.append(sorted({column for field in derivatives for column in field.sparsity().get_triplet()[1]}))
+            rates.append([ca.densify(field[:, columns[-1]]).T for field in derivatives])
+        parts = self.section_pairs.friction_rates(*rates)
+        jacobian = ca.MX(sum(friction.numel() for friction in self.frictions), argument.numel())
+        for own, loads in zip(columns, parts, strict=True):
+            stacked = sum(loads[1:], loads[0]) if self.pair.itself else ca.horzcat(*loads)
+            part = ca.MX(*jacobian.shape)
+            part[:, own] = stacked.T
+            jacobian += part
+        return jacobian
+
     @cached_property
     def stiffness(self) -> dict[tuple[str, str], Matrix]:
         """Gᵀ H G by rods, in the coordinates of each side, J."""

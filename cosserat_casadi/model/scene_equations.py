@@ -88,6 +88,7 @@ def by_friction(system: System, arguments: Sequence[Matrix]) -> list[Matrix]:
     parts = iter(ca.reshape(part, 6, part.numel() // 6) for part in ca.vertsplit(symbol, ends))
     given = {terms.name: [next(parts) for _ in terms.frictions] for terms in system.rubbing}
     rows = SceneEquations(replace(system, friction=given)).residual
-    changes = [ca.jtimes(rows, symbol, ca.densify(ca.jacobian(loads, argument))) for argument in arguments]
+    loads_by = [ca.vertcat(*[terms.friction_jacobian(argument) for terms in system.rubbing]) for argument in arguments]
+    changes = [ca.jtimes(rows, symbol, ca.densify(derivative)) for derivative in loads_by]
     derivatives: list[Matrix] = ca.substitute(changes, [symbol], [loads])
     return derivatives

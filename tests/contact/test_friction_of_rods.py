@@ -330,6 +330,24 @@ def coil() -> Model:
     return build(scene, discretise(scene, 3, 5))
 
 
+@pytest.mark.parametrize(("dragged", "slipping"), [(1e-3, False), (5e-2, True)])
+def test_derivatives_of_a_rod_that_rubs_on_itself_are_those_of_differences(dragged: float, slipping: bool) -> None:
+    """Where sections stick and slip, dragged from another shape."""
+    pressed = solve(coil(), {"press.force": [0, -8, 0]}, estimate_error=False)
+    model = coil().with_memory
+    inputs = model.pack({"press.force": [0, -8, 0]})
+    shift, change = np.random.default_rng(3).normal(size=(2, model.size))
+    history, _, _ = model.memory(pressed.x + dragged * shift, inputs)
+    inputs[model.inputs.memory] = history.full().ravel(order="F")
+    _, slips, _ = model.memory(pressed.x, inputs)
+    assert slips.full().max() > 0.0
+    assert (slips.full().max() > 1.0) == slipping
+    steps = 1e-7 * np.array([change, -change])
+    ends = [model.residual(pressed.x + step, inputs).full()[:, 0] for step in steps]
+    slope = model.path_jacobian(pressed.x, inputs, 1.0).full() @ steps[0]
+    assert_allclose(slope, (ends[0] - ends[1]) / 2, rtol=0, atol=1e-5 * np.abs(slope).max())
+
+
 @pytest.mark.slow
 def test_a_rod_rubs_on_itself() -> None:
     """As a block under Coulomb's law: force and moment of the base are those of the loads alone, and energy leaves."""

@@ -22,7 +22,7 @@ RADIUS = 5e-3
 WIDTH = 2e-3
 TOUCHING = 2 * RADIUS
 STIFFNESS = 1e6
-SECTIONS = 6 * PANEL
+SECTIONS = 12 * PANEL
 
 
 def pushed(positions: FloatArray, other: FloatArray) -> tuple[float, FloatArray]:
