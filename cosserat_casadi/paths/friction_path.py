@@ -8,6 +8,7 @@ up to date. Between two points friction goes from the one state to the other: im
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 
@@ -31,6 +32,9 @@ QUICK = NewtonSettings(iterations=20)
 
 SHORTEST = 1e-6
 """Share of the input below which an increment counts as stalled."""
+
+WITHIN = 0.9
+"""Share of the longest change of the shape that an increment goes for, as the last one foretells it."""
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -107,6 +111,16 @@ def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longe
     return found if found.converged and near and not passes else None
 
 
+def _foretold(points: list[_Point], longest: float) -> float:
+    """Increment of the factor in which a shape that goes on changing as it did last changes by the longest way."""
+    if len(points) < 2:
+        return inf
+    before, last = points[-2:]
+    places = last.solution.model.discrete.unknowns.differential
+    way = float(np.linalg.norm((last.solution.x - before.solution.x)[places]))
+    return longest * (last.factor - before.factor) / way if way > 0.0 else inf
+
+
 def follow_friction_path(
     model: Model,
     name: str,
@@ -141,7 +155,7 @@ def follow_friction_path(
     step = settings.first
     while outcome is None:
         before = points[-1]
-        step = min(step, settings.load_factor_change)
+        step = min(step, settings.load_factor_change, WITHIN * _foretold(points, settings.longest))
         factor = min(before.factor + step, 1.0)
         if 1.0 - factor < SHORTEST:
             factor = 1.0
