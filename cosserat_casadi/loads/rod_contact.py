@@ -20,9 +20,8 @@ that sticks is held by a spring of the stiffness μ F/s, which slips where it is
 however hard F the sections press. Sections that are pressed harder while they stick give back energy, μ F s/2 at most.
 
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
-the bounding balls of two panels meet is mapped over all pairs of panels, inside one that is only called where those of
-both rods meet. So rods that are apart cost the sums over their sections, and others one comparison, and one sum, for
-each pair of panels.
+the bounding balls of two panels meet is mapped over the panels of the second rod, inside one that is only called where
+a panel of the first meets any of these. So panels that are apart cost one comparison each.
 """
 
 from __future__ import annotations
@@ -227,11 +226,11 @@ def _by_pair(kernel: ca.Function, arguments: Sequence[Matrix]) -> Matrix:
     return result
 
 
-def _over_second(results: Matrix) -> Matrix:
-    """Sum over the sections of the second panel of results of all pairs, side by side for the first."""
+def _over_second(results: Matrix, count: int = PANEL) -> Matrix:
+    """Sum of what stands side by side for the sections of the second panel, or for so many panels."""
     rows, columns = results.shape
-    summed = ca.sum2(ca.reshape(results, rows * columns // PANEL, PANEL))
-    by_section: Matrix = ca.reshape(summed, rows, columns // PANEL)
+    summed = ca.sum2(ca.reshape(results, rows * columns // count, count))
+    by_section: Matrix = ca.reshape(summed, rows, columns // count)
     return by_section
 
 
@@ -411,14 +410,6 @@ class SectionsInContact:
         balls: Matrix = _ball().map(self.panels)(self.positions, self.data[:DATA, :])
         return balls
 
-    @cached_property
-    def ball(self) -> Matrix:
-        """The same of all of them, 6×1, m."""
-        centre = ca.sum2(self.balls[:3, :]) / self.panels
-        reach = ca.sqrt(ca.sum1((self.balls[:3, :] - ca.repmat(centre, 1, self.panels)) ** 2)) + self.balls[3, :]
-        ball: Matrix = ca.vertcat(centre, ca.mmax(reach), self.balls[4, 0], self.balls[5, -1])
-        return ball
-
 
 def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
     """Whether sections in balls, 6×k each, may push each other, 1×k."""
@@ -446,32 +437,32 @@ class SectionPairs:
     @cached_property
     def energy(self) -> Matrix:
         """Energy, 1×1, J."""
-        (energies,) = self._over_pairs(panel_energy())
+        (energies,) = self._over_pairs(panel_energy(), "e")
         return ca.sum2(energies)
 
     @cached_property
     def depth(self) -> Matrix:
         """Depth where it is largest, in widths, 1×1; FAR where nothing touches."""
-        (depths,) = self._over_pairs(panel_depth())
+        (depths,) = self._over_pairs(panel_depth(), "e")
         return ca.mmax(depths) + FAR
 
     @cached_property
     def gradient(self) -> tuple[Matrix, Matrix]:
         """Derivatives of the energy with the positions of both, 3×S each, N."""
-        first, second = self._over_pairs(panel_gradient())
-        return self._of_first(first), self._of_second(second)
+        first, second = self._over_pairs(panel_gradient(), "fs")
+        return first, second
 
     @cached_property
     def friction(self) -> tuple[Matrix, Matrix]:
         """[Force; moment] of friction on the sections of both, 6×S each, N and N m, of sections in motion."""
-        first, second = self._moving._over_pairs(panel_friction(self.along_path))
-        return self._of_first(first), self._of_second(second)
+        first, second = self._moving._over_pairs(panel_friction(self.along_path), "fs")
+        return first, second
 
     @cached_property
     def way(self) -> Matrix:
         """Of each section of the first: sums of way, of normal and of one, times the force between them, 7×S."""
-        (weighted,) = self._moving._over_pairs(panel_way())
-        return self._of_first(weighted)
+        (weighted,) = self._moving._over_pairs(panel_way(), "f")
+        return weighted
 
     @property
     def _moving(self) -> SectionPairs:
@@ -490,12 +481,10 @@ class SectionPairs:
         Returns:
             n×n, m×n and m×m.
         """
-        by_first, by_second, mixed = self._over_pairs(panel_stiffness(second.shape[0] // 3), second)
+        by_first, by_second, mixed = self._over_pairs(panel_stiffness(second.shape[0] // 3), "fsf", second)
         sections = self.first.positions.shape[1]
-        across = self._of_first(mixed, width=3) @ ca.reshape(first, first.shape[0] // 3, 3 * sections).T
-        own = _with_coordinates(self._of_first(by_first), first)
-        other = _with_coordinates(self._of_second(by_second), second)
-        return own, across, other
+        across = mixed @ ca.reshape(first, first.shape[0] // 3, 3 * sections).T
+        return _with_coordinates(by_first, first), across, _with_coordinates(by_second, second)
 
     def friction_rates(self, first: Sequence[Matrix], second: Sequence[Matrix]) -> tuple[list[Matrix], list[Matrix]]:
         """Derivatives of :attr:`friction` with n numbers of the first sections and with m of the second.
@@ -508,63 +497,62 @@ class SectionPairs:
             derivatives of the loads on the first, n×6S, and on the second; the same with the numbers of the second.
         """
         function = panel_friction_rates(self.along_path, first[0].shape[0], second[0].shape[0])
-        fields = self._moving._over_pairs(function, *second, *first)
-        on_both = [self._of_first, self._of_second] * 2
-        by_first, by_second, *others = (add(field, width=6) for add, field in zip(on_both, fields, strict=True))
-        return [by_first, by_second], others
+        rates = self._moving._over_pairs(function, "fsfs", *second, *first)
+        return rates[:2], rates[2:]
 
-    def _over_pairs(self, function: ca.Function, *motion: Matrix) -> list[Matrix]:
-        """Results of a function of two panels for all pairs, the first running faster; zeros where rods are apart."""
-        of_all = _all_pairs(function, self.first.panels, self.second.panels)
-        sections = [self.first.positions, self.first.data, self.second.positions, self.second.data]
-        arguments = [*sections, self.law, *motion, self.first.balls, self.second.balls]
-        near = _meet(self.first.ball, self.second.ball, self.law)
-        return list(called_near(of_all).call([near, *arguments]))
+    def _over_pairs(self, function: ca.Function, results: str, *motion: Matrix) -> list[Matrix]:
+        """Results of a function of two panels for all pairs; zeros where sections are apart.
 
-    def _of_first(self, field: Matrix, width: int = 1) -> Matrix:
-        """Sum over the panels of the second of what each pair gives to the first, width columns for each section."""
-        rows, columns = field.shape[0], width * self.first.positions.shape[1]
-        by_panel = ca.reshape(field, rows * columns, self.second.panels)
-        summed: Matrix = ca.reshape(ca.sum2(by_panel), rows, columns)
-        return summed
-
-    def _of_second(self, field: Matrix, width: int = 1) -> Matrix:
-        """Sum over the panels of the first of what each pair gives to the second, width columns for each section."""
-        rows, columns = field.shape[0], width * self.first.positions.shape[1]
-        by_panel = ca.reshape(field, rows * columns, self.second.panels)
-        summed = ca.repsum(by_panel, self.first.panels, 1)
-        by_section: Matrix = ca.reshape(summed, rows, width * self.second.positions.shape[1])
-        return by_section
+        Args:
+            function: of two panels, the law, and what else ARGUMENTS names.
+            results: a letter each. Of the sections of the first, ``f``, they are summed over the panels of the second;
+                of those of the second, ``s``, over the panels of the first; those of each pair, ``e``, stand side by
+                side.
+            motion: the further arguments.
+        """
+        near_row = called_near(_row(function, results, self.second.panels))
+        of_all = [self.first.positions, self.first.data, self.second.positions, self.second.data, self.law, *motion]
+        # One call for each panel of the first: what belongs to the second is not copied for it.
+        by_panel = [
+            ca.horzsplit(field, field.shape[1] // self.first.panels)
+            if owner == "first"
+            else [field] * self.first.panels
+            for field, owner in zip(of_all, ARGUMENTS, strict=False)
+        ]
+        rows = []
+        for ball, *arguments in zip(ca.horzsplit(self.first.balls), *by_panel, strict=True):
+            near = ca.mmax(_meet(ca.repmat(ball, 1, self.second.panels), self.second.balls, self.law))
+            rows.append(near_row.call([near, *arguments, ball, self.second.balls]))
+        fields = zip(results, zip(*rows, strict=True), strict=True)
+        return [sum(parts[1:], parts[0]) if of == "s" else ca.horzcat(*parts) for of, parts in fields]
 
 
 @cache
-def _all_pairs(function: ca.Function, first: int, second: int) -> ca.Function:
-    """A function of two panels for all pairs of so many panels, the first running faster.
+def _row(function: ca.Function, results: str, panels: int) -> ca.Function:
+    """A function of two panels for one panel of the first rod and all of the second.
 
     Args:
         function: of two panels, the law, and what else ARGUMENTS names.
-        first: panels of the first rod.
-        second: panels of the second.
+        results: as :meth:`SectionPairs._over_pairs` takes them.
+        panels: of the second rod.
 
     Returns:
-        the arguments for all panels, and their balls ↦ its results side by side.
+        the arguments for all panels, and their balls ↦ the results.
     """
-    counts = {"first": first, "second": second, "law": 1}
-    symbols = []
-    arguments = []
-    for i in range(function.n_in()):
-        rows, columns = function.size_in(i)
-        owner = ARGUMENTS[i]
-        symbol = ca.MX.sym(f"all_{i}", rows, columns * counts[owner])
-        symbols.append(symbol)
-        arguments.append(_arranged(symbol, owner, first, second))
-    balls = [ca.MX.sym(name, 6, counts[name]) for name in ("first", "second")]
-    first_balls, second_balls = (
-        _arranged(ball, name, first, second) for ball, name in zip(balls, counts, strict=False)
-    )
-    near = _meet(first_balls, second_balls, symbols[LAW_ARGUMENT])
-    results = called_near(function).map(first * second).call([near, *arguments])
-    return ca.Function(f"{function.name()}_of_pairs", [*symbols, *balls], results)
+    owners = [*ARGUMENTS[: function.n_in()], "first", "second"]
+    sizes = [*(function.size_in(i) for i in range(function.n_in())), (6, 1), (6, 1)]
+    symbols = [
+        ca.MX.sym(f"all_{i}", rows, columns * panels if owner == "second" else columns)
+        for i, ((rows, columns), owner) in enumerate(zip(sizes, owners, strict=True))
+    ]
+    arguments = [
+        symbol if owner == "second" else ca.repmat(symbol, 1, panels)
+        for symbol, owner in zip(symbols, owners, strict=True)
+    ]
+    near = _meet(arguments[-2], arguments[-1], symbols[LAW_ARGUMENT])
+    fields = called_near(function).map(panels).call([near, *arguments[:-2]])
+    summed = [_over_second(field, panels) if of == "f" else field for field, of in zip(fields, results, strict=True)]
+    return ca.Function(f"{function.name()}_of_row", symbols, summed)
 
 
 ARGUMENTS = ("first", "first", "second", "second", "law", "second", "second", "first", "first")
