@@ -479,12 +479,18 @@ class SectionPairs:
             second: the same of the second, 3m×S.
 
         Returns:
-            n×n, m×n and m×m.
+            n×n, m×n and m×m; of a rod that touches itself the first is the sum of both, and the last is zero.
         """
         by_first, by_second, mixed = self._over_pairs(panel_stiffness(second.shape[0] // 3), "fsf", second)
-        sections = self.first.positions.shape[1]
-        across = mixed @ ca.reshape(first, first.shape[0] // 3, 3 * sections).T
-        return _with_coordinates(by_first, first), across, _with_coordinates(by_second, second)
+        touch = ca.norm_1(ca.vec(by_first)) > 0.0
+        count, sections = first.shape[0] // 3, self.first.positions.shape[1]
+        (across,) = called_near(_across(count, second.shape[0] // 3, sections)).call([touch, mixed, first])
+        own = called_near(_with_coordinates(count, sections))
+        if first is second:
+            (both,) = own.call([touch, by_first + by_second, first])
+            return both, across, ca.DM(count, count)
+        other = called_near(_with_coordinates(second.shape[0] // 3, second.shape[1]))
+        return own(touch, by_first, first), across, other(touch, by_second, second)
 
     def friction_rates(self, first: Sequence[Matrix], second: Sequence[Matrix]) -> tuple[list[Matrix], list[Matrix]]:
         """Derivatives of :attr:`friction` with n numbers of the first sections and with m of the second.
@@ -573,12 +579,21 @@ def _arranged(field: Matrix, owner: str, first: int, second: int) -> Matrix:
     return ca.reshape(ca.repmat(panels, first, 1), rows, columns * first)
 
 
-def _with_coordinates(hessian: Matrix, motion: Matrix) -> Matrix:
-    """Second derivative with n coordinates, n×n, from the derivatives with each section, 9×S, and its motion, 3n×S."""
-    components = ca.vertsplit(motion, motion.shape[0] // 3)
+@cache
+def _across(first: int, second: int, sections: int) -> ca.Function:
+    """(derivatives with m coordinates and the positions of sections, m×3S, motion of these, 3n×S) ↦ m×n."""
+    mixed, motion = ca.MX.sym("mixed", second, 3 * sections), ca.MX.sym("motion", 3 * first, sections)
+    return ca.Function("across", [mixed, motion], [mixed @ ca.reshape(motion, first, 3 * sections).T])
+
+
+@cache
+def _with_coordinates(count: int, sections: int) -> ca.Function:
+    """(derivatives with each section, 9×S, and its motion, 3n×S) ↦ second derivative with n coordinates, n×n."""
+    hessian, motion = ca.MX.sym("hessian", 9, sections), ca.MX.sym("motion", 3 * count, sections)
+    components = ca.vertsplit(motion, count)
     entries = ca.vertsplit(hessian)
     rows = []
     for i in range(3):
         terms = [components[j] @ ca.diag(entries[3 * i + j]) for j in range(3)]
         rows.append(components[i] @ (terms[0] + terms[1] + terms[2]).T)
-    return rows[0] + rows[1] + rows[2]
+    return ca.Function("with_coordinates", [hessian, motion], [rows[0] + rows[1] + rows[2]])
