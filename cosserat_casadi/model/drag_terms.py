@@ -69,7 +69,7 @@ class Drag(ABC):
     @property
     @abstractmethod
     def frictions(self) -> Sequence[Matrix]:
-        """The drag on what it acts on, and on what bears the opposite."""
+        """Wrenches of the drag, and of the opposite that a body or a section bears; world axes."""
 
     def friction_jacobian(self, argument: Matrix) -> Matrix:
         """Derivative of the drag on the rod and on the body, stacked, with an argument."""

@@ -290,7 +290,7 @@ class PairTerms:
         return [first + second] if self.pair.itself else [first, second]
 
     def friction_jacobian(self, argument: Matrix) -> Matrix:
-        """Derivative of the frictions, stacked, with an argument that nothing but places and motions depend on."""
+        """Derivative of the frictions, stacked, with unknowns or velocities, by places and motions of the sections."""
         columns = []
         rates = []
         for sections in (self.section_pairs.first, self.section_pairs.second):
