@@ -129,24 +129,21 @@ def kept_texts(name: str, made_from: Sequence[Any], write: Callable[[], Mapping[
         made_from: the model and all options on which the texts depend.
         write: writes the texts.
     """
-    kept = texts_in_cache(name, made_from)
+    key = key_of(*made_from)
+    kept = None if key is None else _texts_in_cache(f"{name}-{key}")
     if kept is not None:
         return kept
     written = dict(write())
-    key = key_of(*made_from)
     # Sources that changed meanwhile may have written parts of it.
     if key is not None and sources_hash() is not None:
         _keep_texts(cache_folder(), f"{name}-{key}", written)
     return written
 
 
-def texts_in_cache(name: str, made_from: Sequence[Any]) -> dict[str, str] | None:
-    """Texts that :func:`kept_texts` has written before, for the same arguments; None where there are none."""
-    key = key_of(*made_from)
-    if key is None:
-        return None
+def _texts_in_cache(stem: str) -> dict[str, str] | None:
+    """Texts in the folder under a stem; None where there are none."""
     with suppress(OSError):
-        kept = kept_file(cache_folder(), f"{name}-{key}", TEXTS)
+        kept = kept_file(cache_folder(), stem, TEXTS)
         if kept is not None:
             texts: dict[str, str] = json.loads(zlib.decompress(kept.read_bytes()))
             mark_used(kept)

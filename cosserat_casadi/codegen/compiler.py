@@ -56,6 +56,7 @@ def shared_object(
     progress: Progress | None = None,
     *,
     flags: Sequence[str] | None = None,
+    origin: str | None = None,
 ) -> Path:
     """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
@@ -68,12 +69,14 @@ def shared_object(
         compiler: command of a C compiler, of :func:`find_compiler`.
         progress: told what is compiled, how many files are, and of how many.
         flags: of the compiler, :data:`FLAGS` by default.
+        origin: key of all that the sources were written from, by which the cache tells the library; by default the
+            sources do.
 
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
     flags = FLAGS if flags is None else flags
-    contents = [_read(path) for path in (*sources, *headers)]
+    contents = [_read(path) for path in (*sources, *headers)] if origin is None else [origin.encode()]
     stem = _stem(name, compiler, flags, contents)
     folder = cache_folder()
     try:
@@ -98,6 +101,7 @@ def compiled_texts(
     progress: Progress | None = None,
     *,
     flags: Sequence[str] | None = None,
+    origin: str | None = None,
 ) -> Path:
     """As :func:`shared_object`, of sources and headers that are texts by file name.
 
@@ -108,11 +112,12 @@ def compiled_texts(
         included: files that others include: they are not compiled by themselves.
         progress: as there.
         flags: as there.
+        origin: as there.
     """
     flags = FLAGS if flags is None else flags
     sources = [file for file in texts if file.endswith(ENDS) and file not in included]
     headers = [file for file in texts if file not in sources]
-    contents = [texts[file].encode() for file in (*sources, *headers)]
+    contents = [texts[file].encode() for file in (*sources, *headers)] if origin is None else [origin.encode()]
     with suppress(OSError):
         kept = _compiled_before(name, cache_folder(), _stem(name, compiler, flags, contents))
         if kept is not None:
@@ -122,7 +127,15 @@ def compiled_texts(
         for file, text in texts.items():
             (folder / file).write_bytes(text.encode())
         written = [folder / file for file in sources]
-        return shared_object(name, written, [folder / file for file in headers], compiler, progress, flags=flags)
+        beside = [folder / file for file in headers]
+        return shared_object(name, written, beside, compiler, progress, flags=flags, origin=origin)
+
+
+def compiled_from(name: str, origin: str, compiler: str) -> Path | None:
+    """The library of :func:`compiled_texts` of an origin, where the cache has it; else None."""
+    with suppress(OSError):
+        return _compiled_before(name, cache_folder(), _stem(name, compiler, FLAGS, [origin.encode()]))
+    return None
 
 
 def _stem(name: str, compiler: str, flags: Sequence[str], contents: Sequence[bytes]) -> str:

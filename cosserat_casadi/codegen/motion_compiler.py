@@ -15,16 +15,19 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.cache import cache_folder, kept_texts, texts_in_cache
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
+from cosserat_casadi.codegen.cache import cache_folder
+from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
 from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_library
+from cosserat_casadi.codegen.description import key_of
 from cosserat_casadi.codegen.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
+from cosserat_casadi.files import sources_hash
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
+from cosserat_casadi.motion.displacement import function_of_displacements
 from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.history import functions_of_flight
 from cosserat_casadi.motion.motion_event import MotionEvent
@@ -38,6 +41,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_jacobians,
     interpreted_residual,
 )
+from cosserat_casadi.motion.tip_paths import functions_of_tips
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
@@ -50,9 +54,6 @@ JACOBIANS = "motion_jacobians"
 
 PROGRAM = "motion_program"
 """Inverse dynamics as a program of scalars, three stages at once."""
-
-TIP = "motion_tip_"
-"""Name of the pose of a tip in C, before the number of its rod; it stands in the file of the residual."""
 
 INSTRUCTION = 7e-9
 """Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 4e-9 of few to 10e-9 of many."""
@@ -113,12 +114,12 @@ class MotionCompiler:
             written[PROGRAM] = scalar_program(model.inverse_dynamics_in_scalars)
         return written.get(PROGRAM)
 
-    def tips(self, model: Model) -> dict[str, ca.Function] | None:
-        """Poses of the tips by rod where the residual is machine code, which they stand beside; else None."""
+    def library(self, model: Model) -> str | None:
+        """The shared object with the residual and all that is written beside it; None where it is not at hand."""
         of_model, residual = self.asked.get(RESIDUAL, (None, None))
-        if of_model is not model or residual is None or residual.code is None:
-            return None
-        return {name: ca.external(f"{TIP}{k}", residual.code.path) for k, name in enumerate(model.discrete.rods)}
+        if of_model is not model:
+            residual = self._compiled(model, RESIDUAL)
+        return None if residual is None or residual.code is None else residual.code.path
 
     def _stepper(self) -> Stepper | None:
         """The steps in machine code; None where there is no compiler."""
@@ -201,15 +202,18 @@ def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | 
 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
     """The shared object with a function; arguments as of :func:`_in_machine_code`, and the command of the compiler."""
-    made_from = (name, *_equations(model))
-    _, functions = WRITTEN[name]
-    texts = texts_in_cache(name, made_from)
-    if texts is None and write:
-        # The printer of C is needed here alone, and takes its time to be loaded.
-        from cosserat_casadi.codegen.kernel_files import external_sources
+    key = key_of(name, *_equations(model))
+    kept = None if key is None else compiled_from(name, key, compiler)
+    if kept is not None or not write:
+        return kept
+    # The printer of C is needed here alone, and takes its time to be loaded.
+    from cosserat_casadi.codegen.kernel_files import external_sources
 
-        texts = kept_texts(name, made_from, lambda: external_sources(functions(model), name, "long long int"))
-    return None if texts is None else compiled_texts(name, texts, compiler)
+    _, functions = WRITTEN[name]
+    texts = external_sources(functions(model), name, "long long int")
+    # Sources that changed meanwhile may have written parts of it.
+    origin = None if sources_hash() is None else key
+    return compiled_texts(name, texts, compiler, origin=origin)
 
 
 def _equations(model: Model) -> list[Any]:
@@ -229,12 +233,8 @@ def _residual(model: Model) -> list[ca.Function]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
-    # Paths of tips are computed from every motion.
-    tips = []
-    for number, tip in enumerate(model.tip.values()):
-        at = tip.mx_in()
-        tips.append(ca.Function(f"{TIP}{number}", at, tip.call(at), tip.name_in(), tip.name_out()))
-    return [residual, *tips, *functions_of_flight(model)]
+    # Every motion asks for the paths of tips, and for how far unknowns move them.
+    return [residual, *functions_of_tips(model), function_of_displacements(model), *functions_of_flight(model)]
 
 
 def _jacobians(model: Model) -> list[ca.Function]:

@@ -22,15 +22,35 @@ QUATERNION = 2.0
 """Turn of a frame by a unit of its quaternion, rad, on an arm of one length."""
 
 
-def displacements(model: Model) -> FloatArray:
+FUNCTION = "motion_displacements"
+"""Name of the displacements in C."""
+
+
+def displacements(model: Model, library: str | None = None) -> FloatArray:
     """Largest displacement over the length that a unit of each unknown makes, shape (size,); 1 of algebraic ones.
 
     Of strain coordinates at the unloaded rod, which a rod that moves is at times as good as any.
+
+    Args:
+        model: the model.
+        library: shared object that has :func:`function_of_displacements`; None without one.
     """
-    return kept_with(model, "_displacements", lambda: _displacements(model))
+    return kept_with(model, "_displacements", lambda: _displacements(model, library))
 
 
-def _displacements(model: Model) -> FloatArray:
+def function_of_displacements(model: Model) -> ca.Function:
+    """The displacements as a function without arguments, for a shared object: computing them takes as long as steps."""
+    return ca.Function(FUNCTION, [], [ca.DM(displacements(model))], [], ["displacements"])
+
+
+def _displacements(model: Model, library: str | None) -> FloatArray:
+    sizes = _computed(model) if library is None else ca.external(FUNCTION, library)()["displacements"].full()[:, 0]
+    # Several motions have it.
+    sizes.setflags(write=False)
+    return sizes
+
+
+def _computed(model: Model) -> FloatArray:
     sizes = np.ones(model.size)
     unknowns = model.discrete.unknowns
     for name, rod in model.discrete.rods.items():
@@ -42,8 +62,6 @@ def _displacements(model: Model) -> FloatArray:
                 sizes[entries] = np.tile(of_strains, len(rod.properties.branches))
     for _, entries in unknowns.of_kind(BlockKind.POSE):
         sizes[entries][3:] = QUATERNION
-    # Several motions have it.
-    sizes.setflags(write=False)
     return sizes
 
 

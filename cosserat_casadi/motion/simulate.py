@@ -187,7 +187,12 @@ class Simulator:
     @cached_property
     def displacements(self) -> FloatArray:
         """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
-        return displacements(self.model)
+        return displacements(self.model, self._library)
+
+    @property
+    def _library(self) -> str | None:
+        """The shared object with the equations of motion; None where they are not in machine code."""
+        return None if self.source is None else self.source.library(self.model)
 
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
@@ -225,8 +230,7 @@ class Simulator:
         """Paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
         if duration not in history.paths_until:
-            tips = None if self.source is None else self.source.tips(self.model)
-            history.paths_until[duration] = paths(history, watched_times(history, duration), tips)
+            history.paths_until[duration] = paths(history, watched_times(history, duration), self._library)
         known: Paths = history.paths_until[duration]
         return known
 
@@ -540,7 +544,6 @@ def motion_of(
     if history.stopped is not None:
         times = np.union1d(times, history.end.time)
     states = [history.at(float(time)) for time in times]
-    begin = history.of_model(history.legs[0].start.instant)
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
     strands = [_strand(history, 0.0, 0.0)]
@@ -560,7 +563,7 @@ def motion_of(
         start=simulator.start.sentence,
         interpolant=history.at,
         account=partial(_account, history, times, simulator.begun, tuple(strands), error),
-        warnings=tuple(warnings(model, simulator.start, simulator.moving, duration, begin.a)),
+        warnings=tuple(warnings(history, simulator.start, simulator.moving, duration)),
         contacts=tuple(history.touching(float(time)) for time in times),
         events=tuple(sorted([*history.events, *simulator.watch.crossings(history)], key=lambda event: event.time)),
         impacts_spread=spread,

@@ -5,7 +5,7 @@ CasADi's virtual machine runs them, or machine code that a layer above compiles 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -49,8 +49,8 @@ class KernelSource(Protocol):
     def kernels(self, model: Model) -> StepKernels:
         """The kernels for the next motion of a model."""
 
-    def tips(self, model: Model) -> Mapping[str, ca.Function] | None:
-        """Poses of the tips by rod, as :attr:`Model.tip` has them, in machine code; None where it is not at hand."""
+    def library(self, model: Model) -> str | None:
+        """The shared object with the residual and all that is written beside it; None where it is not at hand."""
 
     def learn(self, statistics: StepStatistics) -> None:
         """Take note of the work of a motion: the next one may take as much."""

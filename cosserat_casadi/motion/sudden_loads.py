@@ -8,6 +8,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.motion_start import Start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 
@@ -24,20 +26,20 @@ AT_ONCE = (
 """Warning of loads that act at once at the start."""
 
 
-def warnings(model: Model, start: Start, moving: MovingInputs, duration: float, accelerations: FloatArray) -> list[str]:
+def warnings(history: History, start: Start, moving: MovingInputs, duration: float) -> list[str]:
     """Sentences on loads that come suddenly.
 
     Args:
-        model: the model.
-        start: how its motion begins.
+        history: the motion.
+        start: how it begins.
         moving: the inputs over time.
         duration: of the motion, s.
-        accelerations: of the unknowns at the start, shape (size,), 1/s².
     """
     at_start = []
+    accelerations = history.of_model(history.legs[0].start.instant).a
     # What a motion that goes on sets out with has been under way already.
     begins = start.resume is None
-    if begins and _loaded_at_once(model, start, moving) and _deforms(model, accelerations):
+    if begins and _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations):
         at_start.append(AT_ONCE)
     jumps: dict[str, list[float]] = {}
     for jump in moving.jumps(duration):
@@ -60,12 +62,16 @@ def _deforms(model: Model, accelerations: FloatArray) -> bool:
     return bool(max(strains, default=0.0) > STIRRED * moved.max(initial=0.0))
 
 
-def _loaded_at_once(model: Model, start: Start, moving: MovingInputs) -> bool:
+def _loaded_at_once(history: History, start: Start, moving: MovingInputs) -> bool:
     """Whether the start is out of balance: loads that were not there act from t = 0 on."""
     if start.phases is not None and start.phases.touches:
         # Obstacles hold the rods.
         return False
     inputs = moving.at(0.0).value
-    # The residual of statics, by a function that the steps have called.
-    residual = model.inverse_dynamics_in_scalars(start.x, 0, 0, inputs, 0, 0).full()[:, 0]
+    still, unmoved = np.zeros(len(start.x)), np.zeros(len(inputs))
+    # The residual of statics, by the function that the steps have called.
+    equations = history.legs[0].equations
+    assert equations is not None, "a motion that was computed in this process"
+    assert isinstance(equations.residual, KernelResidual), "a motion without parameters"
+    residual = equations.residual.call(start.x, still, still, inputs, unmoved, unmoved)
     return bool(np.abs(residual).max(initial=0.0) > OUT_OF_BALANCE)

@@ -15,6 +15,9 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.pose_series import Frames, frames_of
 from cosserat_casadi.scene.constraint_records import Body
 
+TIP = "motion_tip_"
+"""Name of the pose of a tip in C, before the number of its rod."""
+
 WATCHED = 401
 """Times at which paths are compared, evenly spaced."""
 
@@ -41,16 +44,29 @@ def watched_times(history: History, duration: float) -> FloatArray:
     return times[times <= history.end.time]
 
 
-def paths(history: History, times: FloatArray, tips: Mapping[str, ca.Function] | None = None) -> Paths:
+def functions_of_tips(model: Model) -> list[ca.Function]:
+    """The poses of the tips, rod by rod, as :attr:`Model.tip` has them."""
+    functions = []
+    for number, tip in enumerate(model.tip.values()):
+        at = tip.mx_in()
+        functions.append(ca.Function(f"{TIP}{number}", at, tip.call(at), tip.name_in(), tip.name_out()))
+    return functions
+
+
+def paths(history: History, times: FloatArray, library: str | None = None) -> Paths:
     """The paths of all tips, moving bases and bodies at T times.
 
     Args:
         history: the motion.
         times: shape (T,), s.
-        tips: the functions of the tips by rod, where they are at hand in machine code.
+        library: shared object that has :func:`functions_of_tips`; None without one.
     """
     model = history.model
-    tips = tips or model.tip
+    tips: Mapping[str, ca.Function] = (
+        model.tip
+        if library is None
+        else {name: ca.external(f"{TIP}{number}", library) for number, name in enumerate(model.discrete.rods)}
+    )
     x, inputs = history.rough_positions(times)
     points = []
     section_axes = []

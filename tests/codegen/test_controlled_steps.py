@@ -173,6 +173,9 @@ class Kernels:
     def kernels(self, model: Any) -> StepKernels:
         return self.chosen
 
+    def library(self, model: Any) -> str | None:
+        return self.chosen.library
+
     def learn(self, statistics: StepStatistics) -> None:
         pass
 

@@ -16,11 +16,13 @@ from cosserat_casadi import ExportError, Model, build, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.step_kernels import interpreted
+from cosserat_casadi.motion.tip_paths import functions_of_tips
 from cosserat_casadi.motion.trajectory import StepStatistics
 from tests.codegen.test_load import needs_compiler
 from tests.families import mostly_slow
@@ -123,18 +125,20 @@ def test_results_of_a_call_are_kept_by_the_next_one() -> None:
     assert_array_equal(matrices, copies[1])
 
 
-def test_poses_of_tips_stand_beside_the_residual() -> None:
+def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:
     model = moving(arm())
     compiler = MotionCompiler()
     compiler.kernels(model)
-    assert compiler.tips(model) is None
+    assert compiler.library(model) is None
     compiler = MotionCompiler(always=True)
     compiler.kernels(model)
     x, _, _, inputs, *_ = somewhere(model)
-    tips = compiler.tips(model)
-    assert tips is not None
-    for found, expected in zip(tips["rod"](x, inputs), model.tip["rod"](x, inputs), strict=True):
+    library = compiler.library(model)
+    assert library is not None
+    tip = ca.external(functions_of_tips(model)[0].name(), library)
+    for found, expected in zip(tip(x, inputs), model.tip["rod"](x, inputs), strict=True):
         assert_allclose(found.full(), expected.full(), rtol=1e-12, atol=1e-14)
+    assert_array_equal(displacements(moving(arm()), library), displacements(model))
 
 
 def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> None:
