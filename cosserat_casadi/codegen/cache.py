@@ -24,7 +24,6 @@ import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -172,17 +171,11 @@ def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterab
     programs = [_program_facts(word) for word in compiler]
     # The folder may lie in a home that machines of several kinds share.
     machine = [platform.system(), platform.machine()]
-    words = [_version(), *compiler, *programs, *flags, *machine]
+    words = [*compiler, *programs, *flags, *machine]
     digest = hashlib.sha256("\0".join(words).encode())
     for content in contents:
         digest.update(hashlib.sha256(content).digest())
     return digest.hexdigest()[:20]
-
-
-@cache
-def _version() -> str:
-    """The version of this package, which is looked up in the files of all packages."""
-    return version("cosserat-casadi")
 
 
 def _program_facts(word: str) -> str:

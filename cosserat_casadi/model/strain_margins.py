@@ -51,11 +51,12 @@ def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
         along = conjugate.stretch_along
         if along is not None and not along.is_constant():
             margins[StrainMargin("path", actuator.name)] = ca.mmin(along)
-    for rod, shape in system.shapes.items():
-        margin = material_margin(shape)
+    for name, rod in system.discrete.rods.items():
+        # Shapes take their time: those of linear rods are not asked for.
+        margin = None if rod.properties.beyond_hooke is None else material_margin(system.shapes[name])
         if margin is not None:
             # A law ends where its margin is zero; what has one of paths' ends a little earlier.
-            margins[StrainMargin("material", rod)] = margin + VANISHED
+            margins[StrainMargin("material", name)] = margin + VANISHED
     for actuator in system.discrete.scene.actuators:
         margin = system.actuators.margin(actuator)
         if margin is not None:
