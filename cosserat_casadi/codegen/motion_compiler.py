@@ -27,6 +27,7 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
+from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.displacement import function_of_displacements
 from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.history import functions_of_flight
@@ -119,7 +120,7 @@ class MotionCompiler:
         of_model, residual = self.asked.get(RESIDUAL, (None, None))
         if of_model is not model:
             residual = self._compiled(model, RESIDUAL)
-        return None if residual is None or residual.code is None else residual.code.path
+        return None if residual is None else residual.library
 
     def _stepper(self) -> Stepper | None:
         """The steps in machine code; None where there is no compiler."""
@@ -233,8 +234,10 @@ def _residual(model: Model) -> list[ca.Function]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
-    # Every motion asks for the paths of tips, and for how far unknowns move them.
-    return [residual, *functions_of_tips(model), function_of_displacements(model), *functions_of_flight(model)]
+    # Every motion asks for the paths of tips, for how far unknowns move them, and for rows on the constraints.
+    beside = [*functions_of_tips(model), function_of_displacements(model), *functions_of_flight(model)]
+    # With parameters no motion is computed, and rows have no parameters.
+    return [residual, *beside, *([] if model.parameters.size else functions_of_closing(model))]
 
 
 def _jacobians(model: Model) -> list[ca.Function]:

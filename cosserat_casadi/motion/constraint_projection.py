@@ -36,25 +36,26 @@ CONTRACTED = 0.2
 """Share of the gaps that a correction may leave before the next one has a new Jacobian."""
 
 
+GAPS = "motion_gaps"
+"""Name of the rows of the constraints in C."""
+
+
 @dataclass(frozen=True)
 class Closing:
     """Projection of the unknowns of a model on its constraints.
 
     Attributes:
         model: the model.
+        library: shared object that has :func:`functions_of_closing`; None without one.
     """
 
     model: Model
+    library: str | None = None
 
     @cached_property
     def rows(self) -> npt.NDArray[np.int64]:
         """Rows of the residual that are constraints on positions alone."""
-        discrete = self.model.discrete
-        entries = [span for _, span in discrete.unknowns.of_kind(BlockKind.MULTIPLIER)]
-        # The row of a cable that may go slack holds its tension too.
-        entries += [discrete.tension(cable) for cable in discrete.cables if not cable.may_go_slack]
-        numbers = [np.arange(span.start, span.stop) for span in entries]
-        return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
+        return constraint_rows(self.model)
 
     def closed(self, instant: Instant, inputs: FloatArray, equations: MotionEquations, near: Instant) -> FloatArray:
         """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
@@ -99,15 +100,9 @@ class Closing:
     @cached_property
     def _gaps(self) -> RepeatedCall:
         """(x, inputs) ↦ the rows of the constraints: the rest of the equations takes several times as long."""
-        return RepeatedCall(kept_with(self.model, "_gaps", self._written_gaps))
-
-    def _written_gaps(self) -> ca.Function:
-        dynamics = self.model.inverse_dynamics_in_scalars
-        # As scalars only the constraints are left of it.
-        symbols = dynamics.mx_in() if chooses(dynamics) else dynamics.sx_in()
-        at_rest = {"x": symbols[0], "inputs": symbols[3]}
-        rows = dynamics.call({**dict.fromkeys(dynamics.name_in(), 0), **at_rest})["residual"][self.rows.tolist()]
-        return ca.Function("gaps", list(at_rest.values()), [ca.densify(rows)])
+        if self.library is not None:
+            return RepeatedCall(ca.external(GAPS, self.library))
+        return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
 
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
         """As :meth:`_answer`, at an end of a step; that of the last one asked for is remembered."""
@@ -135,4 +130,27 @@ class Closing:
 
     @cached_property
     def _sizes(self) -> FloatArray:
-        return displacements(self.model)
+        return displacements(self.model, self.library)
+
+
+def constraint_rows(model: Model) -> npt.NDArray[np.int64]:
+    """Rows of the residual that are constraints on positions alone."""
+    discrete = model.discrete
+    entries = [span for _, span in discrete.unknowns.of_kind(BlockKind.MULTIPLIER)]
+    # The row of a cable that may go slack holds its tension too.
+    entries += [discrete.tension(cable) for cable in discrete.cables if not cable.may_go_slack]
+    numbers = [np.arange(span.start, span.stop) for span in entries]
+    return np.concatenate([np.zeros(0, dtype=np.int64), *numbers])
+
+
+def functions_of_closing(model: Model) -> list[ca.Function]:
+    """The function (x, inputs) ↦ the rows of the constraints; none where nothing is held."""
+    rows = constraint_rows(model)
+    if not len(rows):
+        return []
+    dynamics = model.inverse_dynamics_in_scalars
+    # As scalars only the constraints are left of it.
+    symbols = dynamics.mx_in() if chooses(dynamics) else dynamics.sx_in()
+    at_rest = {"x": symbols[0], "inputs": symbols[3]}
+    residual = dynamics.call({**dict.fromkeys(dynamics.name_in(), 0), **at_rest})["residual"]
+    return [ca.Function(GAPS, list(at_rest.values()), [ca.densify(residual[rows.tolist()])], list(at_rest), ["gaps"])]

@@ -308,7 +308,10 @@ class History:
 
     @cached_property
     def _closing(self) -> Closing:
-        return Closing(self.model)
+        equations = self.legs[0].equations
+        residual = None if equations is None else equations.residual
+        library = residual.call.library if isinstance(residual, KernelResidual) else None
+        return Closing(self.model, library)
 
     @cached_property
     def _ends(self) -> list[float]:

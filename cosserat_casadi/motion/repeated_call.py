@@ -80,6 +80,11 @@ class RepeatedCall:
         self.program: tuple[npt.NDArray[np.intc], FloatArray, int] | None = None
         self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
+    @property
+    def library(self) -> str | None:
+        """The shared object that has the function; None where CasADi's virtual machine runs it."""
+        return None if self.code is None else self.code.path
+
     def __call__(self, *values: FloatArray) -> FloatArray:
         """The first result, column after column, as an array of shape (n,), for arguments in their order."""
         self._evaluated(values)

@@ -39,8 +39,7 @@ class StepKernels:
     @property
     def library(self) -> str | None:
         """The shared object that has the residual; None where CasADi's virtual machine runs it."""
-        call = self.residual
-        return call.code.path if isinstance(call, RepeatedCall) and call.code is not None else None
+        return self.residual.library if isinstance(self.residual, RepeatedCall) else None
 
 
 class KernelSource(Protocol):

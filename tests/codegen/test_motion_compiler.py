@@ -16,6 +16,7 @@ from cosserat_casadi import ExportError, Model, build, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight
 from cosserat_casadi.motion.kernel_residual import KernelResidual
@@ -89,6 +90,10 @@ def test_machine_code_gives_the_same_numbers(family: str) -> None:
     for found, matrix in zip(compiled.jacobians(*at), plain.jacobians(*at), strict=True):
         assert found.shape == (model.size, model.size)
         assert_allclose(found, matrix, rtol=0, atol=1e-13 * np.abs(matrix).max())
+    assert compiled.library is not None
+    for gaps in [] if model.parameters.size else functions_of_closing(model):
+        x, inputs = at[0], at[3]
+        assert_allclose(ca.external(gaps.name(), compiled.library)(x, inputs), gaps(x, inputs), rtol=0, atol=1e-14)
 
 
 def test_what_flies_free_takes_its_steps_in_machine_code() -> None:
