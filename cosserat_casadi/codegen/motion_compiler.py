@@ -62,10 +62,10 @@ INSTRUCTION = 7e-9
 AS_MANY_RESIDUALS = 10.0
 """Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""
 
-SAVED = {PROGRAM: 0.65, RESIDUAL: 0.3, JACOBIANS: 0.8}
+SAVED = {PROGRAM: 0.8, RESIDUAL: 0.2, JACOBIANS: 0.8}
 """Share of the virtual machine's time that a program saves, machine code beyond a program, and machine code."""
 
-TO_COMPILE = {PROGRAM: (0.0, 5e-6), RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
+TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
 """Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
 
 MOTIONS_TO_COME = 2.0

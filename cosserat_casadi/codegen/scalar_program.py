@@ -19,7 +19,10 @@ from cosserat_casadi.maths.calls import called_functions
 from cosserat_casadi.maths.typing import FloatArray
 
 Lines = npt.NDArray[np.intc]
-"""One line for each instruction: its operation by CasADi's number, slots of the result and of two operands."""
+"""One line for each instruction: its operation by CasADi's number, slots of the result and of its operands."""
+
+PLUS_PRODUCT, MINUS_PRODUCT, PRODUCT_MINUS = range(300, 303)
+"""Operations beyond CasADi's: c + a b, c − a b and a b − c, rounded twice as by two instructions."""
 
 OF_TWO = {"atan2", "pow", "fmin", "fmax", "fmod", "copysign", "hypot"}
 """Functions of the mathematical library with two arguments."""
@@ -33,7 +36,7 @@ class ScalarProgram(NamedTuple):
     """A function as lines on numbered slots; the first slots are its arguments, the next its results.
 
     Attributes:
-        lines: shape (lines, 4).
+        lines: shape (lines, 5), with three operands.
         slots: contents of the slots before the first line: constants where they are, shape (slots,).
         arguments: number of slots of arguments.
     """
@@ -54,7 +57,9 @@ def scalar_program(function: ca.Function) -> ScalarProgram | None:
     slots = np.zeros(writer.size)
     for begin, values in writer.constants:
         slots[begin : begin + len(values)] = values
-    return ScalarProgram(np.ascontiguousarray(lines), slots, function.nnz_in())
+    arguments = function.nnz_in()
+    results = slice(arguments, arguments + function.nnz_out())
+    return ScalarProgram(_with_products(_without_copies(lines, results), results), slots, arguments)
 
 
 @dataclass
@@ -147,10 +152,64 @@ def _copied(to: Lines, slots: Lines) -> Lines:
     return np.stack([np.full(len(to), ca.OP_ASSIGN), to, slots, slots], axis=1).astype(np.intc)
 
 
+def _definitions(lines: Lines) -> Lines:
+    """Numbers of the lines that have written the operands of each line, −1 where none has, shape (lines, 2)."""
+    count = len(lines)
+    place = np.arange(count)
+    written = np.sort(lines[:, 1].astype(np.int64) * count + place)
+    columns = []
+    for slots in (lines[:, 2], lines[:, 3]):
+        before = written[np.searchsorted(written, slots.astype(np.int64) * count + place) - 1]
+        # Before the first one stands the last, of another slot or of a later line.
+        is_earlier = (before // count == slots) & (before % count < place)
+        columns.append(np.where(is_earlier, before % count, -1).astype(np.intc))
+    return np.stack(columns, axis=1)
+
+
+def _are_results(lines: Lines, results: slice) -> npt.NDArray[np.bool_]:
+    """Which lines write a result of the program."""
+    return np.asarray((results.start <= lines[:, 1]) & (lines[:, 1] < results.stop))
+
+
+def _without_copies(lines: Lines, results: slice) -> Lines:
+    """Lines that read constants and arguments where they are, without the copies of these."""
+    is_written = np.zeros(lines[:, 1:].max(initial=0) + 1, dtype=bool)
+    is_written[lines[:, 1]] = True
+    is_copy = (lines[:, 0] == ca.OP_ASSIGN) & ~is_written[lines[:, 2]]
+    lines = lines.copy()
+    for column, definitions in zip((2, 3), _definitions(lines).T, strict=True):
+        of_copy = (definitions >= 0) & is_copy[definitions]
+        lines[of_copy, column] = lines[definitions[of_copy], 2]
+    kept: Lines = lines[~is_copy | _are_results(lines, results)]
+    return kept
+
+
+def _with_products(lines: Lines, results: slice) -> Lines:
+    """Lines with three operands, in which a product and the sum behind it that alone reads it are one line."""
+    operation, to, first, second = lines.T
+    definitions = _definitions(lines)
+    read = np.concatenate([definitions[:, 0], definitions[first != second, 1]])
+    readers = np.bincount(read[read >= 0], minlength=len(lines))
+    is_product = np.isin(operation, (ca.OP_MUL, ca.OP_SQ)) & (readers == 1) & ~_are_results(lines, results)
+    is_sum = np.isin(operation[1:], (ca.OP_ADD, ca.OP_SUB))
+    is_first, is_second = first[1:] == to[:-1], second[1:] == to[:-1]
+    products = np.flatnonzero(is_product[:-1] & is_sum & (is_first != is_second))
+    sums = products + 1
+    joined = np.concatenate([lines, first[:, None]], axis=1)
+    joined[sums, 2:4] = lines[products, 2:4]
+    joined[sums, 4] = np.where(is_first[products], second[sums], first[sums])
+    difference = np.where(is_first[products], PRODUCT_MINUS, MINUS_PRODUCT)
+    joined[sums, 0] = np.where(operation[sums] == ca.OP_ADD, PLUS_PRODUCT, difference)
+    return np.ascontiguousarray(np.delete(joined, products, axis=0))
+
+
 def cases_in_c() -> str:
-    """Cases of operations for the loop in C: ``a`` and ``b`` are the operands of a line, ``to`` is its result."""
+    """Cases of operations for the loop in C: ``a``, ``b``, ``c`` are the operands of a line, ``to`` is its result."""
     fours = {ca.OP_ASSIGN: "LOAD(a)", ca.OP_SQ: "LOAD(a) * LOAD(a)"}
     fours |= {code: f"LOAD(a) {sign} LOAD(b)" for code, sign in BINARY.items()}
+    fours[PLUS_PRODUCT] = "LOAD(c) + LOAD(a) * LOAD(b)"
+    fours[MINUS_PRODUCT] = "LOAD(c) - LOAD(a) * LOAD(b)"
+    fours[PRODUCT_MINUS] = "LOAD(a) * LOAD(b) - LOAD(c)"
     for code, (operation, constant) in REWRITTEN.items():
         fours[code] = f"EACH({constant!r}) {BINARY[operation]} LOAD(a)"
     numbers = {code: f"{name}(a[i], b[i])" if name in OF_TWO else f"{name}(a[i])" for code, name in FUNCTIONS.items()}

@@ -169,7 +169,7 @@ def test_functions_are_compiled_where_motions_of_a_model_have_taken_long() -> No
         compiler = MotionCompiler()
         compiler.kernels(model)
         # A search of its own each time, which begins with no motion to foresee the next ones by.
-        compiler.learn(work(2000, 1))
+        compiler.learn(work(2500, 1))
         compiler.kernels(model)
         if is_compiled(compiler, RESIDUAL):
             break

@@ -12,7 +12,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.codegen.controlled_steps import LANES, steps_library
 from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
-from cosserat_casadi.codegen.scalar_program import OF_TWO, scalar_program
+from cosserat_casadi.codegen.scalar_program import (
+    MINUS_PRODUCT,
+    OF_TWO,
+    PLUS_PRODUCT,
+    PRODUCT_MINUS,
+    scalar_program,
+)
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_load import needs_compiler
 from tests.moving_scenes import model_of
@@ -77,6 +83,20 @@ def test_every_operation() -> None:
     given = lanes(2)
     given[3, 1] = given[3, 0]
     assert_allclose(run(function, given), by_casadi(function, given), rtol=ROUNDING, atol=0)
+
+
+def test_sums_of_products_are_one_line_where_nothing_else_reads_the_product() -> None:
+    a, b, c = ca.SX.sym("a"), ca.SX.sym("b"), ca.SX.sym("c")
+    product = a * c
+    results = [a * b + c, c - a * b, a * b - c, a**2 - b, 2 * a - 3 * b + 4 * c, product + b, ca.sin(product), b * c]
+    function = ca.Function("sums", [a, b, c], [ca.vertcat(*results), b * c + b * c])
+    program = scalar_program(function)
+    assert program is not None
+    joined = np.isin(program.lines[:, 0], (PLUS_PRODUCT, MINUS_PRODUCT, PRODUCT_MINUS))
+    assert 5 <= np.count_nonzero(joined) < len(program.lines)
+    assert len(set(program.lines[joined, 0].tolist())) == 3
+    given = lanes(3)
+    assert_array_equal(run(function, given), by_casadi(function, given))
 
 
 def test_calls_keep_their_arguments_and_leave_out_what_nobody_wants() -> None:

@@ -8,6 +8,10 @@
 /* Rows of matrices are added two entries at a time. */
 #pragma GCC optimize("O3")
 #endif
+#ifdef __clang__
+/* A product and a sum are rounded one after the other, as by CasADi's virtual machine. */
+#pragma STDC FP_CONTRACT OFF
+#endif
 
 #include <math.h>
 #include <string.h>
@@ -249,10 +253,11 @@ static void motion_in(real size, real share, const real *values, const real *int
 #endif
 
 static void run_lines(const int *program, int lines, real *slots) {
-  for (const int *line = program; line < program + 4 * lines; line += 4) {
+  for (const int *line = program; line < program + 5 * lines; line += 5) {
     real *to = slots + LANES * line[1];
     const real *a = slots + LANES * line[2];
     const real *b = slots + LANES * line[3];
+    const real *c = slots + LANES * line[4];
     switch (line[0]) {
       SCALAR_OPERATIONS
     }
