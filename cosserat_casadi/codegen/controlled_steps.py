@@ -19,6 +19,7 @@ from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.kernel_residual import KernelResidual
+from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
 from cosserat_casadi.numerics import stage_newton, step_control, step_matrices, step_run, time_steps
 from cosserat_casadi.numerics.collocation import STAGES, radau
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -38,6 +39,9 @@ FACTS = 7
 
 MOST_TRIES = 64
 """Steps that are tried in one call: then an interrupt is seen."""
+
+FEW_TRIES = 32
+"""The same while a program may yet be written: then its cost is weighed again."""
 
 OUTCOMES = (
     None,
@@ -164,6 +168,7 @@ class CompiledSteps:
         self._run = run
         self._control = control
         self._raised: BaseException | None = None
+        self._without_program: RepeatedCall | None = None
         n = run.equations.size
         self._matrices = np.zeros((3, n, n))
         self._now, self._linearised_at, self._kept_at = np.zeros((3, 3, n))
@@ -241,12 +246,8 @@ class CompiledSteps:
         record.inputs_at = self._called(inputs_at)
         if call.code is None:
             record.residual_at = self._called(lambda _: call.evaluate())
-            if call.program is not None:
-                lines, slots, arguments = call.program
-                # Four lanes of each slot: a run of its own, since constants are among them.
-                self._share("program", lines)
-                self._share("slots", np.repeat(slots, LANES))
-                record.program_lines, record.program_arguments = len(lines), arguments
+            self._without_program = None if call.program_after is None else call
+            self._share_program(call.program)
             return
         kernel = call.code
         record.kernel = kernel.address
@@ -254,6 +255,17 @@ class CompiledSteps:
         self._share("kernel_results", kernel.results)
         self._share("kernel_integers", kernel.integers)
         self._share("kernel_scratch", kernel.scratch)
+
+    def _share_program(self, program: Program | None) -> None:
+        """Have C run a program in place of CasADi's virtual machine, from the next step on."""
+        if program is None:
+            return
+        lines, slots, arguments = program
+        # Four lanes of each slot: a run of its own, since constants are among them.
+        self._share("program", lines)
+        self._share("slots", np.repeat(slots, LANES))
+        self._record.program_lines, self._record.program_arguments = len(lines), arguments
+        self._without_program = None
 
     def _share_function(self) -> None:
         """Have C call the equations as a function of Python."""
@@ -295,7 +307,8 @@ class CompiledSteps:
         """
         run, record, control = self._run, self._record, self._control
         n = run.equations.size
-        most = min(most, MOST_TRIES)
+        tries = MOST_TRIES if self._without_program is None else FEW_TRIES
+        most = min(most, tries)
         facts = np.zeros((most, FACTS))
         ends = np.zeros((most, 3, n))
         stages = np.zeros((most, STAGES, n))
@@ -305,7 +318,7 @@ class CompiledSteps:
         now = run.now
         self._now[:] = now.x, now.v, now.a
         record.time = now.time
-        record.most_steps, record.most_tries = most, MOST_TRIES
+        record.most_steps, record.most_tries = most, tries
         record.wanted, record.refused = control.wanted, control.refused
         record.last_size, record.last_error = control.last_size, control.last_error
         counted = record.rejected, record.iterations, record.jacobians, record.factorisations
@@ -320,6 +333,10 @@ class CompiledSteps:
         self._taken(facts[: record.steps], ends, stages)
         if self._raised is not None:
             raise self._raised
+        call = self._without_program
+        if outcome is None and call is not None and call.program_after is not None:
+            call.program = call.program_after(record.iterations)
+            self._share_program(call.program)
         return outcome, tried[: record.tries].tolist()
 
     def _taken(self, facts: FloatArray, ends: FloatArray, stages: FloatArray) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -106,14 +107,12 @@ class MotionCompiler:
             residual = interpreted_residual(model)
             if stepper is not None:
                 residual.program = self._program(model)
+                residual.program_after = partial(_program_after, model)
         return StepKernels(residual, interpreted_jacobians(model) if jacobians is None else jacobians.matrices, stepper)
 
     def _program(self, model: Model) -> ScalarProgram | None:
         """Inverse dynamics as a program; None where to write it does not pay, or where it has none."""
-        written: dict[str, ScalarProgram | None] = kept_with(model, "_programs", dict)
-        if PROGRAM not in written and self._pays(model, PROGRAM):
-            written[PROGRAM] = scalar_program(model.inverse_dynamics_in_scalars)
-        return written.get(PROGRAM)
+        return _program_of(model, write=self._pays(model, PROGRAM))
 
     def library(self, model: Model) -> str | None:
         """The shared object with the residual and all that is written beside it; None where it is not at hand."""
@@ -157,10 +156,28 @@ class MotionCompiler:
         if self.last is None:
             return False
         spent = _spent(model)[RESIDUAL if name == PROGRAM else name]
-        foreseen = max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), spent)
-        at_least, each = TO_COMPILE[name]
-        instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
-        return SAVED[name] * foreseen > at_least + each * instructions
+        return _saves(model, name, max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), spent))
+
+
+def _saves(model: Model, name: str, foreseen: float) -> bool:
+    """Whether compiling a function takes less than it saves of the time foreseen for the virtual machine, s."""
+    at_least, each = TO_COMPILE[name]
+    instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
+    return SAVED[name] * foreseen > at_least + each * instructions
+
+
+def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:
+    """Inverse dynamics as a program; None where none was written, and none is to be, or where it has none."""
+    written: dict[str, ScalarProgram | None] = kept_with(model, "_programs", dict)
+    if PROGRAM not in written and write:
+        written[PROGRAM] = scalar_program(model.inverse_dynamics_in_scalars)
+    return written.get(PROGRAM)
+
+
+def _program_after(model: Model, iterations: int) -> ScalarProgram | None:
+    """The program for a motion that has taken so many iterations without; None where it does not pay yet."""
+    work = StepStatistics(0, 0, iterations, 0, float("nan"), float("nan"))
+    return _program_of(model, write=_saves(model, PROGRAM, MOTIONS_TO_COME * _interpreted_time(model, PROGRAM, work)))
 
 
 def _spent(model: Model) -> dict[str, float]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -16,6 +16,9 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
+
+Program = tuple[npt.NDArray[np.intc], FloatArray, int]
+"""Lines of numbers, initial values of slots, and the number of arguments among them."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,8 @@ class RepeatedCall:
         code: the function in machine code; None where CasADi's virtual machine runs it.
         program: lines of numbers for a loop in C, initial values of its slots, and the number of arguments among them;
             None where none was written.
+        program_after: gives the program, or None, when a motion has taken so many iterations without one; None where
+            none is to be written.
 
     Raises:
         ValueError: an argument or a result is not dense.
@@ -77,7 +82,8 @@ class RepeatedCall:
             buffer.set_res(number, result.ravel(order="K").data)
         # The evaluation reads and writes the buffer's memory: it has to live as long.
         self._buffer = buffer
-        self.program: tuple[npt.NDArray[np.intc], FloatArray, int] | None = None
+        self.program: Program | None = None
+        self.program_after: Callable[[int], Program | None] | None = None
         self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
     @property

@@ -14,17 +14,20 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
+from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight
+from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight, integrated
 from cosserat_casadi.motion.kernel_residual import KernelResidual
-from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.simulate import moving_inputs
-from cosserat_casadi.motion.step_kernels import interpreted
+from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
+from cosserat_casadi.motion.simulate import moving_inputs, started
+from cosserat_casadi.motion.step_kernels import StepKernels, interpreted, interpreted_jacobians, interpreted_residual
 from cosserat_casadi.motion.tip_paths import functions_of_tips
 from cosserat_casadi.motion.trajectory import StepStatistics
+from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.integration import StepSettings
 from tests.codegen.test_load import needs_compiler
 from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES, model_of
@@ -175,6 +178,46 @@ def test_functions_are_compiled_where_motions_of_a_model_have_taken_long() -> No
             break
     assert 3 < motions < 60
     assert not is_compiled(compiler, JACOBIANS)
+
+
+def test_a_program_is_written_within_a_motion_that_takes_long_and_changes_no_digit() -> None:
+    model = moving(arm())
+    residual = MotionCompiler().kernels(model).residual
+    assert isinstance(residual, RepeatedCall)
+    assert residual.program is None
+    assert residual.program_after is not None
+    assert residual.program_after(10) is None
+    program = residual.program_after(10**6)
+    assert program is not None
+    size = 0.5 * model.scene.rods[0].length
+    assert model.scene.simulation is not None
+    start = started(model, model.scene.simulation, None)
+    taken = list[int]()
+
+    def later(iterations: int) -> Program | None:
+        taken.append(iterations)
+        return program
+
+    ends = []
+    for asked in (None, lambda _: None, later):
+        residual = interpreted_residual(model)
+        residual.program_after = asked
+        kernels = StepKernels(residual, interpreted_jacobians(model), CompiledSteps)
+        history = integrated(
+            model,
+            moving_inputs(model).pieces(0.2),
+            start.x,
+            np.zeros(model.size),
+            radau(3),
+            StepSettings(tolerance=1e-7 * size / displacements(model)),
+            kernels=kernels,
+        )
+        assert history.completed
+        assert history.statistics.steps > FEW_TRIES
+        ends.append(history.end.x)
+    assert len(taken) == 1
+    assert_array_equal(ends[1], ends[0])
+    assert_allclose(ends[2], ends[0], rtol=1e-12, atol=1e-14)
 
 
 def nothing_written(*arguments: Any) -> dict[str, str]:
