@@ -23,8 +23,12 @@ from cosserat_casadi.motion.moving_points import MovingPoints
 FAR = 0.02
 """Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
 
-FLATTEST = 2e-2
-"""Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster."""
+FLATTEST = 1e-3
+"""Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster.
+
+A rod that rolls loses nothing; one that is held at sections instead is a polygon, and each of them strikes. From 2e-2
+on these blows took a twentieth of the energy of a rubber rod as it rolled onto its end, on 40 modes.
+"""
 
 
 class Rows(NamedTuple):

@@ -253,16 +253,18 @@ def test_a_thrown_rod_tumbles_and_comes_to_rest() -> None:
 
 
 @pytest.mark.slow
-def test_a_leaning_rod_rolls_over_its_sections_without_an_impact_at_each() -> None:
-    """Held at 36 sections in turn it took an impact at each; on its way it presses, and sections ahead are open."""
+def test_a_leaning_rod_rolls_onto_its_end_and_loses_nothing_on_its_way() -> None:
+    """A section that a rod rolls onto has no speed there: blows would be those of a polygon of sections."""
     leaning = RUBBER.replace("8e-3", "5e-3").replace("0.48", "0.4")
-    text = FREE.format(modes=12, along=0.0, duration=0.15, strain="planar", stuff=leaning, tangent="1, 0, -0.2")
-    text = text.replace("nodes = 10", "nodes = 28").replace("time = 1e-3", "time = 5e-3").replace("0.4\n", "0.3\n")
+    text = FREE.format(modes=16, along=0.0, duration=0.14, strain="planar", stuff=leaning, tangent="1, 0, -0.2")
+    text = text.replace("nodes = 10", "nodes = 36").replace("time = 1e-3", "time = 5e-3").replace("0.4\n", "0.3\n")
     scene = parse_scene(text.replace("frames = 41", "tolerance = 1e-3, frames = 151") + FLOOR.replace("-0.05", "-0.1"))
     motion = simulate(build(scene.with_motion_inputs(), moving=True))
     assert motion.converged, motion.message
     struck = [event for event in motion.events if event.kind == "impact"]
-    assert len(struck) < 25
+    fall = 1100.0 * np.pi * 5e-3**2 * 0.3 * GRAVITY * 0.1
+    # Held at its sections as a polygon of 48 sides it lost 0.055 of it.
+    assert sum(event.energy for event in struck[1:]) < 0.015 * fall
     rolling = [contacts[0] for contacts in motion.contacts if len(contacts) == 1 and 0.1 < contacts[0].at < 0.95]
     assert len(rolling) > 10
     assert not any(contact.lies for contact in rolling)
