@@ -43,6 +43,7 @@ class StepSettings:
         longest: longest step, s.
         shortest: shortest step, as a share of the piece.
         newton: error that Newton's method may leave, over the tolerance.
+        lasting: time, s, over which the error of a shorter step acts: it counts by its quotient with the step.
     """
 
     tolerance: FloatArray
@@ -51,6 +52,7 @@ class StepSettings:
     longest: float = np.inf
     shortest: float = 1e-9
     newton: float = 1e-3
+    lasting: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,9 @@ CLOSED = 1e-9
 ON_GUARD = 1e-13
 """Value of a guard that counts as zero."""
 
+MOST_LASTING = 100.0
+"""Largest factor on the error of a step by its shortness: what Newton's method leaves of short ones counts too."""
+
 FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
@@ -211,7 +214,9 @@ class StepRun:
         if self.matrices is None:
             return float("nan")
         error = estimated_error(self.matrices, self.now, solution.unknowns, self.bounds, after_a_jump)
-        return max(error, self._overlooked(solution, self.matrices))
+        error = max(error, self._overlooked(solution, self.matrices))
+        # Over a very short step a small error of position is a large one of velocity, which the motion goes on with.
+        return error * float(np.clip(self.settings.lasting / self.size, 1.0, MOST_LASTING))
 
     def _overlooked(self, solution: StageSolution, matrices: StepMatrices) -> float:
         """Error over tolerance by what the stages do not see of the equations between them, at their kinks in time."""

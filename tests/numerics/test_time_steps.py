@@ -21,6 +21,7 @@ from moving import (
 )
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
+from scipy.special import erf
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics import broyden
@@ -358,6 +359,25 @@ def test_van_der_pol_costs_no_more_than_radau_of_scipy() -> None:
     assert abs(integration.end.x[0] - fine) < 1e-4
     assert integration.statistics.steps < len(scipy.t)
     assert integration.statistics.jacobians < integration.statistics.steps
+
+
+def test_a_blow_shorter_than_errors_of_position_tell_is_right_in_its_velocity() -> None:
+    """A blow of a microsecond gives a mass the speed 1: in positions of the blow 1e-6 is all that is to be seen."""
+    width = 1e-6
+
+    def blow(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+        return np.exp(-(((t - 3 * width) / width) ** 2)) / (width * np.sqrt(np.pi)) + 0.0 * x
+
+    equations = explicit(blow, lambda t, x, v: np.zeros((1, 1)), lambda t, x, v: np.zeros((1, 1)))
+    start = Instant(0.0, np.zeros(1), np.zeros(1), blow(0.0, np.zeros(1), np.zeros(1)))
+    errors = []
+    for lasting in (0.0, 1e-3):
+        settings = StepSettings(np.array([1e-6]), first=1e-7, lasting=lasting)
+        motion = integrate(equations, start, 1.0, radau(3), settings)
+        assert motion.outcome is StepOutcome.COMPLETED
+        errors.append(abs(motion.end.v[0] - 0.5 * (1.0 + erf(3.0))))
+    assert errors[1] < 1e-3
+    assert errors[1] < 0.1 * errors[0]
 
 
 def test_pieces_are_chained_over_a_jump() -> None:
