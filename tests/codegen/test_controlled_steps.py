@@ -97,6 +97,21 @@ def test_kinks_are_seen() -> None:
     assert_allclose(seen.end.x, 0.1 * np.sin(0.5), rtol=0, atol=1e-4)
 
 
+def test_errors_of_short_steps_act_for_a_while() -> None:
+    """In a blow of microseconds; without that time the steps through it are fewer, in C as in Python."""
+
+    def blow(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+        return np.array([1e6 * np.exp(-((t * 1e6 - 3.0) ** 2))])
+
+    equations = explicit(blow, lambda t, x, v: np.zeros((1, 1)), lambda t, x, v: np.zeros((1, 1)))
+    steps = []
+    for lasting in (0.0, 1e-3):
+        settings = {"first": 1e-7, "lasting": lasting}
+        run = run_of(equations, [0.0], [0.0], 1.0, 1e-6, settings=settings)
+        steps.append(len(assert_same(run, atol=1e-8).steps))
+    assert steps[1] > steps[0]
+
+
 def test_what_is_looked_at_after_each_step() -> None:
     times: list[float] = []
 

@@ -97,6 +97,7 @@ typedef struct {
   real *tried_at; /* time before each try */
   real stop;
   real newton; /* weighted error that Newton's method may leave */
+  real lasting; /* time over which the error of a shorter step acts */
   real longest_allowed;
   real shortest;
   real time;
@@ -824,7 +825,9 @@ static steps_outcome try_step(real end, workspace *work) {
     if (status == SOLVER_MOTION_SINGULAR) return STEP_SINGULAR;
     return status == SOLVER_MOTION_NOT_FINITE ? STEP_NOT_FINITE : STEP_TOO_SMALL;
   }
-  const real error = larger_error(estimated_error(jumped, work), overlooked_error(work));
+  /* Over a very short step a small error of position is a large one of velocity. */
+  const real acting = within(work->lasting / work->size, 1, MOST_LASTING);
+  const real error = acting * larger_error(estimated_error(jumped, work), overlooked_error(work));
   if (work->interrupted) return INTERRUPTED;
   /* Not "error > 1": an error that is not a number must not be accepted. */
   if (!(error <= 1)) {
