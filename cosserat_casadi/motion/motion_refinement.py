@@ -99,6 +99,9 @@ SHORT = 0.25
 MOST_RUNGS = 3
 """Most rungs of the ladder of modes that are climbed at once."""
 
+ORDER_OF_WAVES = 2.3
+"""Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
+
 MOST_WITHOUT_START = 4
 """Sets of modes without a start in contact before none is told."""
 
@@ -111,6 +114,14 @@ ERRATIC = (
     "Damp the rod, or give a larger tolerance."
 )
 """Sentence for a motion that more exact steps do not bring nearer to a limit."""
+
+
+UNDAMPED = (
+    "Its impacts send waves of all lengths along a rod without damping: on {fewer} and {more} modes the paths are "
+    "{distance:.2g} of the length apart, and on {most} they are not expected to meet the tolerance. Give the rod "
+    "damping.retardation_time, the obstacle a width, or a larger tolerance."
+)
+"""Sentence for a motion that more modes do not bring near to a limit."""
 
 
 @dataclass(frozen=True)
@@ -224,6 +235,18 @@ class _Search:
             if self.foreseen(self.ladder[higher], self.order) <= SPACE_SHARE * self.tolerance:
                 return higher
         return min(rung + MOST_RUNGS, last)
+
+    @property
+    def hopeless(self) -> bool:
+        """Whether waves without damping that impacts sent out keep motions on more modes far apart.
+
+        They have all lengths, so that errors fall slowly on any number of modes.
+        """
+        damped = all(rod.damping is not None for rod in self.scene.rods)
+        struck = any(event.kind == "impact" for event in self.last.history.events)
+        if damped or not struck or len(self.levels) < 2:
+            return False
+        return self.foreseen(self.ladder[-1], ORDER_OF_WAVES) > self.tolerance
 
 
 def simulate(
@@ -349,6 +372,8 @@ def _with_tolerance(search: _Search) -> Motion:
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         search.levels.append(ResolvedMotion(simulator, history, found, rung, modes, distance, unseen))
+        if search.hopeless:
+            return _given_up(search)
         # Motions on two sets of modes that are near each other do not hang on rounding.
         if len(search.levels) == 2 and distance > FAR_APART * search.tolerance and _is_erratic(search):
             return _erratic(search)
@@ -396,6 +421,14 @@ def _erratic(search: _Search) -> Motion:
     """The motion of the first level, where more exact steps do not converge: nor would more modes."""
     motion = _judged(search, search.levels[0], search.time_error, [])
     return replace(motion, message=f"{motion.message} {ERRATIC}")
+
+
+def _given_up(search: _Search) -> Motion:
+    """The motion of the last level, where those on more modes would come near to it too slowly."""
+    motion = _judged(search, search.last, search.foreseen(search.last.modes, UNKNOWN_ORDER), [])
+    fewer, last = search.levels[-2:]
+    told = UNDAMPED.format(fewer=fewer.modes, more=last.modes, distance=last.distance, most=search.ladder[-1])
+    return replace(motion, message=f"{motion.message} {told}")
 
 
 def _ladder(scene: Scene) -> tuple[int, ...]:
