@@ -81,12 +81,6 @@ class SolveError(CosseratError):
     page = "hard-cases"
 
 
-class NoReferenceError(CosseratError):
-    """There is no solution that errors could be measured against."""
-
-    page = "accuracy"
-
-
 class ExportError(CosseratError):
     """A model cannot be exported as asked, or an exported folder cannot be used.
 

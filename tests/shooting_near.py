@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 from numpy.typing import ArrayLike
 
 from cosserat_casadi import Scene, Solution
-from cosserat_casadi.bench.reference import RodState
 from cosserat_casadi.model.watched import watched_sections
+from tests.fine_reference import RodState
 from tests.reference import shooting
 from tests.reference.shooting import Tip, solve_by_shooting
 

@@ -26,7 +26,6 @@ LINES = {
     "check": "Validate a scene, say which effects were chosen and what the model and each effect will cost.",
     "export": "Write a scene as C sources, a page for a browser, an FMU, or a model of MuJoCo.",
     "tune": "Find one discretisation for ranges of inputs, or for load cases.",
-    "bench": "Measure error against time: the work-precision curve of a scene.",
 }
 """First sentence of the help of every command; the module of a command and its function have its name."""
 

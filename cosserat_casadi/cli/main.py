@@ -28,7 +28,7 @@ from cosserat_casadi.cli.signals import (
     was_terminated,
 )
 from cosserat_casadi.cli.terminal import flush_streams, prepare_streams, silence_output
-from cosserat_casadi.errors import CosseratError, ExportError, NoReferenceError, SceneError, WriteError
+from cosserat_casadi.errors import CosseratError, ExportError, SceneError, WriteError
 from cosserat_casadi.spelling import counted
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
@@ -130,9 +130,7 @@ def _failed(console: Console, error: Exception) -> int:
     if isinstance(error, CosseratError):
         _print_error(console, str(error))
         _print_page(console, error)
-        # Of these two the input is in order: the disk is full, or there is no reference.
-        if isinstance(error, NoReferenceError):
-            return NOT_FOUND
+        # The input is in order where the disk is full.
         return NOT_WRITTEN if isinstance(error, WriteError) else REFUSED
     if isinstance(error, BrokenPipeError):
         # The reader has seen enough, as head does.

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import Scene, build, discretise, read_scene, solve
-from cosserat_casadi.bench.reference import RodState, distance, states
 from cosserat_casadi.maths.typing import FloatArray
 from tests.conftest import ROOT
 from tests.families import mostly_slow
+from tests.fine_reference import RodState, distance, states
 from tests.scenes import WEIGHT, push, rod, scene
 from tests.shooting_near import shoot
 

@@ -10,22 +10,21 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
+from work_precision import session
+from work_precision.figure import FIGURES
+from work_precision.grid import Candidate
+from work_precision.measurement import Measurement
+from work_precision.plan import make_plan, run_plan
+from work_precision.record import CSV, JSON
 
 from cosserat_casadi import Scene, SceneError
-from cosserat_casadi.bench import session
-from cosserat_casadi.bench.effects import effect_times, motion_costs
-from cosserat_casadi.bench.figure import FIGURES
-from cosserat_casadi.bench.grid import Candidate
-from cosserat_casadi.bench.measurement import Measurement
-from cosserat_casadi.bench.plan import make_plan, run_plan
-from cosserat_casadi.bench.program import Times
-from cosserat_casadi.bench.record import CSV, JSON
-from cosserat_casadi.bench.table import print_effects, print_motion_times
+from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
 from cosserat_casadi.codegen.compiler import find_compiler
-from cosserat_casadi.errors import NoReferenceError
+from cosserat_casadi.codegen.timed_program import Times
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.operation_cost import is_damped, price, without_damping
 from cosserat_casadi.model.operations import count
+from tests.fine_reference import NoReferenceError
 from tests.moving_scenes import model_of
 from tests.scenes import push, rod, scene
 

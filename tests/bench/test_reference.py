@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from cosserat_casadi import Scene, read_scene, solve
-from cosserat_casadi.bench.reference import Errors, distance, find_reference
 from tests.conftest import ROOT
 from tests.families import mostly_slow
+from tests.fine_reference import Errors, distance, find_reference
 from tests.scenes import HOOK, WEIGHT, WIND, push, scene
 from tests.shooting_near import shoot
 

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
+from work_precision.grid import METHODS, candidates, distinct_methods, method_problems
+from work_precision.measurement import Measurement, front
+from work_precision.record import CSV, fingerprint, output_problems, read_rows, write_json, write_rows
+from work_precision.session import richer_candidates
+from work_precision.table import print_bench
 
 from cosserat_casadi import SceneError
-from cosserat_casadi.bench.grid import METHODS, candidates, distinct_methods, method_problems
-from cosserat_casadi.bench.measurement import Measurement, front
-from cosserat_casadi.bench.record import CSV, fingerprint, output_problems, read_rows, write_json, write_rows
-from cosserat_casadi.bench.reference import Reference
-from cosserat_casadi.bench.session import richer_candidates
-from cosserat_casadi.bench.table import print_bench
+from tests.fine_reference import Reference
 from tests.scenes import push, rod, scene
 
 

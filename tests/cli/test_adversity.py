@@ -161,14 +161,13 @@ COMMANDS = {
     "estimate": ["estimate", "touch.toml", "--output", "out.csv", "--plot", "out.svg", "--cores", "1"],
     "new": ["new", "out.toml"],
     "examples": ["examples", "deep_arch", "--output", "out"],
-    "bench": ["bench", "wire.toml", "--methods", "magnus4", "--points", "1", "--output", "out"],
 }
 """One call of each command that ends by itself, with every file that it can write."""
 
 READING = ("check", "check_time", "docs")
 """Those that write no file."""
 
-UNTITLED = ("docs", "export_fmu", "tune", "inverse_table", "new", "examples", "bench")
+UNTITLED = ("docs", "export_fmu", "tune", "inverse_table", "new", "examples")
 """Those that do not print the title of a scene."""
 
 WRITERS = [name for name in COMMANDS if name not in READING]

@@ -168,11 +168,6 @@ def test_check_says_how_lists_were_read(wire: Path) -> None:
         (["inverse", "wire.toml", "--output", "r.json"], "targets: missing"),
         (["inverse", "wire.toml", "--plot", "f.doc"], "--plot"),
         (["sing"], "sing"),
-        (["bench", "missing.toml"], "missing.toml"),
-        (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "'euler' is no method"),
-        (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "does not exist"),
-        (["bench", "wire.toml", "--points", "0", "--quick"], "must be at least 1, got 0"),
-        (["bench", "wire.toml", "--output", "wire.toml"], "is a file"),
     ],
 )
 def test_refusals(wire: Path, arguments: list[str], words: str) -> None:

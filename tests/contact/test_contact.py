@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from rich.console import Console
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve, minimize_scalar
+from work_precision.plan import make_plan
 
 from cosserat_casadi import (
     Solution,
@@ -22,7 +23,6 @@ from cosserat_casadi import (
     read_scene,
     solve,
 )
-from cosserat_casadi.bench.plan import make_plan
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import stability_margin
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids

@@ -10,8 +10,8 @@ from dataclasses import replace
 import pytest
 
 from cosserat_casadi import Outcome
-from cosserat_casadi.bench.reference import distance, states
 from cosserat_casadi.equilibrium.metrics import pose_distance
+from tests.fine_reference import distance, states
 from tests.fuzz.held import TOLERANCES, Verdict, alike, all_alike, says_unresolved, solved, verdict
 from tests.shooting_near import shoot
 

@@ -9,8 +9,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.accuracy.ranges import input_ranges
-from cosserat_casadi.bench.effects import effect_times, motion_costs
-from cosserat_casadi.bench.table import print_effects, print_motion_times
+from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay, check_outputs
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_written

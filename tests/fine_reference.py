@@ -15,7 +15,7 @@ from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.errors import NoReferenceError
+from cosserat_casadi.errors import CosseratError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
@@ -29,6 +29,12 @@ MORE_MODES = 6
 
 MORE_NODES = 8
 """Intervals that the finest discretisation has more than one and a half times as many."""
+
+
+class NoReferenceError(CosseratError):
+    """There is no solution that errors could be measured against."""
+
+    page = "accuracy"
 
 
 @dataclass(frozen=True)

@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, isfinite, nan
+from math import isfinite, nan
 from typing import Any
+
+from work_precision.grid import Candidate
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.cost import foreseen_operations
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.bench.grid import Candidate
-from cosserat_casadi.bench.program import Program, Times
-from cosserat_casadi.bench.reference import Errors, Reference, with_tolerance
+from cosserat_casadi.codegen.timed_program import Program, Times, best_time
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.discretisation import Discretisation
+from tests.fine_reference import Errors, Reference, with_tolerance
 
 LARGEST = 400_000
 """Scalar operations of residual and Jacobian beyond which they are not counted and the compiler is not asked."""
 
 LARGEST_LITERAL = 8
 """Intervals beyond which the literal system, whose operations cannot be counted, is not compiled: it takes minutes."""
-
-PATIENCE = 0.05
-"""Seconds in which the best of several runs in CasADi's virtual machine is sought."""
 
 
 @dataclass(frozen=True)
@@ -264,17 +262,3 @@ def front(rows: Sequence[Measurement]) -> list[Measurement]:
         if not unbeaten or row.pose_error < unbeaten[-1].pose_error:
             unbeaten.append(row)
     return unbeaten
-
-
-def best_time(task: Callable[[], object]) -> float:
-    """Best time of several runs, µs."""
-    # The first run builds functions.
-    task()
-    best = inf
-    end = time.perf_counter() + PATIENCE
-    while time.perf_counter() < end or best == inf:
-        start = time.perf_counter()
-        task()
-        seconds = time.perf_counter() - start
-        best = min(best, seconds)
-    return 1e6 * best

@@ -1,20 +1,31 @@
-"""``cosserat bench``."""
+"""Error against time: the work-precision curve of a scene.
+
+Usage: ``python benchmarks/bench.py SCENE [--output FOLDER] [--methods LIST] [--points N] [--quick] [--set KEY=VALUE]``.
+"""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from cosserat_casadi.bench.grid import METHODS
-from cosserat_casadi.bench.plan import make_plan, run_plan
-from cosserat_casadi.bench.record import CSV, JSON
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+
+from work_precision.grid import METHODS
+from work_precision.plan import make_plan, run_plan
+from work_precision.record import CSV, JSON
+
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.main import run
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.scene import read_scene
+from tests.fine_reference import NoReferenceError
 
 
 def bench(
@@ -37,7 +48,17 @@ def bench(
     if output is not None:
         check_inputs_stay({"--output": output / CSV, "the record of --output": output / JSON}, scene, settings)
     plan = make_plan(read_scene(scene, tuple(settings or ())), output, methods, points, quick)
-    with progress_bar() as bar:
-        interrupted = run_plan(plan, Console(), count_reporter(bar, "Finding the reference"))
+    try:
+        with progress_bar() as bar:
+            interrupted = run_plan(plan, Console(), count_reporter(bar, "Finding the reference"))
+    except NoReferenceError as error:
+        Console(stderr=True).print(str(error))
+        raise typer.Exit(NOT_FOUND) from error
     if interrupted:
         raise StoppedError
+
+
+if __name__ == "__main__":
+    app = typer.Typer(pretty_exceptions_show_locals=False)
+    app.command()(bench)
+    sys.exit(run(app))

@@ -9,10 +9,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from cosserat_casadi.bench.grid import DIAL
-from cosserat_casadi.bench.measurement import Measurement, front
-from cosserat_casadi.bench.reference import Reference
+from work_precision.grid import DIAL
+from work_precision.measurement import Measurement, front
+
 from cosserat_casadi.plots.figure import figure_class, write_figure
+from tests.fine_reference import Reference
 
 STYLES = {
     "magnus4": ("#4477aa", "o", "Magnus, 4th order"),

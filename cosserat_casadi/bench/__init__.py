@@ -1,1 +1,0 @@
-"""The work–precision bench: for one scene, the error of every method against its cost."""
