@@ -92,7 +92,7 @@ format: $(STAMP)
 
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
-	$(BIN)/python -m cosserat_casadi.scene.scene_reference
+	$(BIN)/python docs/scene_reference.py
 
 api: $(STAMP)
 	$(BIN)/python docs/api_pages.py

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import importlib.util
 import re
 import subprocess
 import sys
@@ -13,12 +14,20 @@ from typing import Any
 import pytest
 
 from cosserat_casadi import scene_from_dict
-from cosserat_casadi.scene import Scene, scene_reference
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.families import Family, contents_of
 from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.measurement_record import MeasurementRecord
 from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.rod_records import STRAINS, SectionRecord
+from tests.conftest import ROOT
+
+SCRIPT = ROOT / "docs" / "scene_reference.py"
+SPEC = importlib.util.spec_from_file_location("scene_reference", SCRIPT)
+assert SPEC is not None
+assert SPEC.loader is not None
+scene_reference = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(scene_reference)
 
 PAGE = scene_reference.reference_text()
 EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
@@ -121,7 +130,7 @@ def test_the_module_writes_the_committed_page(tmp_path: Path) -> None:
 import pathlib, runpy
 write = pathlib.Path.write_text
 pathlib.Path.write_text = lambda path, text, encoding: write(pathlib.Path({str(page)!r}), text, encoding)
-runpy.run_module("cosserat_casadi.scene.scene_reference", run_name="__main__")
+runpy.run_path({str(SCRIPT)!r}, run_name="__main__")
 """
     subprocess.run([sys.executable, "-c", program], check=True)
     assert page.read_text(encoding="utf-8") == PAGE

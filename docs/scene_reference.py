@@ -1,6 +1,6 @@
 """The reference of the scene file, every key of every table: made from the records that read it.
 
-``python -m cosserat_casadi.scene.scene_reference`` writes the committed copy, ``docs/scene.md``.
+Usage: ``python docs/scene_reference.py``, or ``make schema``: writes the committed copy, ``docs/scene.md``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cosserat_casadi.scene.fields import unit_and_meaning
 from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
 
-COMMITTED = Path(__file__).parents[2] / "docs" / "scene.md"
+COMMITTED = Path(__file__).parent / "scene.md"
 """The page in the documentation."""
 
 INTRODUCTION = """\
