@@ -11,7 +11,9 @@ RODS = ("#0072b2", "#ee6677", "#ccbb44", "#332288", "#33bbee", "#882255")
 ROD_MARKERS = ("", "o", "^", "s", "D", "v")
 """Marks along the rods of each round of colours."""
 
-ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933", "#88ccee", "#882255")
+ACTUATORS = ("#cc8800", "#884488", "#aa4444", "#aa66ee", "#aaaacc", "#0000ee")
+"""Colours of actuators, apart from those of the rods in which they run."""
+
 BODIES = "#777777"
 DISKS = ("#777777", "#44aa99", "#aa4499", "#bb8844")
 """Colours of rows of disks."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
@@ -73,6 +73,12 @@ def test_distances_are_those_of_cielab() -> None:
 def test_colours_stay_apart(colours: tuple[str, ...], least: float, reader: str) -> None:
     for one, other in combinations(colours, 2):
         assert distance(one, other, reader) > least, (one, other)
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_no_actuator_has_the_colour_of_a_rod(reader: str) -> None:
+    for one, other in product(RODS, ACTUATORS):
+        assert distance(one, other, reader) > 13.0, (one, other)
 
 
 def test_many_rods_are_told_apart() -> None:
