@@ -492,7 +492,8 @@ def _switched(
             if not legs and resume is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
                 shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if flight.coordinates is None else {}
-                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest)
+                moving = _inputs_that_move(model, piece, at.time)
+                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest, moving=moving)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
@@ -563,8 +564,25 @@ def _chatters(legs: Sequence[Leg], duration: float) -> bool:
     return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration
 
 
-def _check_start(start: ConsistentStart, duration: float, *, touches: bool, sags: Mapping[str, float]) -> None:
+def _inputs_that_move(model: Model, piece: Piece, time: float) -> list[str]:
+    """Names of inputs with a speed at a time (s), without those of loads, which move no support, joint or cable."""
+    rate = piece.at(time).rate
+    loads = {load.name for load in model.scene.loads}
+    slices = model.inputs.slices.items()
+    return [name for name, entries in slices if np.any(rate[entries]) and name.split(".")[0] not in loads]
+
+
+def _check_start(
+    start: ConsistentStart, duration: float, *, touches: bool, sags: Mapping[str, float], moving: Sequence[str]
+) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
+
+    Args:
+        start: of the motion.
+        duration: of the motion, s.
+        touches: whether rods touch where it starts.
+        sags: how much longer cables are than their ways, over the lengths of their rods, by cable.
+        moving: names of inputs with a speed where it starts.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.
@@ -586,7 +604,8 @@ def _check_start(start: ConsistentStart, duration: float, *, touches: bool, sags
         what = f"supports, joints or cables open at {start.velocity_error:.2g} 1/s with the velocities at t = 0"
         problems.append(Problem("velocities", what, "give velocities that they allow, or leave those of bodies out"))
     elif start.velocity_error * duration > CONSISTENT:
-        what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"
+        names = " or ".join(map(repr, moving)) or "an input"
+        what = f"{names}, which moves supports, joints or cables, has a speed at t = 0, where the scene is at rest"
         remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
         problems.append(Problem("motions", what, remedy))
     if problems:
