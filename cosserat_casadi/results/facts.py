@@ -218,7 +218,8 @@ def tube_path_facts(path: TubePath) -> Titled:
 
 def _outcome(converged: bool, label: str, message: str) -> str:
     """The outcome in a word; where it is no success, the sentence that says why."""
-    return label if converged else f"{label}: {message}"
+    words = label.replace("_", " ")
+    return words if converged else f"{words}: {message}"
 
 
 def _error(estimate: float | None, tolerance: float | None) -> str:

@@ -389,8 +389,8 @@ def test_a_long_result_is_cut() -> None:
 
 def test_a_failure_says_why() -> None:
     failed = replace(solution(), outcome=Outcome.LOAD_STALLED, message="The load stalled.")
-    assert "load_stalled: The load stalled." in repr(failed)
-    assert "no_start: " in repr(without_start())
+    assert "load stalled: The load stalled." in repr(failed)
+    assert "no start: " in repr(without_start())
 
 
 def test_a_sweep_that_was_written_is_read(tmp_path: Path) -> None:
