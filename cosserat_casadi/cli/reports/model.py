@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -13,14 +14,23 @@ from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
 from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
 from cosserat_casadi.cli.reports.numbers import discretisation_table, error_words
+from cosserat_casadi.constraints.joints import JOINT_KINDS
+from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.pose_change import rotation_vectors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.operation_cost import Price
 from cosserat_casadi.model.operations import Count
 from cosserat_casadi.scene.varying import VaryingValue
+
+IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
+"""Orientation of a joint that has none in the scene."""
+
+TURNED = 1e-6
+"""Angle between two orientations, rad, below which they are the same."""
 
 
 def print_check(
@@ -51,6 +61,8 @@ def print_check(
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
     if closing:
         print_plain(console, "Ties: " + "; ".join(closing))
+    for note in _notes_on_orientations(model):
+        print_plain(console, f"Note: {note}")
     _print_price(console, model, cost)
     if scene.accuracy.chosen_for:
         print_plain(console, "Modes and nodes were chosen for " + ", ".join(map(escape, scene.accuracy.chosen_for)))
@@ -62,6 +74,21 @@ def print_check(
         )
     if scene.touches_exactly:
         print_plain(console, "The figures are those of the free rods: where they touch obstacles, contact costs more.")
+
+
+def _notes_on_orientations(model: Model) -> Iterator[str]:
+    """Sentences on joints in the world that turn a section to the axes of the world, as none says otherwise."""
+    unloaded = model.discrete.unloaded
+    for number, joint in enumerate(model.scene.joints):
+        if joint.body is not None or joint.carries is not None or joint.at == 0.0:
+            continue
+        turn = rotation_vectors(place_of(joint).quaternion, unloaded.section(joint.rod, joint.at).quaternion)
+        held = JOINT_KINDS[joint.kind].directions(joint).rotations
+        if tuple(joint.quaternion) == IDENTITY_TURN and np.linalg.norm(held.T @ turn) > TURNED:
+            yield (
+                f"joints[{number}] turns {escape(joint.rod)} at X = {joint.at:g} to the axes of the world; "
+                "a quaternion or tangent of the joint says otherwise."
+            )
 
 
 def print_export(console: Console, solution: Solution, folder: Path) -> None:
