@@ -105,7 +105,9 @@ def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     assert len(content) > 2000
     with page.expect_download(timeout=PATIENCE) as picture:
         page.get_by_role("button", name="Save picture").click()
-    assert picture.value.suggested_filename == "robot.png"
+    # The scene has no title: the page calls it by what it shows.
+    assert picture.value.suggested_filename == "cosserat_rods.png"
+    assert film.value.suggested_filename.startswith("cosserat_rods.")
     assert picture.value.path().read_bytes().startswith(b"\x89PNG")
     page.get_by_label("Back to the equilibrium").click()
     assert not page.locator("#transport").is_visible()

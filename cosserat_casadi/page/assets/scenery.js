@@ -76,7 +76,7 @@ class Scenery {
   }
 
   save() {
-    this.printOn(document.createElement("canvas")).toBlob((content) => offer(content, "robot.png"));
+    this.printOn(document.createElement("canvas")).toBlob((content) => offer(content, "png"));
   }
 
   // A grid whose cells are a round length, under the scene or, of a planar one, behind it.
@@ -397,8 +397,10 @@ class Scenery {
   }
 }
 
-// Hand a file to the browser, to be saved.
-function offer(content, name) {
+// Hand a file to the browser, to be saved under the beginning of the scene's title.
+function offer(content, suffix) {
+  const words = document.title.toLowerCase().split(/[^\p{L}\p{N}]+/u).filter((word) => word);
+  const name = `${words.slice(0, 6).join("_") || "robot"}.${suffix}`;
   const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(content), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);

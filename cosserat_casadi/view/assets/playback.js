@@ -115,7 +115,7 @@ class Theatre {
     this.recorder.onstop = () => {
       const { mimeType } = this.recorder;
       this.recorder = null;
-      offer(new Blob(pieces, { type: mimeType }), mimeType.includes("mp4") ? "robot.mp4" : "robot.webm");
+      offer(new Blob(pieces, { type: mimeType }), mimeType.includes("mp4") ? "mp4" : "webm");
     };
     this.recorder.start();
     this.share = 0;
