@@ -194,7 +194,7 @@ def problem_of(fault: Fault, applied: Sequence[Assignment]) -> Problem:
         depth = len(assignment.created)
         if fault.path[:depth] == assignment.created:
             beyond = fault.path[len(assignment.leaf) :]
-            where = f"--set {assignment.key}{_dotted(beyond)}"
+            where = f"--set {shown(assignment.key)[1:-1]}{_dotted(beyond)}"
             break
     return Problem(where, fault.problem, fault.remedy)
 

@@ -78,7 +78,8 @@ def apply_overrides(
             assignment = assign(tables, key, _value(right.strip()), known)
             _refuse_missing_list(tables, assignment)
         except RefusedOverride as error:
-            refused.append(Problem(f"--set {key or text}", *error.args))
+            # Short, and without characters that move the cursor of a terminal.
+            refused.append(Problem(f"--set {shown(key or text)[1:-1]}", *error.args))
         else:
             applied.insert(0, assignment)
     return applied, refused
@@ -209,7 +210,7 @@ def _what_to_write(container: Any, segments: Sequence[str], depth: int) -> str:
     after = segments[depth + 1 :]
     there = _written(segments[:depth])
     if isinstance(container, dict):
-        written = _written([there, *after]) if after else f"{there}.{next(iter(_fields(container)), 'key')}"
+        written = _written([*segments[:depth], *after]) if after else f"{there}.{next(iter(_fields(container)), 'key')}"
         return f"{there} is one table, without entries of numbers: write {written}"
     if not isinstance(container, list):
         return f"{there} is one value: write {there}=…"

@@ -515,10 +515,14 @@ def test_a_large_text_is_refused():
         ("finger.length=1\ntitle='x'", "--set finger.length", "is not a TOML value"),
         ("finger..length=1", "--set finger..length", "there is no '' to set"),
         ("finger.length.x=1", "--set finger.length.x", "there is no 'x' to set"),
+        # What is shown of a key is short, and moves no cursor.
+        ("a" * 5_000 + ".b=1", "--set " + "a" * 57 + "...", "rod, support or table is named 'aaa"),
+        ("\x1b[31m.b=1", r"--set \x1b[31m.b", "rod, support or table is named"),
+        (r"finger." + "\x1b[31m=1", r"--set finger.\x1b[31m", "unknown key"),
         ("title=" + "[" * 100_000, "--set title", "is not a TOML value"),
         ("title={" + "a." * 100_000 + "b=1}", "--set title", "is not a TOML value"),
     ],
-    ids=range(20),
+    ids=range(23),
 )
 def test_a_bad_override_is_refused_where_it_stands(override, where, piece):
     with pytest.raises(SceneError) as caught:
@@ -554,6 +558,13 @@ def test_an_override_of_what_is_not_there_is_told_what_is(override, remedy):
     with pytest.raises(SceneError) as caught:
         parse_scene(scene(PUSH), overrides=[override])
     assert [problem.remedy for problem in caught.value.problems] == [remedy]
+
+
+def test_an_entry_may_have_the_name_of_its_list():
+    row = '[[disks]]\nname = "disks"\nrod = "finger"\ncount = 3\nmass = 1e-3\nradius = 0.01\nthickness = 1e-3\n'
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene(row), overrides=["disks[3].mass=1"])
+    assert caught.value.problems[0].remedy.endswith("write disks.mass")
 
 
 @pytest.mark.parametrize("key", ["spacers[1].radius", "disks[1].radius", "disks.radius"])
