@@ -199,6 +199,54 @@ def test_slider_crank_with_a_coupler_that_bends(load: float) -> None:
     assert abs(shortened) < 1e-10 if load == 0.0 else shortened > 1e-5
 
 
+def four_bar(coupler: str, rocker: str, *, tilt: float = 0.0) -> dict[str, Any]:
+    """A crank, a coupler that bends and a rocker that bends; an axis that is tilted lets neither turn in the plane."""
+    rods = [
+        link("coupler", length=COUPLER, strain=coupler, base={"tangent": [1, 0, 0]}),
+        link("rocker", length=0.2, strain=rocker, base={"position": [0.4, 0, -0.2], "tangent": [0, 0, 1]}),
+    ]
+    joints = [
+        hinge({"world": True, "position": [0, 0, 0]}, {"body": "arm"}, name="crank", angle=0.0),
+        hinge({"body": "arm", "position": [CRANK, 0, 0]}, {"rod": "coupler", "at": 0.0}),
+        {"kind": "fixed", "between": [{"rod": "coupler"}, {"body": "knee"}]},
+        hinge({"rod": "rocker"}, {"body": "knee"}, axis=[0, 1, tilt]),
+        {"kind": "revolute", "axis": Y, "rod": "rocker", "at": 0.0},
+    ]
+    bodies = [{"name": "arm"}, {"name": "knee", "mass": 0.01, "inertia": [1e-6] * 3}]
+    return scene(rods, joints, bodies=bodies, loads=[], inputs=["crank.angle"], accuracy={"tolerance": 1e-8})
+
+
+@pytest.mark.parametrize(
+    ("coupler", "rocker"),
+    mostly_slow(
+        [("planar", "planar"), ("planar", "kirchhoff"), ("kirchhoff", "planar"), ("kirchhoff", "kirchhoff")],
+        quick=[("planar", "planar")],
+    ),
+)
+def test_four_bar_of_two_links_that_bend(coupler: str, rocker: str) -> None:
+    """Without loads they stay straight: the knee is where two circles meet."""
+    solution = solve(build(scene_from_dict(four_bar(coupler, rocker))), {"crank.angle": 0.3})
+    pin = CRANK * np.array([np.cos(0.3), 0, -np.sin(0.3)])
+    foot = np.array([0.4, 0, -0.2])
+    apart = foot - pin
+    share = (COUPLER**2 - 0.2**2 + apart @ apart) / (2 * apart @ apart)
+    aside = np.sqrt(COUPLER**2 / (apart @ apart) - share**2)
+    knee = pin + share * apart + aside * np.array([-apart[2], 0, apart[0]])
+    assert solution.converged
+    assert_allclose(solution.body("knee").position, knee, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("tilt", "again"), [(0.2, False), (0.0, True)])
+def test_a_four_bar_that_is_held_twice_is_refused(tilt: float, again: bool) -> None:
+    """Planar links whose last hinge leads out of their plane, and one that the world holds in it once more."""
+    tables = four_bar("planar", "planar", tilt=tilt)
+    if again:
+        place = {"world": True, "position": [0.4, 0, 0]}
+        tables["joints"] += [{"kind": "fixed", "between": [place, {"body": "knee"}]}] * 2
+    with pytest.raises(SceneError, match="over-constrains"):
+        build(scene_from_dict(tables))
+
+
 @pytest.mark.parametrize(
     ("strain", "kind"),
     mostly_slow(
