@@ -33,17 +33,11 @@ def on_table() -> Scene:
     return scene(rods=[FLAT], loads=[WEIGHT], obstacles=[TABLE], accuracy={"tolerance": 1e-5})
 
 
-def pulled_over_bar(**more: Any) -> Scene:
-    """The rod over a bar, with a tendon along it."""
-    tendon = {
-        "name": "tendon",
-        "kind": "tendon",
-        "rod": "rod",
-        "offset": [-0.01, 0],
-        "tension": 2,
-    }
+def pulled_over_bar(tendon: dict[str, Any] | None = None, **more: Any) -> Scene:
+    """The rod over a bar, with a tendon along it, of which entries may be others."""
+    entry = {"name": "tendon", "kind": "tendon", "rod": "rod", "offset": [-0.01, 0], "tension": 2}
     plain = {"obstacles": [BAR], "accuracy": {"tolerance": 1e-8}}
-    return scene(rods=[FLAT], loads=[PUSH], actuators=[tendon], **plain | more)
+    return scene(rods=[FLAT], loads=[PUSH], actuators=[entry | (tendon or {})], **plain | more)
 
 
 @dataclass(frozen=True)

@@ -490,6 +490,25 @@ def test_many_load_cases_in_contact(pulled: ContactLibrary) -> None:
         library.solve_batch(inputs[:3], parameters=p)
 
 
+def test_what_is_no_answer_leaves_the_state_as_it_was(tmp_path: Path) -> None:
+    """The equations are solved for all of the load, and a tendon has no length left: nothing to go on from."""
+    wanted = pulled_over_bar(tendon={"offset": [-3.0, 0], "tension": 0.0})
+    made = exported_contact(wanted, tmp_path / "limp", np.zeros((0, 4)), 2, 4, estimate_errors=False, batches=True)
+    library = made.loaded
+    near, far = np.array([[0.0, 0.0, -5.0, 0.0], [0.0, 0.0, -8.0, 0.0]])
+    before = library.solve(near)
+    assert before.converged
+    beyond = library.solve(far, before)
+    assert beyond.outcome is solve(made.model, far).outcome is Outcome.PATH_VANISHED
+    assert beyond.load_factor == 1.0
+    assert beyond.state == before.state
+    assert library.track(far, before).state == before.state
+    first, second = library.solve_batch([far, near])
+    assert first.outcome is Outcome.PATH_VANISHED
+    assert not any(first.state)
+    assert_allclose(second.tips["rod"], before.tips["rod"], rtol=0, atol=1e-9)
+
+
 @pytest.mark.slow
 def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:
     wanted = over_bar()

@@ -24,6 +24,9 @@ static contact_info no_result(void) {
   return none;
 }
 
+/* Whether a solve ended with a solution for its inputs, if of the discrete equations alone. */
+static int is_solved(contact_status status) { return status == CONTACT_CONVERGED || status == CONTACT_UNRESOLVED; }
+
 static int is_known(const contact_state *state) {
   if (!state->is_known || state->arrangement < 0 || state->arrangement >= ARRANGEMENTS) return 0;
   return all_finite(state->z, ARRANGEMENT[state->arrangement].size) && all_finite(state->inputs, INPUTS);
@@ -71,20 +74,18 @@ static void move_inputs(const real *from, const real *to, const contact_options 
   if (info->status == CONTACT_CONVERGED) info->status = CONTACT_LOST_TRACK;
 }
 
-/* From a known state; the state is left as it was unless the inputs are reached. */
+/* From a known state; the state is left as it was unless the equations are solved for these inputs. */
 static contact_status follow(const real *inputs, contact_state *state, const contact_options *options, workspace *work,
                              contact_info *info) {
   work->solved[0].arrangement = state->arrangement;
   memcpy(work->solved[0].z, state->z, sizeof state->z);
   info->load_factor = 0;
-  info->arrangement = state->arrangement;
   move_inputs(state->inputs, inputs, options, work, info);
-  if (info->load_factor < 1) return info->status;
+  if (!is_solved(info->status)) return info->status;
   state->is_known = 1;
   state->arrangement = work->solved[0].arrangement;
   memcpy(state->z, work->solved[0].z, sizeof state->z);
   for (int i = 0; i < INPUTS; i++) state->inputs[i] = inputs[i];
-  info->arrangement = state->arrangement;
   return info->status;
 }
 
@@ -114,16 +115,17 @@ contact_status contact_solve(const real *inputs, contact_state *state, workspace
   if (all_finite(inputs, INPUTS)) {
     work->jacobian_of = -1;
     if (is_known(state)) status = follow(inputs, state, &LONG_WAY, work, &found);
-    if (status != CONTACT_CONVERGED && status != CONTACT_UNRESOLVED) {
+    if (!is_solved(status)) {
       contact_state own;
       contact_start(&own);
       found = no_result();
       work->jacobian_of = -1;
       status = follow(inputs, &own, &LONG_WAY, work, &found);
-      if (found.load_factor == 1) *state = own;
+      if (is_solved(status)) *state = own;
     }
   }
   found.status = status;
+  found.arrangement = state->arrangement;
 #if CONTACT_ESTIMATES_ERRORS
   if (info && status == CONTACT_CONVERGED) {
     found.error_estimate = estimated_error(state->arrangement, state->z, inputs, work);
@@ -213,6 +215,7 @@ contact_status contact_track(const real *inputs, contact_state *state, contact_m
     remember(memory, work);
   }
   found.status = status;
+  found.arrangement = state->arrangement;
   if (info) *info = found;
   return status;
 }
