@@ -85,6 +85,14 @@ def test_every_operation() -> None:
     assert_allclose(run(function, given), by_casadi(function, given), rtol=ROUNDING, atol=0)
 
 
+def test_arguments_are_not_taken_for_what_later_lines_write() -> None:
+    """No line writes an argument: what stands before it in the order of slots is the last line of the last slot."""
+    a, b, c = ca.SX.sym("a"), ca.SX.sym("b"), ca.SX.sym("c")
+    function = ca.Function("apart", [a, b, c], [c - a, c - b])
+    given = lanes(3)
+    assert_array_equal(run(function, given), by_casadi(function, given))
+
+
 def test_sums_of_products_are_one_line_where_nothing_else_reads_the_product() -> None:
     a, b, c = ca.SX.sym("a"), ca.SX.sym("b"), ca.SX.sym("c")
     product = a * c
