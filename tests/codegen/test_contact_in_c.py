@@ -509,6 +509,20 @@ def test_what_is_no_answer_leaves_the_state_as_it_was(tmp_path: Path) -> None:
     assert_allclose(second.tips["rod"], before.tips["rod"], rtol=0, atol=1e-9)
 
 
+def test_contact_without_inputs(tmp_path: Path) -> None:
+    """All of the scene is fixed: there are no derivatives, and one solution, that of Python."""
+    wanted = over_bar().model_copy(update={"inputs": ()})
+    options = {"estimate_errors": False, "batches": True, "derivatives": True}
+    made = exported_contact(wanted, tmp_path / "fixed", np.zeros((0, 0)), 1, 2, **options)
+    library = made.loaded
+    found = library.solve()
+    assert_same(found, solve(made.model))
+    assert library.track(np.zeros(0), found).converged
+    (again,) = library.solve_batch(np.zeros((1, 0)))
+    assert_same(again, solve(made.model))
+    assert_allclose(library.residual[found.arrangement](found.z, []).full(), 0.0, rtol=0, atol=1e-9)
+
+
 @pytest.mark.slow
 def test_a_library_without_the_estimate_says_so(tmp_path: Path) -> None:
     wanted = over_bar()

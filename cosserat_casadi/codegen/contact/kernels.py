@@ -115,9 +115,10 @@ class ArrangementKernels:
         """Derivative of a result along a direction of z and of the inputs."""
         of_z = self._of_z([result])
         symbols = of_z.mx_in()
-        moved = [ca.MX.sym(f"{symbol.name()}_rate", symbol.shape[0]) for symbol in symbols]
+        # Of a scene without inputs the symbol of these is empty, and has no name.
+        words = [*of_z.name_in(), *(f"{word}_rate" for word in of_z.name_in())]
+        moved = [ca.MX.sym(word, symbol.shape[0]) for word, symbol in zip(words[len(symbols) :], symbols, strict=True)]
         rate = ca.jtimes(of_z.call(symbols, True, False)[0], ca.vertcat(*symbols), ca.vertcat(*moved))
-        words = [symbol.name() for symbol in (*symbols, *moved)]
         whole = ca.Function("rate", [*symbols, *moved], [rate], words, ["result"])
         return kernel(self.equations.nominal.model, whole, f"{self.name}_{word}")
 
