@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -147,6 +148,9 @@ def test_second_derivatives_of_a_solution(tmp_path: Path, bar: ContactLibrary) -
     library = own.loaded
     with pytest.raises(AttributeError, match="export the folder with derivatives"):
         assert bar.loaded.residual
+    readmes = [(made.folder / "README.md").read_text() for made in (own, bar)]
+    assert ["`bar_f_NUMBER_residual`" in readme for readme in readmes] == [True, False]
+    assert library.residual[0].name() == "bar_f_0_residual"
     kinds = set()
     for force in (0.2, 3.0):
         inputs = down(force)
@@ -488,6 +492,17 @@ def test_many_load_cases_in_contact(pulled: ContactLibrary) -> None:
     assert_allclose(shared.tips["rod"], found[0].tips["rod"], rtol=0, atol=0)
     with pytest.raises(ValueError, match="there are 4 rows of parameters for 3 rows of inputs"):
         library.solve_batch(inputs[:3], parameters=p)
+
+
+@pytest.mark.slow
+def test_the_program_of_the_readme_has_room_for_bodies(tmp_path: Path, pulled: ContactLibrary) -> None:
+    (text,) = re.findall(r"```c\n(.*?)```", (pulled.folder / "README.md").read_text(), flags=re.DOTALL)
+    (tmp_path / "readme.c").write_text(text)
+    sources = [pulled.folder / file for file in ("pulled.c", "pulled_kernels.c")]
+    paths = ["-I", pulled.folder, tmp_path / "readme.c", *sources, "-o", tmp_path / "readme"]
+    compile_quickly("-std=c99", *QUICK, "-Wall", "-Wextra", "-fsanitize=address", *paths, "-lm")
+    done = subprocess.run([tmp_path / "readme"], capture_output=True, text=True, check=True)
+    assert_allclose(np.array(done.stdout.split(), float), pulled.loaded.solve().tips["rod"][:3], rtol=0, atol=1e-9)
 
 
 def test_what_is_no_answer_leaves_the_state_as_it_was(tmp_path: Path) -> None:

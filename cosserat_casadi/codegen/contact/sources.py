@@ -151,6 +151,7 @@ def contact_files(
         words |= _stability_words(model, tables)
     if batches:
         words |= _batch_words(model, names)
+    words["derivatives"] = derivatives
     words |= accuracy_words(chosen.scene, error_estimate, verified)
     further = (*(ERROR_FILES if chosen.richer else ()), *(STABILITY_FILES if chosen.judges_stability else ()))
     files = {
