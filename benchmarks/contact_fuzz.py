@@ -101,8 +101,8 @@ def main(
     for seed in range(first, first + count):
         verdict = judged(text_of(seed, family), modes)
         verdicts.append(verdict)
-        if verdict.faults or verdict.outcome != "converged":
-            print(f"seed {seed}: {verdict.outcome}: {'; '.join(verdict.faults)}", flush=True)
+        said = "; ".join([f"{verdict.outcome}, {verdict.seconds:.1f} s", *verdict.faults])
+        print(f"seed {seed}: {said}", flush=True)
     outcomes = Counter(verdict.outcome for verdict in verdicts)
     touching = sum(verdict.touches for verdict in verdicts)
     wrong = sum(bool(verdict.faults) for verdict in verdicts)
