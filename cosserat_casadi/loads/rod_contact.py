@@ -21,7 +21,8 @@ however hard F the sections press. Sections that are pressed harder while they s
 
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
 the bounding balls of two panels meet is mapped over the panels of the second rod, inside one that is only called where
-a panel of the first meets any of these. So panels that are apart cost one comparison each.
+a panel of the first meets any of these. So panels that are apart cost one comparison each, and groups of panels that
+are apart likewise, where a rod has more than one.
 """
 
 from __future__ import annotations
@@ -36,6 +37,9 @@ from cosserat_casadi.maths.typing import Matrix
 
 PANEL = 16
 """Sections of a panel."""
+
+GROUP = 16
+"""Panels of a group: what is far from a group of them is not compared with each."""
 
 DATA = 3
 """Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
@@ -376,6 +380,16 @@ def _ball() -> ca.Function:
     return ca.Function("ball", [places, data], [ca.vertcat(centre, ca.mmax(reach), data[2, 0], data[2, -1])])
 
 
+def _ball_about(balls: Matrix) -> Matrix:
+    """A ball about balls, 6×k: its centre, its radius, and its ends along the rod, 6×1, m."""
+    count = balls.shape[1]
+    centre = ca.sum2(balls[:3, :]) / count
+    reach = ca.sqrt(ca.sum1((balls[:3, :] - ca.repmat(centre, 1, count)) ** 2)) + balls[3, :]
+    about: Matrix = ca.vertcat(centre, ca.mmax(reach), balls[4, 0], balls[5, -1])
+    return about
+
+
+@cache
 def called_near(function: ca.Function) -> ca.Function:
     """(near, arguments…) ↦ results of a function; zeros, without a call, where near is zero."""
     symbols = [ca.MX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
@@ -409,6 +423,12 @@ class SectionsInContact:
         """Centre and radius of a ball about each panel, and its ends along the rod, 6×panels, m."""
         balls: Matrix = _ball().map(self.panels)(self.positions, self.data[:DATA, :])
         return balls
+
+    @cached_property
+    def group_balls(self) -> Matrix:
+        """The same about each group of panels, 6×groups, m."""
+        ends = [*range(0, self.panels, GROUP), self.panels]
+        return ca.horzcat(*[_ball_about(balls) for balls in ca.horzsplit(self.balls, ends)])
 
 
 def _meet(first: Matrix, second: Matrix, law: Matrix) -> Matrix:
@@ -516,21 +536,89 @@ class SectionPairs:
                 side.
             motion: the further arguments.
         """
-        near_row = called_near(_row(function, results, self.second.panels))
-        of_all = [self.first.positions, self.first.data, self.second.positions, self.second.data, self.law, *motion]
-        # One call for each panel of the first: what belongs to the second is not copied for it.
-        by_panel = [
-            ca.horzsplit(field, field.shape[1] // self.first.panels)
-            if owner == "first"
-            else [field] * self.first.panels
-            for field, owner in zip(of_all, ARGUMENTS, strict=False)
+        sides = (self.first, self.second)
+        sections = [field for side in sides for field in (side.positions, side.data)]
+        of_all = [*sections, self.law, *motion, self.first.balls, self.second.balls]
+        if self.first.panels <= GROUP:
+            return _over_panels(function, results, of_all, self.first.panels, self.second.panels)
+        ends = [*range(0, self.first.panels, GROUP), self.first.panels]
+        near = _near_any(self.first.group_balls, self.second.group_balls, self.law)
+        by_group = []
+        for field, owner in zip(of_all, _owners(function), strict=True):
+            columns = field.shape[1] // self.first.panels
+            parts_of_first = [columns * end for end in ends]
+            by_group.append(ca.horzsplit(field, parts_of_first) if owner == "first" else [field] * len(near))
+        parts = [
+            called_near(_group(function, results, after - before, self.second.panels)).call([meets, *arguments])
+            for meets, before, after, *arguments in zip(near, ends[:-1], ends[1:], *by_group, strict=True)
         ]
-        rows = []
-        for ball, *arguments in zip(ca.horzsplit(self.first.balls), *by_panel, strict=True):
-            near = ca.mmax(_meet(ca.repmat(ball, 1, self.second.panels), self.second.balls, self.law))
-            rows.append(near_row.call([near, *arguments, ball, self.second.balls]))
-        fields = zip(results, zip(*rows, strict=True), strict=True)
-        return [sum(parts[1:], parts[0]) if of == "s" else ca.horzcat(*parts) for of, parts in fields]
+        return _joined(results, parts)
+
+
+def _near_any(first: Matrix, second: Matrix, law: Matrix) -> list[Matrix]:
+    """Of each ball about sections of the first, 6×k, whether it meets any of those of the second, 6×m."""
+    count = second.shape[1]
+    return [ca.mmax(_meet(ca.repmat(ball, 1, count), second, law)) for ball in ca.horzsplit(first)]
+
+
+def _owners(function: ca.Function) -> list[str]:
+    """Owners of the arguments of a function of two panels, and of their balls behind these."""
+    return [*ARGUMENTS[: function.n_in()], "first", "second"]
+
+
+def _joined(results: str, parts: Sequence[Sequence[Matrix]]) -> list[Matrix]:
+    """Results for parts of the first rod: those of the second are summed, others stand side by side."""
+    fields = zip(results, zip(*parts, strict=True), strict=True)
+    return [sum(of_part[1:], of_part[0]) if of == "s" else ca.horzcat(*of_part) for of, of_part in fields]
+
+
+def _over_panels(
+    function: ca.Function, results: str, of_all: Sequence[Matrix], first: int, second: int
+) -> list[Matrix]:
+    """Results for all pairs of panels.
+
+    Args:
+        function: of two panels.
+        results: as :meth:`SectionPairs._over_pairs` takes them.
+        of_all: its arguments for all panels, and their balls.
+        first: panels of the first rod.
+        second: those of the second.
+    """
+    # One call for each panel of the first: what belongs to the second is not copied for it.
+    by_panel = [
+        ca.horzsplit(field, field.shape[1] // first) if owner == "first" else [field] * first
+        for field, owner in zip(of_all, _owners(function), strict=True)
+    ]
+    near = _near_any(of_all[-2], of_all[-1], of_all[LAW_ARGUMENT])
+    row = called_near(_row(function, results, second))
+    return _joined(results, [row.call([meets, *own]) for meets, *own in zip(near, *by_panel, strict=True)])
+
+
+def _symbols(function: ca.Function, first: int, second: int) -> list[ca.MX]:
+    """Symbols for the arguments of a function of two panels for so many panels, and for their balls."""
+    sizes = [*(function.size_in(i) for i in range(function.n_in())), (6, 1), (6, 1)]
+    counts = {"first": first, "second": second, "law": 1}
+    return [
+        ca.MX.sym(f"all_{i}", rows, columns * counts[owner])
+        for i, ((rows, columns), owner) in enumerate(zip(sizes, _owners(function), strict=True))
+    ]
+
+
+@cache
+def _group(function: ca.Function, results: str, first: int, second: int) -> ca.Function:
+    """A function of two panels for a group of panels of the first rod and all of the second.
+
+    Args:
+        function: of two panels.
+        results: as :meth:`SectionPairs._over_pairs` takes them.
+        first: panels of the group.
+        second: those of the second rod.
+
+    Returns:
+        the arguments for all panels, and their balls ↦ the results.
+    """
+    symbols = _symbols(function, first, second)
+    return ca.Function(f"{function.name()}_of_group", symbols, _over_panels(function, results, symbols, first, second))
 
 
 @cache
@@ -545,15 +633,10 @@ def _row(function: ca.Function, results: str, panels: int) -> ca.Function:
     Returns:
         the arguments for all panels, and their balls ↦ the results.
     """
-    owners = [*ARGUMENTS[: function.n_in()], "first", "second"]
-    sizes = [*(function.size_in(i) for i in range(function.n_in())), (6, 1), (6, 1)]
-    symbols = [
-        ca.MX.sym(f"all_{i}", rows, columns * panels if owner == "second" else columns)
-        for i, ((rows, columns), owner) in enumerate(zip(sizes, owners, strict=True))
-    ]
+    symbols = _symbols(function, 1, panels)
     arguments = [
         symbol if owner == "second" else ca.repmat(symbol, 1, panels)
-        for symbol, owner in zip(symbols, owners, strict=True)
+        for symbol, owner in zip(symbols, _owners(function), strict=True)
     ]
     near = _meet(arguments[-2], arguments[-1], symbols[LAW_ARGUMENT])
     fields = called_near(function).map(panels).call([near, *arguments[:-2]])

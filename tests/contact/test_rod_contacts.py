@@ -12,7 +12,7 @@ from scipy.optimize import brentq, fsolve
 from cosserat_casadi import Model, Outcome, build, parse_scene, simulate, solve
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
-from cosserat_casadi.loads.rod_contact import PANEL, SectionPairs, SectionsInContact, coefficient
+from cosserat_casadi.loads.rod_contact import GROUP, PANEL, SectionPairs, SectionsInContact, coefficient
 from cosserat_casadi.maths.calls import chooses, functions_within
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system import Arguments, System
@@ -297,6 +297,86 @@ def test_rods_that_are_apart_cost_no_pair() -> None:
     places = np.vstack([along, 0 * along, 0 * along])
     force, _ = gradient(places, places + 5.0)
     assert not np.any(force.full())
+
+
+@pytest.mark.parametrize("panels", [(3, 2), (GROUP, 1), (GROUP + 1, 1), (2 * GROUP + 3, GROUP + 2)])
+@pytest.mark.parametrize("itself", [False, True])
+def test_panels_and_groups_change_nothing(panels: tuple[int, int], itself: bool) -> None:
+    """Energy, forces and stiffness are those of a sum over all pairs, in NumPy, wherever borders of panels lie."""
+    rng = np.random.default_rng(1)
+    counts = [PANEL * panels[0]] * 2 if itself else [PANEL * own for own in panels]
+    apart = 0.1 if itself else -1e100
+    along = [(np.arange(count) + 0.5) / count for count in counts]
+    # Two helices that wind through each other and part, or one.
+    angles = [40 * along[0], np.pi + 40 * along[1]]
+    helices = [np.array([0.009 * np.cos(a), 0.009 * np.sin(a), 0.06 * x]) for a, x in zip(angles, along, strict=True)]
+    helices[1][1] += 0.1 * along[1]
+    if itself:
+        helices[1] = helices[0]
+    lengths = [np.full(count, 0.2 / count) for count in counts]
+    data = [ca.DM(np.vstack([own, np.full(len(own), RADIUS), x])) for own, x in zip(lengths, along, strict=True)]
+    places = [ca.MX.sym("p", 3, count) for count in counts]
+    first = SectionsInContact(places[0], data[0])
+    second = first if itself else SectionsInContact(places[1], data[1])
+    pairs = SectionPairs(first, second, ca.DM([WIDTH, STIFFNESS, apart, 0.4, 1e-3]))
+    motions = [rng.normal(size=(3 * 2, count)) for count in counts]
+    given = [ca.DM(own) for own in motions]
+    matrices = pairs.stiffness(given[0], given[0] if itself else given[1])
+    arguments = places[:1] if itself else places
+    function = ca.Function("pairs", arguments, [pairs.energy, *pairs.gradient, *matrices])
+
+    def summed(one: FloatArray, other: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        between = one[:, :, None] - other[:, None, :]
+        inside = np.maximum((TOUCHING + WIDTH) ** 2 - (between**2).sum(axis=0), 0.0)
+        factor = coefficient(WIDTH, STIFFNESS, TOUCHING) * np.outer(*lengths)
+        factor = factor * (along[1] - along[0][:, None] >= apart)
+        forces = -6 * factor * inside**2 * between
+        return float((factor * inside**3).sum()), forces.sum(axis=2), -forces.sum(axis=1)
+
+    found = [result.full() for result in function(*(helices[:1] if itself else helices))]
+    energy, *forces = summed(*helices)
+    assert energy > 0.0
+    assert_allclose(found[0][0, 0], energy, rtol=1e-12, atol=0)
+    for place, force in enumerate(forces):
+        assert_allclose(found[1 + place], force, rtol=0, atol=1e-12 * np.abs(forces[0]).max())
+
+    # Of the work of the forces in a motion, by the numbers of both motions.
+    def work(numbers: FloatArray, of: int, by: FloatArray) -> float:
+        moved = list(helices)
+        for place in (0, 1):
+            shift = np.tensordot(numbers[place], motions[0 if itself else place].reshape(3, 2, -1), (0, 1))
+            moved[place] = moved[place] + shift
+        force = summed(*moved)[1 + of]
+        return float(
+            np.tensordot(by, (motions[0 if itself else of].reshape(3, 2, -1) * force[:, None]).sum(axis=(0, 2)), 1)
+        )
+
+    step = 1e-8
+    blocks = np.zeros((2, 2, 2, 2))
+    for of, own, to, other in np.ndindex(2, 2, 2, 2):
+        change = np.zeros((2, 2))
+        change[to, other] = step
+        blocks[of, to, own, other] = (work(change, of, np.eye(2)[own]) - work(-change, of, np.eye(2)[own])) / (2 * step)
+    wanted = [blocks[0, 0], blocks[1, 0], blocks[1, 1]]
+    if itself:
+        wanted = [blocks[0, 0] + blocks[1, 1], blocks[1, 0], np.zeros((2, 2))]
+    for matrix, block in zip(found[3:], wanted, strict=True):
+        assert_allclose(matrix, block, rtol=0, atol=1e-6 * np.abs(blocks).max())
+
+
+def test_operations_of_rods_that_are_apart_grow_as_their_sections() -> None:
+    """Groups of panels that are apart cost one comparison: nothing else is called."""
+    sizes = []
+    for groups in (2, 4, 6):
+        columns = groups * GROUP * PANEL
+        far = [SectionsInContact(ca.MX.sym("x", 3, columns), ca.DM(3, columns)) for _ in range(2)]
+        pairs = SectionPairs(*far, ca.DM([WIDTH, STIFFNESS, -1e100, 0.4, 1e-3]))
+        gradient = ca.Function("gradient", [own.positions for own in far], list(pairs.gradient))
+        sizes.append(gradient.n_instructions())
+    assert sizes[2] - sizes[1] <= 1.05 * (sizes[1] - sizes[0])
+    calls = [function for function in functions_within(gradient) if function.class_name() == "Switch"]
+    # One for groups, one for panels of the first, one for pairs of panels.
+    assert len(calls) == 3
 
 
 def test_what_does_not_push_has_no_pairs_in_it() -> None:
