@@ -225,22 +225,28 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         return np.asarray(positions[0])
 
     def solution(self, index: int) -> Solution:
-        """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
+        """A point of the path as a solution, whose shape, strain and wrenches may be asked for.
+
+        It is unresolved where rods are deeper inside each other, or inside smooth obstacles, than their width.
+        """
         x = self.x[index]
         inputs = self.all_inputs[index]
         residual = column(self.model.residual(x, inputs))
+        depth = self.model.contact_depth
+        too_deep = depth is not None and float(depth(x, inputs)) > 1.0
+        outcome = Outcome.UNRESOLVED if too_deep else Outcome.CONVERGED
         solution = Solution(
             self.model,
             inputs,
             x,
-            Outcome.CONVERGED,
-            Outcome.CONVERGED.value,
+            outcome,
+            outcome.value,
             residual_norm=relative_norm(residual, x),
             iterations=0,
         )
         solution = with_smooth_contacts(solution)
         stable = self.stable
-        if stable is None or self.smallest_eigenvalue is None:
+        if too_deep or stable is None or self.smallest_eigenvalue is None:
             return solution
         return replace(
             solution,

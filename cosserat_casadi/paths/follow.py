@@ -232,19 +232,23 @@ def _smooth_guard(followed: _Followed) -> Guard | None:
 
 
 def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
-    """The path; not resolved where rods are deeper inside smooth obstacles than their width on the way."""
-    if not path.converged or not path.model.scene.has_contact:
+    """The path; not resolved where rods are deeper inside smooth obstacles than their width on the way.
+
+    One that has not come to its end has its outcome, and tells their depth beside it: it may be why.
+    """
+    if not len(path.x) or not path.model.scene.has_contact:
         return path
     depths = depths_along(path.model, path.x, path.all_inputs)
     too_deep = np.flatnonzero(depths > 1.0)
     if not len(too_deep):
         return path
-    message = (
-        f"{PathOutcome.UNRESOLVED.value} From factor {path.factor[too_deep[0]]:.6g} on a rod is up to "
-        f"{depths.max():.3g} widths deep inside an obstacle or a rod, too deep to be contact: give the contact more "
-        "width or stiffness."
+    told = (
+        f"From factor {path.factor[too_deep[0]]:.6g} on a rod is up to {depths.max():.3g} widths deep inside an "
+        "obstacle or a rod, too deep to be contact: give the contact more width or stiffness."
     )
-    return replace(path, outcome=PathOutcome.UNRESOLVED, message=message)
+    if not path.converged:
+        return replace(path, message=f"{path.message} {told}")
+    return replace(path, outcome=PathOutcome.UNRESOLVED, message=f"{PathOutcome.UNRESOLVED.value} {told}")
 
 
 def _within_limits(path: EquilibriumPath) -> EquilibriumPath:

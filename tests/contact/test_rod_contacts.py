@@ -9,13 +9,14 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
-from cosserat_casadi import Model, Outcome, build, parse_scene, simulate, solve
+from cosserat_casadi import Model, Outcome, build, follow, parse_scene, simulate, solve
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.rod_contact import GROUP, PANEL, SectionPairs, SectionsInContact, coefficient
 from cosserat_casadi.maths.calls import chooses, functions_within
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.scene import Simulation
 
 RADIUS = 5e-3
@@ -258,6 +259,17 @@ def test_what_is_deeper_than_the_width_or_passes_through_is_told() -> None:
     assert above.converged
     assert barriers.are_between(above.x, below.x, (inputs, inputs))
     assert not barriers.are_between(above.x, above.x, (inputs, inputs))
+
+
+def test_a_path_that_stops_where_rods_are_inside_each_other_tells_that() -> None:
+    path = follow(crossed(0.0, "stiffness = 1e3"), "push.force", [0, 0, -6.0])
+    assert path.outcome is PathOutcome.LOAD_STALLED
+    assert "widths deep inside an obstacle or a rod" in path.message
+    assert path.solution(0).converged
+    last = path.solution(-1)
+    assert last.outcome is Outcome.UNRESOLVED
+    assert last.stable is None
+    assert "widths deep inside 'upper'" in last.message
 
 
 def test_rods_inside_each_other_from_the_start_are_refused() -> None:
