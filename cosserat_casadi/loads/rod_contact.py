@@ -39,7 +39,7 @@ PANEL = 16
 """Sections of a panel."""
 
 GROUP = 16
-"""Panels of a group: what is far from a group of them is not compared with each."""
+"""Panels of a group: sections that are far from a group are not compared with its panels."""
 
 DATA = 3
 """Numbers of a section beside its position: length of rod that it stands for, radius, distance along the rod, m."""
