@@ -29,9 +29,10 @@ from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
+from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import function_of_displacements
 from cosserat_casadi.motion.going_on import StartOfMotion
-from cosserat_casadi.motion.history import functions_of_flight
+from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.repeated_call import RepeatedCall
@@ -108,7 +109,9 @@ class MotionCompiler:
             if stepper is not None:
                 residual.program = self._program(model)
                 residual.program_after = partial(_program_after, model)
-        return StepKernels(residual, interpreted_jacobians(model) if jacobians is None else jacobians.matrices, stepper)
+        if jacobians is None:
+            return StepKernels(residual, interpreted_jacobians(model), stepper)
+        return StepKernels(residual, jacobians.matrices, stepper, jacobians.library)
 
     def _program(self, model: Model) -> ScalarProgram | None:
         """Inverse dynamics as a program; None where to write it does not pay, or where it has none."""
@@ -253,12 +256,17 @@ def _residual(model: Model) -> list[ca.Function]:
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
     # Every motion asks for the paths of tips, for how far unknowns move them, and for rows on the constraints.
     beside = [*functions_of_tips(model), function_of_displacements(model), *functions_of_flight(model)]
+    for points in touching_points(model):
+        beside += points.in_iterations
     # With parameters no motion is computed, and rows have no parameters.
     return [residual, *beside, *([] if model.parameters.size else functions_of_closing(model))]
 
 
 def _jacobians(model: Model) -> list[ca.Function]:
-    return [dense_jacobians(model, JACOBIANS)]
+    beside = derivatives_of_flight(model)
+    for points in touching_points(model):
+        beside += points.in_derivatives
+    return [dense_jacobians(model, JACOBIANS), *beside]
 
 
 WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}

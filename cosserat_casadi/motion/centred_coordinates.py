@@ -20,11 +20,10 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_frame import BaseKernels, SeenFromBase, frame_weights
 from cosserat_casadi.motion.contact_forces import PushedResidual
-from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import flies_alone
 from cosserat_casadi.motion.one_sided import OneSided
-from cosserat_casadi.motion.repeated_call import RepeatedCall, repeated
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations, Residual
 from cosserat_casadi.rod.rod_motion import StrainRates
 
@@ -50,11 +49,11 @@ class CentredCoordinates:
 
     Args:
         model: of one rod that flies free, see :func:`can_be_centred`.
-        library: shared object that has the functions of :attr:`repeated`; None without one.
+        libraries: shared objects that have :attr:`in_iterations` and :attr:`derivatives`.
     """
 
-    def __init__(self, model: Model, library: str | None = None) -> None:
-        self._library = library
+    def __init__(self, model: Model, libraries: Libraries = INTERPRETED) -> None:
+        self._libraries = libraries
         ((_, entries),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
         self._model = model
         self._pose = np.arange(entries.start, entries.stop)
@@ -62,15 +61,19 @@ class CentredCoordinates:
         self._strains = np.delete(np.arange(model.size), self._pose)
         functions = _Functions(model)
         self._functions = functions
-        self._base = repeated(functions.base, library)
+        self._base = repeated(functions.base, libraries.residual)
         self._position = functions.position.expand()
-        self._derivatives = functions.derivatives
         self._centred = RepeatedCall(functions.centred)
 
     @property
-    def repeated(self) -> list[ca.Function]:
+    def in_iterations(self) -> list[ca.Function]:
         """The functions that every step calls."""
-        return [self._functions.base, self._composed([])]
+        return [self._functions.base, self._composed]
+
+    @property
+    def derivatives(self) -> ca.Function:
+        """(y, v, a) ↦ derivatives of the base's unknowns with y, 7×size, and their rates."""
+        return self._functions.derivatives
 
     def to_model(self, instant: Instant) -> Instant:
         """A state in the unknowns of the model, from one in these coordinates."""
@@ -144,9 +147,8 @@ class CentredCoordinates:
             x = y[own].copy()
             x[self._pose] = self._place(x)
             _, gaps = follower.gaps(x, inputs[0])
-            # The rod is alone: all contacts push it.
-            (weights,) = follower.pushed(gaps, y[self._size :]).values()
-            return np.concatenate([self._pushed(y[own], v[own], a[own], *inputs, weights), follower.open_by(gaps)])
+            rows = self._dynamics(y[own], v[own], a[own], *inputs)
+            return np.concatenate([rows - follower.push(gaps, x, inputs[0], y[self._size :]), follower.open_by(gaps)])
 
         return pushed
 
@@ -158,15 +160,10 @@ class CentredCoordinates:
     @cached_property
     def _dynamics(self) -> RepeatedCall:
         """(y, v, a, inputs, inputs_rate, inputs_acceleration) ↦ residual of the model."""
-        return repeated(self._composed([]), self._library)
+        return repeated(self._composed, self._libraries.residual)
 
-    @cached_property
-    def _pushed(self) -> RepeatedCall:
-        """The same less the derivative of a weighted sum of positions, whose weights are the last argument."""
-        # All obstacles face the same points.
-        return repeated(self._composed([facings(self._model)[0].points.push]), None)
-
-    def _composed(self, pushes: list[ca.Function]) -> ca.Function:
+    @property
+    def _composed(self) -> ca.Function:
         dynamics = self._model.inverse_dynamics
         *_, value, rate, acceleration = dynamics.mx_in()
         y = [ca.MX.sym(word, self._size) for word in ("y", "v", "a")]
@@ -175,12 +172,7 @@ class CentredCoordinates:
             for own, base in zip(y, ca.vertsplit(self._functions.base(*y), POSE_SIZE), strict=True)
         )
         rows = dynamics(x, v, a, value, rate, acceleration)
-        arguments = [*y, value, rate, acceleration]
-        for push in pushes:
-            weights = ca.MX.sym("weights", push.size1_in(2))
-            rows -= push(x, value, weights)
-            arguments.append(weights)
-        return ca.Function("centred_dynamics", arguments, [ca.densify(rows)])
+        return ca.Function("centred_dynamics", [*y, value, rate, acceleration], [ca.densify(rows)])
 
     def _with_base(self, own: ca.MX, base: ca.MX) -> ca.MX:
         """Unknowns of the model, or their rates, from those of the steps and those of the base."""
@@ -198,8 +190,12 @@ class CentredCoordinates:
     def _jet(self, instant: Instant) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Rows of the base in Φ, Φ̇ and Φ̈, shape (7, size) each."""
         own = self._own(instant)
-        value, rate, acceleration = self._derivatives(own.x, own.v, own.a)
-        return value.full(), rate.full(), acceleration.full()
+        value, rate, acceleration = self._derivatives.matrices(own.x, own.v, own.a)
+        return value, rate, acceleration
+
+    @cached_property
+    def _derivatives(self) -> RepeatedCall:
+        return repeated(self.derivatives, self._libraries.jacobians, ORDERS, as_scalars=False)
 
 
 class _Functions:
@@ -252,7 +248,7 @@ class _Functions:
             by_state_rate @ value + by_state @ rate,
             by_state_acceleration @ value + 2 * (by_state_rate @ rate) + by_state @ acceleration,
         ]
-        return ca.Function("derivatives", self._symbols, [ca.densify(order) for order in orders])
+        return ca.Function("centred_derivatives", self._symbols, [ca.densify(order) for order in orders])
 
     @cached_property
     def centred(self) -> ca.Function:

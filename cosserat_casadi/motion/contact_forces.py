@@ -151,6 +151,13 @@ class Follower:
             pushed[facing.points] = pushed.get(facing.points, 0.0) + force * facing.weights(gap)
         return pushed
 
+    def push(self, gaps: Sequence[SectionGap], x: FloatArray, inputs: FloatArray, forces: FloatArray) -> FloatArray:
+        """Sum of forces times gradients of their gaps, which the equations of motion are less by, shape (n,)."""
+        total = np.zeros(len(x))
+        for points, weights in self.pushed(gaps, forces).items():
+            total += points.gradient(x, inputs, weights)
+        return total
+
     def curvature(
         self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap], forces: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
@@ -212,9 +219,9 @@ class PushedResidual:
         inputs = self.piece.at(t).value
         _, gaps = self.follower.gaps(x[:size], inputs)
         rows = self.plain.residual(t, x[:size], v[:size], a[:size])
-        for points, weights in self.follower.pushed(gaps, x[size:]).items():
-            rows = rows - points.gradient(x[:size], inputs, weights)
-        return np.concatenate([rows, self.follower.open_by(gaps)])
+        return np.concatenate(
+            [rows - self.follower.push(gaps, x[:size], inputs, x[size:]), self.follower.open_by(gaps)]
+        )
 
 
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:

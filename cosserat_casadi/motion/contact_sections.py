@@ -27,8 +27,8 @@ from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_bodies import BodyFacing
 from cosserat_casadi.motion.contact_gap import FAR, Facing, Minimum, Rows, SectionGap
 from cosserat_casadi.motion.lying_sections import laid_sections
-from cosserat_casadi.motion.moving_points import centre_of, nodes_of
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.moving_points import MovingPoints, centre_of, nodes_of
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall
 
 SECTIONS_IN_ELEMENT = 200
 """Sections of an element at which gaps are looked at first."""
@@ -340,20 +340,33 @@ def _step_down(gaps: FloatArray, index: int) -> float:
     return float(neighbours.max() - gaps[index])
 
 
-def facings(model: Model) -> list[Facing]:
-    """Every rod and every body with every obstacle that it may touch exactly."""
+def facings(model: Model, libraries: Libraries = INTERPRETED) -> list[Facing]:
+    """Every rod and every body with every obstacle that it may touch exactly.
+
+    Args:
+        model: the model, built for a motion.
+        libraries: shared objects that have the functions of :func:`touching_points`.
+    """
     # Its functions are those of every motion of the model.
-    return kept_with(model, "_facings", lambda: _facings(model))
+    kept: dict[Libraries, list[Facing]] = kept_with(model, "_facings", dict)
+    if libraries not in kept:
+        kept[libraries] = _facings(model, libraries)
+    return kept[libraries]
 
 
-def _facings(model: Model) -> list[Facing]:
+def touching_points(model: Model, libraries: Libraries = INTERPRETED) -> list[MovingPoints]:
+    """Points of all rods and bodies that may touch; none in a scene without exact contact."""
+    return list(dict.fromkeys(facing.points for facing in facings(model, libraries)))
+
+
+def _facings(model: Model, libraries: Libraries) -> list[Facing]:
     found: list[Facing] = []
     exact = [obstacle for obstacle in model.scene.obstacles if not obstacle.is_smooth]
     for rod in model.scene.rods:
         concerned = [obstacle for obstacle in exact if obstacle.concerns(rod.name)]
         if not concerned:
             continue
-        points = nodes_of(model, rod.name)
+        points = nodes_of(model, rod.name, libraries)
         for obstacle in concerned:
             ends = watched_ends(model, rod.name, obstacle)
             found.append(RodFacing(model, rod.name, obstacle, points, False, ends))
@@ -361,6 +374,6 @@ def _facings(model: Model) -> list[Facing]:
         concerned = [obstacle for obstacle in exact if obstacle.concerns_body(body.name)]
         if not concerned:
             continue
-        points = centre_of(model, body.name)
+        points = centre_of(model, body.name, libraries)
         found += [BodyFacing(model, body.name, obstacle, points, True, ball_radius(body)) for obstacle in concerned]
     return found

@@ -34,6 +34,7 @@ from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.numerics.consistent_start import saddle_at
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
@@ -63,14 +64,16 @@ class ExactContacts:
 
     Attributes:
         model: the model, built for a motion.
+        libraries: shared objects that have the functions of its points.
     """
 
     model: Model
+    libraries: Libraries = INTERPRETED
 
     @cached_property
     def facings(self) -> list[Facing]:
         """Rods and bodies, with the obstacles that they may touch."""
-        return facings(self.model)
+        return facings(self.model, self.libraries)
 
     @cached_property
     def meeting_ends(self) -> MeetingEnds:

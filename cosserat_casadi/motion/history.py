@@ -26,7 +26,7 @@ from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free, functions_of_momentum
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall
 from cosserat_casadi.motion.sided_contacts import SidedContacts
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
@@ -365,29 +365,34 @@ class FreeFlight:
         return of_steps, lambda instant: guards(self.to_model(instant))
 
 
-def free_flight(model: Model, p: FloatArray | None = None, library: str | None = None) -> FreeFlight:
+def free_flight(model: Model, p: FloatArray | None = None, libraries: Libraries = INTERPRETED) -> FreeFlight:
     """The coordinates of steps and the keeper of momentum of a model.
 
     Args:
         model: the model.
         p: as of :func:`integrated`.
-        library: shared object that has :func:`functions_of_flight`; None without one.
+        libraries: shared objects that have :func:`functions_of_flight` and :func:`derivatives_of_flight`.
     """
     # Who asks for parameters wants the steps in the unknowns of the model, to differentiate them.
-    return _flight(model, p is None and can_be_centred(model), library)
+    return _flight(model, p is None and can_be_centred(model), libraries)
 
 
-def _flight(model: Model, centred: bool, library: str | None = None) -> FreeFlight:
-    coordinates = CentredCoordinates(model, library) if centred else None
+def _flight(model: Model, centred: bool, libraries: Libraries = INTERPRETED) -> FreeFlight:
+    coordinates = CentredCoordinates(model, libraries) if centred else None
     to_model = None if coordinates is None else coordinates.to_model
-    keeper = MomentumKeeper(model, to_model, library) if flies_free(model) else None
+    keeper = MomentumKeeper(model, to_model, libraries.residual) if flies_free(model) else None
     return FreeFlight(model, coordinates, keeper)
 
 
 def functions_of_flight(model: Model) -> list[ca.Function]:
     """The functions that every step of what flies free calls; none where something is held."""
-    functions = CentredCoordinates(model).repeated if can_be_centred(model) else []
+    functions = CentredCoordinates(model).in_iterations if can_be_centred(model) else []
     return [*functions, *functions_of_momentum(model)] if flies_free(model) else functions
+
+
+def derivatives_of_flight(model: Model) -> list[ca.Function]:
+    """The functions that equations of what flies free are linearised with, beside those of the model."""
+    return [CentredCoordinates(model).derivatives] if can_be_centred(model) else []
 
 
 def integrated(
@@ -435,7 +440,7 @@ def integrated(
         if resume is not None and not isinstance(resume.phases, ContactPhase):
             first = resume.phases
         return switched(pairs, first)
-    switching = SidedContacts(model)
+    switching = SidedContacts(model, chosen.libraries)
     if resume is not None and isinstance(resume.phases, ContactPhase):
         follower = Follower(switching.contacts.facings, resume.phases.touches)
         follower.places = list(resume.places)

@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
 
 
 class MovingPoints:
@@ -26,13 +26,13 @@ class MovingPoints:
     Args:
         model: the model, built for a motion.
         placed: the positions in a system, 3×M.
-
-    Attributes:
-        push: (x, inputs, weights) ↦ derivative of the weighted sum of the positions with the unknowns, n×1.
-        gradient: the same on arrays, shape (n,).
+        name: of the points in C.
+        libraries: shared objects that have :attr:`in_iterations` and :attr:`in_derivatives`.
     """
 
-    def __init__(self, model: Model, placed: Callable[[System], Matrix]) -> None:
+    def __init__(
+        self, model: Model, placed: Callable[[System], Matrix], name: str, libraries: Libraries = INTERPRETED
+    ) -> None:
         x = ca.MX.sym("x", model.size)
         inputs = ca.MX.sym("inputs", model.inputs.size)
         system = System(model.discrete, Arguments(x, inputs))
@@ -40,13 +40,39 @@ class MovingPoints:
         weights = ca.MX.sym("weights", positions.shape[0])
         total = ca.dot(weights, positions)
         gradient = ca.densify(ca.gradient(total, x))
-        # As scalars: they are asked for in every iteration, and before and after every step.
-        self._positions = RepeatedCall(ca.Function("positions", [x, inputs], [positions]).expand())
         self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
-        self.push = ca.Function("gradient", [x, inputs, weights], [gradient]).expand()
-        self.gradient = RepeatedCall(self.push)
         self._symbols = [x, inputs, weights]
         self._written = (positions, total, gradient)
+        self._name = name
+        self._libraries = libraries
+
+    @property
+    def in_iterations(self) -> list[ca.Function]:
+        """Positions, and the derivative of their weighted sum: iterations ask for them, and guards of every step."""
+        positions, _, gradient = self._written
+        return [
+            ca.Function(f"{self._name}_positions", self._symbols[:2], [positions]),
+            ca.Function(f"{self._name}_gradient", self._symbols, [gradient]),
+        ]
+
+    @property
+    def in_derivatives(self) -> list[ca.Function]:
+        """Derivatives of the positions, and second derivatives of their weighted sum, column after column."""
+        positions, _, gradient = self._written
+        first, second = (ca.densify(ca.jacobian(part, self._symbols[0])) for part in (positions, gradient))
+        return [
+            ca.Function(f"{self._name}_jacobian", self._symbols[:2], [ca.vec(first)]),
+            ca.Function(f"{self._name}_hessian", self._symbols, [ca.vec(second)]),
+        ]
+
+    @cached_property
+    def _positions(self) -> RepeatedCall:
+        return repeated(self.in_iterations[0], self._libraries.residual)
+
+    @cached_property
+    def gradient(self) -> RepeatedCall:
+        """(x, inputs, weights) ↦ derivative of the weighted sum of the positions with the unknowns, shape (n,)."""
+        return repeated(self.in_iterations[1], self._libraries.residual)
 
     def positions(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """The positions, shape (M, 3), m; several contacts and guards ask for them at one state."""
@@ -97,26 +123,28 @@ class MovingPoints:
 
     @cached_property
     def _hessian(self) -> RepeatedCall:
-        second = ca.densify(ca.jacobian(self._written[2], self._symbols[0]))
-        return RepeatedCall(ca.Function("hessian", self._symbols, [ca.vec(second)]))
+        return repeated(self.in_derivatives[1], self._libraries.jacobians, as_scalars=False)
 
     @cached_property
     def _jacobian(self) -> RepeatedCall:
-        first = ca.densify(ca.jacobian(self._written[0], self._symbols[0]))
-        return RepeatedCall(ca.Function("jacobian", self._symbols[:2], [ca.vec(first)]))
+        return repeated(self.in_derivatives[0], self._libraries.jacobians, as_scalars=False)
 
 
-def nodes_of(model: Model, rod: str) -> MovingPoints:
+def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The nodes of a rod."""
+    number = [record.name for record in model.scene.rods].index(rod)
 
     def placed(system: System) -> Matrix:
         base = system.base(rod)
         turned = quaternion_to_matrix(base.quaternion) @ system.shapes[rod].position
         return ca.repmat(ca.MX(base.position), 1, turned.shape[1]) + turned
 
-    return MovingPoints(model, placed)
+    return MovingPoints(model, placed, f"rod_{number}", libraries)
 
 
-def centre_of(model: Model, body: str) -> MovingPoints:
+def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The origin of a body."""
-    return MovingPoints(model, lambda system: system.frame(FrameName("body", body)).position)
+    number = [record.name for record in model.scene.bodies].index(body)
+    return MovingPoints(
+        model, lambda system: system.frame(FrameName("body", body)).position, f"body_{number}", libraries
+    )

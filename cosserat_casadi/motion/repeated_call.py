@@ -9,6 +9,7 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -117,9 +118,31 @@ class RepeatedCall:
         return MachineCode(address, arguments, results, integers, scratch, loaded, library)
 
 
-def repeated(function: ca.Function, library: str | None) -> RepeatedCall:
-    """A function with one result: that of its name in a shared object, or, without one, in CasADi's virtual machine."""
+class Libraries(NamedTuple):
+    """Shared objects with the functions of a motion; None where CasADi's virtual machine runs them.
+
+    Attributes:
+        residual: has inverse dynamics, and the functions that every iteration calls.
+        jacobians: has its derivatives, and the other functions that equations are linearised with.
+    """
+
+    residual: str | None = None
+    jacobians: str | None = None
+
+
+INTERPRETED = Libraries()
+"""No shared objects."""
+
+
+def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
+    """A function: that of its name in a shared object, or, without one, in CasADi's virtual machine.
+
+    Args:
+        function: the function.
+        library: the shared object; None without one.
+        results: how many of its results are wanted.
+        as_scalars: whether the virtual machine runs it as scalars, which takes a tenth to two thirds of the time.
+    """
     if library is not None:
-        return RepeatedCall(ca.external(function.name(), library), library=library)
-    # As scalars functions take a tenth to two thirds of the time.
-    return RepeatedCall(function if chooses(function) else function.expand())
+        return RepeatedCall(ca.external(function.name(), library), results, library)
+    return RepeatedCall(function.expand() if as_scalars and not chooses(function) else function, results)

@@ -20,6 +20,7 @@ from cosserat_casadi.motion.event_restart import Restart
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import Closed, OneSided
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -30,14 +31,16 @@ class SidedContacts:
 
     Attributes:
         model: the model, built for a motion.
+        libraries: shared objects that have the functions of the points that touch.
     """
 
     model: Model
+    libraries: Libraries = INTERPRETED
 
     @cached_property
     def contacts(self) -> ExactContacts:
         """Its contacts with obstacles."""
-        return ExactContacts(self.model)
+        return ExactContacts(self.model, self.libraries)
 
     @cached_property
     def sided(self) -> OneSided:

@@ -30,6 +30,7 @@ from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.pose_series import tip_poses
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
@@ -180,8 +181,8 @@ class Simulator:
         return moving_inputs(self.model)
 
     @cached_property
-    def _flights(self) -> dict[str | None, FreeFlight]:
-        """Coordinates and momentum of what flies free, by the shared object that has their functions."""
+    def _flights(self) -> dict[Libraries, FreeFlight]:
+        """Coordinates and momentum of what flies free, by the shared objects that have their functions."""
         return {}
 
     @cached_property
@@ -326,9 +327,9 @@ class Simulator:
         pieces = self.moving.pieces(self.simulation.duration)
         rates = np.zeros(self.model.size) if self.start.v is None else self.start.v
         kernels = None if self.source is None else self.source.kernels(self.model)
-        library = None if kernels is None else kernels.library
-        if library not in self._flights:
-            self._flights[library] = free_flight(self.model, library=library)
+        libraries = INTERPRETED if kernels is None else kernels.libraries
+        if libraries not in self._flights:
+            self._flights[libraries] = free_flight(self.model, libraries=libraries)
         history = integrated(
             self.model,
             pieces,
@@ -340,7 +341,7 @@ class Simulator:
             phases=self.start.phases,
             kernels=kernels,
             resume=self.start.resume,
-            flight=self._flights[library],
+            flight=self._flights[libraries],
             stops=self.watch.guards,
         )
         if self.source is not None:

@@ -14,7 +14,7 @@ import casadi as ca
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.time_steps import Stepper
 
@@ -30,16 +30,23 @@ class StepKernels:
         residual: ↦ residual of the equations of motion, shape (size,).
         jacobians: ↦ its derivatives with x, v and a, each of shape (size, size).
         stepper: takes the steps in machine code; None where Python takes them.
+        derivatives: the shared object that has the derivatives; None where CasADi's virtual machine runs them.
     """
 
     residual: Callable[..., FloatArray]
     jacobians: Callable[..., list[FloatArray]]
     stepper: Stepper | None = None
+    derivatives: str | None = None
 
     @property
     def library(self) -> str | None:
         """The shared object that has the residual; None where CasADi's virtual machine runs it."""
         return self.residual.library if isinstance(self.residual, RepeatedCall) else None
+
+    @property
+    def libraries(self) -> Libraries:
+        """The shared objects that have the residual, the derivatives, and all that is written beside them."""
+        return Libraries(self.library, self.derivatives)
 
 
 class KernelSource(Protocol):

@@ -12,13 +12,17 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import cosserat_casadi
-from cosserat_casadi import ExportError, Model, build, scene_from_dict, simulate
+from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
 from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.contact_guards import ContactPhase
+from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight, integrated
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
@@ -28,6 +32,7 @@ from cosserat_casadi.motion.tip_paths import functions_of_tips
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.integration import StepSettings
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from tests.codegen.test_load import needs_compiler
 from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES, model_of
@@ -105,8 +110,9 @@ def test_what_flies_free_takes_its_steps_in_machine_code() -> None:
     base = {"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}
     flown["rods"][0].update(base=base, rotary_inertia=[1e-4, 1e-4, 2e-4])
     model = moving(flown)
-    library = MotionCompiler(always=True).kernels(model).library
-    plain, compiled = free_flight(model), free_flight(model, library=library)
+    libraries = MotionCompiler(always=True).kernels(model).libraries
+    library = libraries.residual
+    plain, compiled = free_flight(model), free_flight(model, libraries=libraries)
     assert library is not None
     for function in functions_of_flight(model):
         random = np.random.default_rng(5)
@@ -119,6 +125,35 @@ def test_what_flies_free_takes_its_steps_in_machine_code() -> None:
         residual = flight.in_steps(equations, None)[0].residual
         assert isinstance(residual, KernelResidual)
         assert (residual.call.code is not None) == machine_code
+
+
+def test_a_rod_that_touches_has_its_contacts_in_machine_code() -> None:
+    """Residual and derivatives with forces of contacts, in centred coordinates."""
+    scene = read_scene("examples/rod_hits_floor.toml", ["accuracy.modes=2", "accuracy.nodes=5"])
+    model = build(scene.with_motion_inputs(), moving=True)
+    kernels = MotionCompiler(always=True).kernels(model)
+    assert kernels.library is not None
+    assert kernels.derivatives is not None
+    piece = moving_inputs(model).pieces(0.2)[0]
+    touches = (MovingContact(0, 0.0, slides=False), MovingContact(0, 0.7, slides=False))
+    x, v, a = np.random.default_rng(5).standard_normal((3, model.size + len(touches)))
+    at = Instant(0.1, 0.3 * x, v, a)
+
+    def with_contacts(kernels: StepKernels) -> MotionEquations:
+        contacts = ExactContacts(model, kernels.libraries)
+        phase = ContactPhase(touches, follower=Follower(contacts.facings, touches))
+        equations, _ = contacts.arranged(equations_of(model, piece, kernels=kernels), piece, phase)
+        in_c = [points.gradient.code is not None for points in touching_points(model, kernels.libraries)]
+        assert in_c == [kernels.library is not None]
+        return free_flight(model, libraries=kernels.libraries).in_steps(equations, None)[0]
+
+    plain, compiled = with_contacts(interpreted(model)), with_contacts(kernels)
+    expected = plain.residual_at(at)
+    assert_allclose(compiled.residual_at(at), expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    found, known = compiled.linearised(at), plain.linearised(at)
+    for name in ("stiffness", "damping", "mass"):
+        matrix = getattr(known, name)
+        assert_allclose(getattr(found, name), matrix, rtol=0, atol=1e-13 * np.abs(matrix).max())
 
 
 def test_results_of_a_call_are_kept_by_the_next_one() -> None:
