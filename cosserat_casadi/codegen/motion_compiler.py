@@ -28,6 +28,7 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
+from cosserat_casadi.motion.centred_coordinates import can_be_centred
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import function_of_displacements
@@ -106,7 +107,8 @@ class MotionCompiler:
         stepper = self._stepper()
         if residual is None:
             residual = interpreted_residual(model)
-            if stepper is not None:
+            # In centred coordinates steps have a residual of their own.
+            if stepper is not None and not can_be_centred(model):
                 residual.program = self._program(model)
                 residual.program_after = partial(_program_after, model)
         if jacobians is None:

@@ -127,6 +127,22 @@ def test_what_flies_free_takes_its_steps_in_machine_code() -> None:
         assert (residual.call.code is not None) == machine_code
 
 
+def test_no_program_is_written_where_steps_are_in_centred_coordinates() -> None:
+    """Their residual is another function: no step would run the program."""
+    flown = arm()
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}
+    flown["rods"][0].update(base=base, rotary_inertia=[1e-4, 1e-4, 2e-4])
+    for scene, written in ((arm(), True), (flown, False)):
+        compiler = MotionCompiler()
+        # The work of a motion for which a program pays, and nothing else.
+        compiler.learn(work(1500, 1))
+        residual = compiler.kernels(moving(scene)).residual
+        assert isinstance(residual, RepeatedCall)
+        assert residual.library is None
+        assert (residual.program is not None) == written
+        assert (residual.program_after is not None) == written
+
+
 def test_a_rod_that_touches_has_its_contacts_in_machine_code() -> None:
     """Residual and derivatives with forces of contacts, in centred coordinates."""
     scene = read_scene("examples/rod_hits_floor.toml", ["accuracy.modes=2", "accuracy.nodes=5"])
