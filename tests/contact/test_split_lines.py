@@ -122,6 +122,28 @@ def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     assert lifted.stable
 
 
+@pytest.mark.parametrize(("at", "moment"), [(0.75, 0.002), (0.75, -0.002), (0.65, 0.001)])
+def test_a_moment_opens_a_line(at: float, moment: float) -> None:
+    """Forces that push bear no moment M: a heavy beam rises from a rigid plane over u and v beside it.
+
+    EI w'''' = −q with w = w′ = w″ = 0 at either end of what rises, and w, w′ and w‴ continuous at the moment, give
+    v = (2 + √3) u, q (v² − u²) / 2 = |M|, and end forces q v where u ends, q u where v does. Slopes are below 1e-3.
+    """
+    load = f'[[loads]]\nname = "load"\nkind = "point_wrench"\nrod = "rod"\nat = {at}\n'
+    raised = solved(load + f"moment = [0, {-moment}, 0]\n")
+    check_contact(raised)
+    first, second = raised.contacts
+    u = np.sqrt(2 * abs(moment) / WEIGHT / (6 + 4 * np.sqrt(3)))
+    v = (2 + np.sqrt(3)) * u
+    before, behind = (u, v) if moment > 0.0 else (v, u)
+    assert_allclose([first.end, second.start], [at - before / LENGTH, at + behind / LENGTH], rtol=0, atol=2e-6)
+    assert_allclose([first.ends[1], second.ends[0]], [WEIGHT * behind, WEIGHT * before], rtol=1e-4, atol=0)
+    length, _, _ = free_span()
+    assert_allclose(first.start * LENGTH, length, rtol=0, atol=1e-7)
+    check_balance(raised, 0.0)
+    assert raised.stable
+
+
 @pytest.mark.slow
 def test_a_load_inside_a_line_over_a_drum() -> None:
     """Along a drum the bending moment is constant, and so there is no shear force: each normal force is borne at once.

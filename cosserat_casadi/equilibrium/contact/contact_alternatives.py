@@ -25,6 +25,9 @@ MET = 4e-3
 BEYOND = 0.01
 """Distance beyond a section at which a place that has run into it is tried next."""
 
+LONGER = 2.0 + 3.0**0.5
+"""Ratio of the lengths on both sides of a moment over which a heavy straight beam rises from a plane."""
+
 
 def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
     """Contacts that may take the place of a contact that pulls."""
@@ -90,6 +93,12 @@ def met(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterato
         same = (first.owner, first.obstacle) == (second.owner, second.obstacle)
         if same and second.start - first.end < MET:
             yield _with(state, {first: Touch.line(first.obstacle, first.owner, first.start, second.end), second: None})
+            for section in sections[first.owner]:
+                if first.is_line and second.is_line and first.end < section < second.start:
+                    # What a moment lifts is longer on one side of it than on the other.
+                    for before, after in ((BEYOND, LONGER * BEYOND), (LONGER * BEYOND, BEYOND)):
+                        opened = replace(first, end=section - before), replace(second, start=section + after)
+                        yield _with(state, dict(zip((first, second), opened, strict=True)))
     for touch in of_rods:
         if touch.is_line and touch.end - touch.start < MET:
             yield _with(state, {touch: Touch.point(touch.obstacle, touch.owner, touch.start)})

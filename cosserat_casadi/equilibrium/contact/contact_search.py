@@ -275,7 +275,7 @@ class Settling:
         while waiting and len(tried) < MOST_STATES:
             candidate, start = waiting.pop(0)
             candidate = candidate.apart.split(self.sections)
-            if not candidate.in_order or any(_alike(candidate, other) for other in tried):
+            if not candidate.in_order or any(self._alike(candidate, other) for other in tried):
                 continue
             if any(touch.starts_at_base and not _lies_at_base(start, touch) for touch in candidate.touches):
                 continue
@@ -296,6 +296,19 @@ class Settling:
             # What follows from a state that was solved comes before what was only thought of.
             waiting = [(other, found.solution) for other in others] + waiting
         return last, False
+
+    def _alike(self, first: ContactState, second: ContactState) -> bool:
+        """Whether two states are the same attempt; beside a section with a load small differences make another."""
+        if first.signature != second.signature or any(
+            one.seams != other.seams for one, other in zip(first.touches, second.touches, strict=True)
+        ):
+            return False
+        beside = [
+            min((abs(place - section) for section in self.sections[touch.owner]), default=inf)
+            for touch in second.touches
+            for place in touch.moving
+        ]
+        return bool(np.all(np.abs(first.places - second.places) < np.minimum(ALIKE, np.array(beside) / 2)))
 
     def solve(self, state: ContactState, near: Solution) -> ContactEquilibrium | None:
         """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
@@ -372,15 +385,6 @@ def pressure_along(touch: Touch, line: FloatArray, modes: int) -> tuple[FloatArr
     return np.concatenate(X), np.concatenate(pressure)
 
 
-def _alike(first: ContactState, second: ContactState) -> bool:
-    """Whether two states are the same attempt."""
-    if first.signature != second.signature or any(
-        one.seams != other.seams for one, other in zip(first.touches, second.touches, strict=True)
-    ):
-        return False
-    return bool(np.all(np.abs(first.places - second.places) < ALIKE))
-
-
 @dataclass(frozen=True)
 class Replacement:
     """States of one contact that may replace a contact that is at fault.
@@ -449,13 +453,26 @@ def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[To
 def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[Touch, ...]]:
     """Contacts that may take the place of one that pulls; of a line that is lifted in its middle first two."""
     if touch.is_line:
-        lifted = found.weakest(touch)
-        reach = OPENING * min(lifted - touch.start, touch.end - lifted)
-        if reach > 0.0:
-            before = Touch.line(touch.obstacle, touch.owner, touch.start, lifted - reach)
-            after = Touch.line(touch.obstacle, touch.owner, lifted + reach, touch.end)
-            yield before, after
+        # Forces that push bear no moment: a line opens at the section that it acts on, wherever it pulls most.
+        for lifted in dict.fromkeys([found.weakest(touch), *touch.seams]):
+            yield from _opened(touch, lifted)
     yield from instead_of_pulling(touch)
+
+
+def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
+    """What is left of a line that rises around a section inside it: two lines, or one where that is next to an end."""
+    before = lifted - touch.start
+    after = touch.end - lifted
+    if not before > 0.0 < after:
+        return
+    reach = OPENING * min(before, after)
+    parts = []
+    if before >= NEAR:
+        parts.append(Touch.line(touch.obstacle, touch.owner, touch.start, lifted - reach))
+    if after >= NEAR:
+        parts.append(Touch.line(touch.obstacle, touch.owner, lifted + reach, touch.end))
+    if parts:
+        yield tuple(parts)
 
 
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
