@@ -4,7 +4,9 @@ Rods are chains of rigid links (links.py). Hinges and slides in the middle of a 
 every other piece, and the reverse in the next: rotations do not commute, and what an order adds to the strain of one
 piece the next one takes away. Bodies hang on the links that carry them; joints that close a loop are constraints.
 
-Inputs of the scene are controls of the same names, with the values of the scene in the keyframe ``scene``.
+Inputs of the scene are controls of the same names, with the values of the scene in the keyframe ``scene``. A model
+without loops begins unloaded. One with loops begins there at the equilibrium of the scene: unloaded, its loops may be
+open by the length of a rod.
 """
 
 from __future__ import annotations
@@ -18,8 +20,10 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.actuators.routing import holes, offset_at
 from cosserat_casadi.constraints.tip_holder import place_of
+from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.maths.numbers import known
@@ -27,6 +31,7 @@ from cosserat_casadi.maths.pose import IDENTITY, NumericPose
 from cosserat_casadi.maths.rotation import matrix_to_quaternion, quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.links import Inertia, Link, links_of, nodes_along, poses_along
+from cosserat_casadi.mjcf.start import MjcfJoint, coordinates_at
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.floating_frames import UnloadedScene
 from cosserat_casadi.model.scene_rods import rod_properties
@@ -48,6 +53,9 @@ INTERVALS = 40
 
 STIFF = 1e3
 """Stiffness of a drive, or of a cable of given length, over that of the rod that it moves."""
+
+CARRIAGE = 1e-2
+"""Mass of what slides or turns to close a loop, over that of rods and bodies: a weld is as soft as that is light."""
 
 LEAST = 1e-9
 """Least mass, over that of all rods; least moments of inertia, over the mass and the square of the longest rod."""
@@ -108,7 +116,7 @@ def check_mjcf(path: str | Path) -> None:
 
 
 def mjcf_of(scene: scenes.Scene, links: int = LINKS) -> Mjcf:
-    """A scene as a model of MuJoCo.
+    """A scene as a model of MuJoCo; one with joints that close loops, or supports, is solved for where it begins.
 
     Args:
         scene: a validated scene, whose parameters have their values.
@@ -119,10 +127,6 @@ def mjcf_of(scene: scenes.Scene, links: int = LINKS) -> Mjcf:
     """
     refuse_tubes(scene)
     return _Robot(scene.baked(), links).written()
-
-
-MjcfJoint = tuple[str, dict[str, str]]
-"""Tag and attributes of a joint."""
 
 
 def _numbers(values: Sequence[float] | FloatArray | float) -> str:
@@ -138,6 +142,11 @@ def _place(pose: NumericPose) -> dict[str, str]:
 def _cylinder(radius: float, thickness: float) -> dict[str, str]:
     """Attributes of a disk, which has some thickness in MuJoCo."""
     return {"type": "cylinder", "size": _numbers([radius, max(thickness, 1e-3 * radius) / 2])}
+
+
+def _solved(poses: SolvedPoses) -> NumericPose:
+    """The pose of a section or a body in an equilibrium, world axes."""
+    return NumericPose(poses.position, poses.quaternion / np.linalg.norm(poses.quaternion))
 
 
 def _turned(position: FloatArray) -> NumericPose:
@@ -160,6 +169,23 @@ class _Carrier:
     name: str
 
 
+@dataclass(frozen=True)
+class _Moved:
+    """A body of MuJoCo that joints carry.
+
+    Attributes:
+        carrier: name of what carries it.
+        place: its pose there at zero coordinates.
+        joints: in their order.
+        near: coordinates near which it begins, shape (n,), rad and m.
+    """
+
+    carrier: str
+    place: NumericPose
+    joints: Sequence[MjcfJoint]
+    near: FloatArray
+
+
 @dataclass
 class _Robot:
     """A model that is being written."""
@@ -172,7 +198,10 @@ class _Robot:
     carriers: dict[tuple[str, float], _Carrier] = field(default_factory=dict)
     bodies: dict[str, _Carrier] = field(default_factory=dict)
     used: set[int] = field(default_factory=set)
+    driven: dict[str, float] = field(default_factory=dict)
     light: dict[str, float] = field(default_factory=dict)
+    moved: dict[str, _Moved] = field(default_factory=dict)
+    begins: dict[str, Callable[[Solution], NumericPose]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.root = ET.Element("mujoco", model=self.scene.title or "scene")
@@ -219,11 +248,31 @@ class _Robot:
         for equality in self.equalities:
             equality.set("solref", _numbers([CLOSING_TIME, 1.0]))
             equality.set("solimp", HARD)
-        keys = ET.SubElement(self.root, "keyframe")
-        ET.SubElement(keys, "key", name="scene", ctrl=_numbers(self.controls))
+        key = {"name": "scene", "ctrl": _numbers(self.controls)}
+        if len(self.equalities):
+            key |= self._begin()
+        ET.SubElement(ET.SubElement(self.root, "keyframe"), "key", key)
         self.root.insert(0, ET.Comment(_comment(self.left_out)))
         ET.indent(self.root)
         return Mjcf(ET.tostring(self.root, encoding="unicode") + "\n", tuple(self.left_out))
+
+    def _begin(self) -> dict[str, str]:
+        """Attributes of the keyframe that begin a model with loops at the equilibrium of the scene."""
+        solution = solve(self.scene)
+        assert isinstance(solution, Solution), "tubes are refused before"
+        if not solution.converged:
+            self._leave_out("start", "no equilibrium was found: the model begins unloaded, where its loops may be open")
+            return {}
+        poses = {name: begin(solution) for name, begin in self.begins.items()}
+        poses["world"] = IDENTITY
+        coordinates = []
+        for element in self.root.iter("body"):
+            name = element.get("name", "")
+            moved = self.moved.get(name)
+            if moved is not None:
+                wanted = poses[moved.carrier].inverse.then(poses[name])
+                coordinates.append(coordinates_at(moved.place, moved.joints, wanted, self.size, moved.near))
+        return {"qpos": _numbers(np.concatenate(coordinates))}
 
     def _leave_out(self, name: str | None, reason: str) -> None:
         self.left_out.append(f"{name}: {reason}.")
@@ -300,6 +349,7 @@ class _Robot:
     ) -> _Carrier:
         name = f"{rod.name}/{number}"
         put = self._element(carrier, link.frame, name, link.inertia, joints)
+        self.begins[name] = lambda solution: _solved(solution.pose(link.at, rod.name))
         if not self.weighs_rod(rod.name):
             put.element.set("gravcomp", "1")
         x, y = link.half_widths
@@ -332,10 +382,13 @@ class _Robot:
         in_carrier: NumericPose | None = None,
     ) -> _Carrier:
         """A body of MuJoCo on a carrier: where its frame is, or at another place in the carrier."""
-        place = _place(in_carrier or carrier.frame.inverse.then(frame))
-        element = ET.SubElement(carrier.element, "body", {"name": name, **place})
+        on_carrier = in_carrier or carrier.frame.inverse.then(frame)
+        element = ET.SubElement(carrier.element, "body", {"name": name, **_place(on_carrier)})
         for tag, attributes in joints:
             ET.SubElement(element, tag, attributes)
+        if joints:
+            near = np.array([self.driven.get(attributes.get("name", ""), 0.0) for _, attributes in joints])
+            self.moved[name] = _Moved(carrier.name, on_carrier, joints, near)
         moments, axes = np.linalg.eigh(inertia.moments)
         axes[:, 2] *= np.sign(np.linalg.det(axes))
         least = max(LEAST * inertia.mass * self.size**2, LEAST_MOVED)
@@ -361,7 +414,8 @@ class _Robot:
     def _put_body(self, body: scenes.Body) -> bool:
         """Hang a body on the first of its joints whose other end is there; whether there is one."""
         frame = self.unloaded.body_frame(body.name).start
-        for index, joint in enumerate(self.scene.joints):
+        # A slide that is left to close a loop costs a carriage: it goes first.
+        for index, joint in sorted(enumerate(self.scene.joints), key=lambda numbered: numbered[1].kind != "prismatic"):
             if body.name not in [place.body for place in joint.places] or joint.holds_base:
                 continue
             is_carried = joint.carries is not None and joint.carries.body == body.name
@@ -402,6 +456,7 @@ class _Robot:
         mass = max(body.mass, LEAST * self.mass, LEAST_MOVED)
         inertia = Inertia(mass, np.array(body.centre_of_mass), body.inertia_matrix)
         put = self._element(carrier, frame, body.name, inertia, joints, in_carrier)
+        self.begins[body.name] = lambda solution: _solved(solution.body(body.name))
         if not self.weighs_body(body.name):
             put.element.set("gravcomp", "1")
         bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns_body(body.name))
@@ -454,6 +509,7 @@ class _Robot:
         if effort is not None:
             self._control(f"{name}.{joint.effort_key}", effort, "motor", joint=name)
         if joint.prescribed:
+            self.driven[name] = float(getattr(joint, joint.coordinate_key))
             energy, length = self.unloaded.units([joint.rod] if joint.rod else [])
             stiffness = STIFF * energy
             unit = "N m/rad"
@@ -497,8 +553,8 @@ class _Robot:
             held = section.frame.then(place_of(joint.carries))
         holder = self.bodies[joint.body] if joint.body else self.world
         place = holder.frame.then(place_of(joint))
-        if joint.kind == "prismatic":
-            self._leave_out(name, "a slide that closes a loop has no constraint in MuJoCo, and is missing")
+        if joint.kind == "prismatic" or joint.has_coordinate:
+            self._close_by_carriage(index, name, section, held, holder, place)
             return
         # The section is in the unloaded rod where the joint does not want it yet: MuJoCo draws the two together.
         ends = [_turned(np.zeros(3))]
@@ -506,13 +562,38 @@ class _Robot:
             axis = np.array(joint.axis, dtype=float) / np.linalg.norm(joint.axis)
             in_place = place_of(joint).rotation.T @ axis
             ends.append(_turned(0.1 * self.size * in_place))
-            if joint.has_coordinate:
-                self._leave_out(name, "what acts along a hinge that closes a loop is missing")
         for number, end in enumerate(ends):
             first = self._site(section, f"{name}/section/{number}", held.then(end))
             second = self._site(holder, f"{name}/holder/{number}", place.then(end))
             kind = "weld" if joint.kind == "fixed" else "connect"
             ET.SubElement(self.equalities, kind, site1=second, site2=first)
+
+    def _close_by_carriage(
+        self, index: int, name: str, section: _Carrier, held: NumericPose, holder: _Carrier, place: NumericPose
+    ) -> None:
+        """A slide, or a hinge on which something acts, whose carriage is welded to what it holds.
+
+        MuJoCo has no constraint that lets a body slide along an axis, and no spring or motor on one that lets it turn.
+
+        Args:
+            index: place of the joint in the scene's list.
+            name: of the joint.
+            section: the link or the body that it holds.
+            held: pose of the joint there, world axes, unloaded.
+            holder: the world or the body that holds it.
+            place: pose of the joint there, world axes, unloaded.
+        """
+        mass = CARRIAGE * (self.mass + sum(body.mass for body in self.scene.bodies))
+        inertia = Inertia(mass, np.zeros(3), mass * (0.1 * self.size) ** 2 * np.eye(3))
+        joints = self._tree_joint(index, place, place.position, holder.frame, 1.0)
+        carriage = self._element(holder, place, f"{name}/carriage", inertia, joints)
+        carriage.element.set("gravcomp", "1")
+        first = self._site(carriage, f"{name}/holder", place)
+        second = self._site(section, f"{name}/section", held)
+        ET.SubElement(self.equalities, "weld", site1=first, site2=second)
+        offset = section.frame.inverse.then(held)
+        self.begins[carriage.name] = lambda solution: self.begins[section.name](solution).then(offset)
+        self._leave_out(name, f"it closes a loop by a carriage of {mass:.1e} kg, without weight")
 
     def _hold(self, support: Any, index: int) -> None:
         """A support of a tip, as a constraint between sites."""

@@ -105,3 +105,71 @@ force = [0.1, 0.0, 0.1]
 position = [0.0, 0.03, 0.0]
 """,
 }
+
+LOOPS = {
+    # Unloaded, the coupler stands upright: the loop is open by its length.
+    "slider-crank": "schema = 1\n[accuracy]\nmodes = 6\nnodes = 10\n"
+    + ROD.format(name="coupler", strain="planar")
+    + "damping = { retardation_time = 0.01 }\n"
+    + WEIGHT
+    + """
+[[bodies]]
+name = "arm"
+mass = 0.2
+inertia = [1e-3, 1e-3, 1e-3]
+[[bodies]]
+name = "slider"
+mass = 0.2
+inertia = [1e-3, 1e-3, 1e-3]
+[[joints]]
+name = "crank"
+kind = "revolute"
+axis = [0, 1, 0]
+angle = 0.3
+between = [{ world = true, position = [0, 0, 0] }, { body = "arm" }]
+[[joints]]
+name = "pin"
+kind = "revolute"
+axis = [0, 1, 0]
+between = [{ body = "arm", position = [0.1, 0, 0] }, { rod = "coupler", at = 0.0 }]
+[[joints]]
+name = "end"
+kind = "revolute"
+axis = [0, 1, 0]
+between = [{ rod = "coupler", at = 1.0 }, { body = "slider" }]
+[[joints]]
+name = "slide"
+kind = "prismatic"
+axis = [1, 0, 0]
+stiffness = 300.0
+between = [{ world = true, position = [0.4, 0, 0] }, { body = "slider" }]
+[[loads]]
+name = "side"
+kind = "point_wrench"
+rod = "coupler"
+at = 0.5
+force = [0, 0, -8.0]
+""",
+    "slide at the tip": FINGER
+    + "damping = { retardation_time = 0.01 }\nintrinsic = { curvature = [0.5, 3.0, 0.0] }\n"
+    + """
+[[joints]]
+name = "slide"
+kind = "prismatic"
+axis = [0, 0, 1]
+between = [
+    { world = true, position = [0.12, -0.02, 0.26], tangent = [0.6, -0.1, 0.6] },
+    { rod = "finger", at = 1.0 },
+]
+[[loads]]
+name = "side"
+kind = "point_wrench"
+rod = "finger"
+at = 0.5
+force = [4.0, 2.0, 0]
+""",
+}
+"""Scenes whose joints close loops."""
+
+MOTOR = 'name = "end"\nstiffness = 0.5\nmoment = 0.4\n'
+LOOPS["motor in the loop"] = LOOPS["slider-crank"].replace('name = "end"\n', MOTOR)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, modes_of, parse_scene, solve
-from tests.mjcf.moved_chains import FINGER, ROD, SCENES, WEIGHT
+from tests.mjcf.moved_chains import FINGER, LOOPS, ROD, SCENES, WEIGHT
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'cosserat-casadi[mujoco]'")
 
@@ -111,6 +113,37 @@ offset = [-8e-3, 0.0]
     assert_allclose(data.ten_length[1], solution.actuator("west")["length"], rtol=0, atol=4e-4)
     assert data.ten_length[1] < 0.3115 and data.actuator_force[1] == 0.0
     assert_allclose(data.site("finger/tip").xpos, solution.tip().position, rtol=0, atol=3e-3)
+
+
+@pytest.mark.parametrize("case", LOOPS)
+def test_loops_begin_closed_and_stay_at_the_equilibrium(case: str) -> None:
+    scene = parse_scene(LOOPS[case])
+    solution = solve(build(scene))
+    assert solution.converged
+    (rod,) = scene.rods
+    errors = []
+    for links in (5, 20):
+        model = mujoco.MjModel.from_xml_string(mjcf_of(scene, links).text)
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        mujoco.mj_forward(model, data)
+        # A gap is what the midpoint rule leaves: unloaded, that of the slider-crank is the length of the rod.
+        assert np.abs(data.efc_pos[: data.ne]).max() < 0.2 / links**2
+        for _ in range(400):
+            mujoco.mj_step(model, data)
+        # The loads bend the middle by several per cent of the length: the tips are held.
+        gap = data.body(f"{rod.name}/{links // 5 * 2}").xpos - solution.pose(0.4).position
+        errors.append(np.linalg.norm(gap) / rod.length)
+        assert np.abs(data.qvel).max() < 1e-3
+    assert errors[1] < 1e-3, errors
+    assert errors[0] / errors[1] > 8.0, errors
+
+
+def test_drives_of_loops_keep_their_turns() -> None:
+    text = LOOPS["slider-crank"].replace("angle = 0.3", "angle = 6.5831853")
+    key = ET.fromstring(mjcf_of(parse_scene(text), 4).text).find("keyframe/key")
+    assert key is not None
+    assert_allclose(float(key.get("qpos", "").split()[0]), 6.5831853, rtol=0, atol=1e-9)
 
 
 def test_rods_stay_out_of_the_obstacles_that_name_them() -> None:

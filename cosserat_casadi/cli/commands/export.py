@@ -198,8 +198,8 @@ def export(
     somewhere in the ranges, or on modes that constraints lock, as header, README and manifest say.
 
     The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
-    is one file that other simulators step. The model of MuJoCo is written without a solve;
-    a sentence names each thing of the scene that it lacks.
+    is one file that other simulators step. The model of MuJoCo is written without a solve
+    where it has no loops; a sentence names each thing of the scene that it lacks.
 
     Modes and nodes are chosen so that the tolerance is met over the ranges of the inputs, by --range, the scene's
     [ranges] or [[bounds]], or their scale, or at the load cases of --over. Modes and nodes that the scene fixes are
