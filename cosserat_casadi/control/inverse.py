@@ -7,7 +7,9 @@ its inputs is computed anew and judged like any other.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,9 @@ from cosserat_casadi.model.system_functions import SystemFunctions
 
 STARTS = 8
 """Further starts, scattered in the bounds, where the first leaves a gap."""
+
+LONGEST = 60.0
+"""Seconds after which a search begins no further start, and says so: on many tendons one alone may take a minute."""
 
 
 def inverse(
@@ -104,20 +109,35 @@ def first_solution(model: SystemFunctions) -> Equilibrium[Any]:
     return solve(model, model.inputs.unpack(first_inputs), estimate_error=False)
 
 
-def search(problem: SoughtInputs, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
+def search(
+    problem: SoughtInputs,
+    start: Equilibrium[Any],
+    stable: bool,
+    starts: int,
+    report: Callable[[str], None] | None = None,
+) -> Inverse:
     """The inverse problem from a start, and from scattered ones, without a verdict on its targets.
+
+    No further start begins after LONGEST; the result says how many were left out.
 
     Args:
         problem: the problem.
         start: equilibrium of its model to start from.
         stable: as in :func:`inverse`.
         starts: as there.
+        report: told which of the further starts begins, and what is missed so far.
     """
+    began = monotonic()
     model = problem.model
     result = _from_start(problem, start, problem.change(given_inputs(start.model, start.inputs)), stable)
     for tried, change in enumerate(problem.scattered(starts), 1):
         if _satisfies(result, stable):
             break
+        if monotonic() - began > LONGEST:
+            return replace(result, starts_left_out=starts - tried + 1)
+        if report is not None:
+            missed = max(gap.position for gap in result.gaps)
+            report(f"start {tried + 1} of {starts + 1}, {missed:.2g} m missed so far")
         inputs = problem.inputs(change)
         begun = solve(model, model.inputs.unpack(inputs), estimate_error=False)
         again = _from_start(problem, begun, change, stable)
@@ -127,7 +147,13 @@ def search(problem: SoughtInputs, start: Equilibrium[Any], stable: bool, starts:
     return result
 
 
-def search_near(problem: SoughtInputs, start: Equilibrium[Any], stable: bool, starts: int) -> Inverse:
+def search_near(
+    problem: SoughtInputs,
+    start: Equilibrium[Any],
+    stable: bool,
+    starts: int,
+    report: Callable[[str], None] | None = None,
+) -> Inverse:
     """The inverse problem from an equilibrium near its targets: by Newton's method, else by :func:`search`.
 
     Args:
@@ -135,12 +161,13 @@ def search_near(problem: SoughtInputs, start: Equilibrium[Any], stable: bool, st
         start: equilibrium of its model to start from.
         stable: as in :func:`inverse`.
         starts: as there.
+        report: as there.
     """
     if isinstance(problem, LiftedProblem):
         found = followed(problem, start)
         if found is not None and found.met and not found.unstable:
             return found
-    return search(problem, start, stable, starts)
+    return search(problem, start, stable, starts, report)
 
 
 def _from_start(problem: SoughtInputs, start: Equilibrium[Any], change: FloatArray, stable: bool) -> Inverse:

@@ -127,7 +127,7 @@ def inverse_rows(
         if starts:
             pending = _refined(model, pending, starts, stable)
         else:
-            pending = _searched(model, rows, stable, progress)
+            pending = _searched(model, rows, stable, progress, report)
         for row, result in list(pending.items()):
             solution = result.solution
             if not solution.converged and solution.outcome is not Outcome.UNRESOLVED:
@@ -142,7 +142,8 @@ def inverse_rows(
             judged = replace(result, solution=levels.judged(result.solution, reference))
             if fixed:
                 settled[row] = _fixed_verdict(judged, stable)
-            elif _error_within(judged):
+            elif _error_within(judged) or judged.starts_left_out:
+                # A search that took too long for its starts is not repeated on more modes, where it takes longer still.
                 settled[row] = with_verdict(judged, stable)
             else:
                 starts[row] = reference
@@ -155,7 +156,11 @@ def inverse_rows(
 
 
 def _searched(
-    model: SystemFunctions, rows: Sequence[Targets], stable: bool, progress: Progress | None
+    model: SystemFunctions,
+    rows: Sequence[Targets],
+    stable: bool,
+    progress: Progress | None,
+    report: Report | None,
 ) -> dict[int, Inverse]:
     """The search of every row on the first discretisation, each from its nearest neighbour that is met."""
     first = first_solution(model)
@@ -174,7 +179,7 @@ def _searched(
         remaining.discard(row)
         # The first equilibrium meets no targets: what is near it is not known to be.
         searched = search if starts[row] is first else search_near
-        result = searched(replace(problem, targets=rows[row]), starts[row], stable, STARTS)
+        result = searched(replace(problem, targets=rows[row]), starts[row], stable, STARTS, report)
         found[row] = result
         if not result.met:
             continue

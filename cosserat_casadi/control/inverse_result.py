@@ -36,6 +36,7 @@ class Inverse(Result):
         rounds: runs of the optimiser, from all starts together and on all discretisations; 0 where Newton's method has
             met the targets from a neighbour.
         starts: starts that were tried, 1 where the first has met the targets.
+        starts_left_out: further starts that the search had no time for.
         at_bounds: decision variables that ended at a bound, by name.
     """
 
@@ -45,6 +46,7 @@ class Inverse(Result):
     met: bool
     rounds: int
     starts: int = 1
+    starts_left_out: int = 0
     at_bounds: tuple[str, ...] = ()
 
     @property
@@ -129,7 +131,10 @@ def _minimum_sentence(result: Inverse) -> str:
     starts = "1 start"
     if result.starts > 1:
         starts = f"{result.starts} starts"
-    return f" It is a local minimum {where}, the best of {starts}."
+    sentence = f" It is a local minimum {where}, the best of {starts}."
+    if result.starts_left_out:
+        sentence += f" The search took too long for {result.starts_left_out} further ones."
+    return sentence
 
 
 def _model_sentence(result: Inverse) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 from typing import Any
 
@@ -273,3 +274,31 @@ def test_refusals() -> None:
     follower = push(frame="body", force=[1, 0, 0])
     with pytest.raises(SceneError, match="no potential"):
         inverse(build(scene(follower, inputs=["push.force"], targets=[target])), stable=True)
+
+
+def test_a_search_that_takes_long_begins_no_further_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It says how many are left out, and is not repeated on more modes; each start is reported before it begins."""
+    module = importlib.import_module("cosserat_casadi.control.inverse")
+    target = {"kind": "position", "rod": "rod", "position": [0.4, 0.0, 0.6]}
+    bounds = [{"input": "push.force", "lower": [-0.3, 0.0, 0.0], "upper": [0.3, 0.0, 0.0]}]
+    far = scene(
+        push(force=[0.0, 0.0, 0.0]),
+        inputs=["push.force"],
+        targets=[target],
+        bounds=bounds,
+        accuracy={"tolerance": 1e-4},
+    )
+    # Every look at the clock takes half of the time: the second further start is left out.
+    times = iter(np.arange(100.0) * module.LONGEST * 0.6)
+    monkeypatch.setattr(module, "monotonic", lambda: next(times))
+    told: list[str] = []
+    found = inverse(far, report=told.append)
+    assert not found.met
+    assert (found.starts, found.starts_left_out) == (2, module.STARTS - 1)
+    assert f"the best of 2 starts. The search took too long for {module.STARTS - 1} further ones." in (
+        found.solution.message
+    )
+    starts = [line for line in told if line.startswith("start ")]
+    assert len(starts) == 1
+    assert starts[0].startswith(f"start 2 of {module.STARTS + 1}, ")
+    assert len(told) == 2
