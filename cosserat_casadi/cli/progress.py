@@ -132,8 +132,11 @@ def _stopped_without_files(bar: Progress) -> Iterator[None]:
 
 @contextmanager
 def count_display(description: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar for what tells how much of it is done, and of how much; an interrupt is raised at the next report."""
-    with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
+    """A bar for what tells how much of it is done, and of how much, with the time left.
+
+    An interrupt is raised at the next report.
+    """
+    with progress_bar(TimeRemainingColumn()) as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task(description, total=None)
 
         def show_count(done: int, total: int) -> None:

@@ -25,8 +25,11 @@ def choose_with_progress(
 
 
 def solve_for_ranges(
-    scene: Scene, ranges: Given | None = None, cases: Sequence[Values] | None = None
+    scene: Scene,
+    ranges: Given | None = None,
+    cases: Sequence[Values] | None = None,
+    samples: int | None = None,
 ) -> tuple[Solution, Choice]:
     """The equilibrium at the scene's own inputs, on modes that are chosen for ranges or for load cases."""
-    choice = choose_with_progress(scene, ranges, cases=cases)
+    choice = choose_with_progress(scene, ranges, samples, cases)
     return solve(choice.model), choice

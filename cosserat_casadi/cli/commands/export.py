@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi.accuracy.choose import Choice
+from cosserat_casadi.accuracy.choose import SAMPLES, Choice
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.ranges import Given
@@ -44,6 +44,9 @@ from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import solve_tubes
+
+LOAD_CASES = 32
+"""Load cases that are spread over ranges in exact contact."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +182,18 @@ def export(
         Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
     ] = None,
     ranges: Ranges = None,
-    samples: Annotated[int, typer.Option(min=1, max=10_000, help="Load cases spread over the ranges.")] = 32,
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=10_000,
+            help=(
+                f"Random corners, and random points, at which modes are chosen: {SAMPLES}. In exact contact load cases "
+                f"spread over the ranges: {LOAD_CASES}."
+            ),
+            show_default=False,
+        ),
+    ] = None,
     period: Annotated[
         float | None,
         typer.Option(help="Seconds that the longest turn of a control loop may take.", show_default=False),
@@ -224,7 +238,7 @@ def export(
     if not targets.need_a_solve:
         return
     asked = asked_ranges(ranges, read)
-    cases = _load_cases(read, over, ranges or [], samples)
+    cases = _load_cases(read, over, ranges or [], samples or LOAD_CASES)
     exported_scene = _checked_scene(read, targets, sources, name)
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
@@ -234,7 +248,9 @@ def export(
     if over is not None and cases is not None:
         # A library begins at the scene's own inputs.
         chosen_cases = [{}, *map(case_layout(read).unpack, cases)]
-    solution, choice = solve_for_ranges(solved_scene, asked, chosen_cases)
+    # In exact contact the samples are load cases: choosing modes at as many would take minutes.
+    in_ranges = None if solved_scene.touches_exactly or over is not None else samples
+    solution, choice = solve_for_ranges(solved_scene, asked, chosen_cases, in_ranges)
     _check_solved(solution)
     _write(targets, sources, name, exported_scene, solution, choice, cases, asked)
     print_choice(Console(), choice)
