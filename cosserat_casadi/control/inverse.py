@@ -125,7 +125,7 @@ def search(
         start: equilibrium of its model to start from.
         stable: as in :func:`inverse`.
         starts: as there.
-        report: told which of the further starts begins, and what is missed so far.
+        report: told which of the further starts begins, and how far the targets are missed so far.
     """
     began = monotonic()
     model = problem.model

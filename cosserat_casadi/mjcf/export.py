@@ -571,14 +571,14 @@ class _Robot:
     def _close_by_carriage(
         self, index: int, name: str, section: _Carrier, held: NumericPose, holder: _Carrier, place: NumericPose
     ) -> None:
-        """A slide, or a hinge on which something acts, whose carriage is welded to what it holds.
+        """A slide, or a hinge on which something acts, whose carriage is welded to the section or body that it holds.
 
         MuJoCo has no constraint that lets a body slide along an axis, and no spring or motor on one that lets it turn.
 
         Args:
             index: place of the joint in the scene's list.
             name: of the joint.
-            section: the link or the body that it holds.
+            section: the link or the body that the joint holds.
             held: pose of the joint there, world axes, unloaded.
             holder: the world or the body that holds it.
             place: pose of the joint there, world axes, unloaded.
