@@ -2,6 +2,7 @@
 
 const PERIOD = 1.6; // Seconds that one period of a mode takes on the screen.
 const FILM_RATE = 30; // Pictures a second of a film in a file.
+const FIRST_PICTURES = 100; // Milliseconds after which the first pictures of a film are asked for.
 const SPEEDS = [1, 0.5, 0.1, 0.02];
 
 class Theatre {
@@ -97,7 +98,8 @@ class Theatre {
     const elapsed = (now - this.last) / 1000;
     this.last = now;
     // A machine that draws slowly leaves no picture of a film out: it films for longer.
-    const shown = this.recorder ? Math.min(elapsed, 1 / FILM_RATE) : elapsed;
+    const filmed = this.rolling ? Math.min(elapsed, 1 / FILM_RATE) : 0;
+    const shown = this.recorder ? filmed : elapsed;
     const share = this.share + (shown * Number(this.speed.value)) / this.film.duration;
     if (this.share >= 1 && this.recorder?.state === "recording") this.recorder.stop();
     this.seek(this.recorder ? Math.min(share, 1) : share % 1);
@@ -111,13 +113,18 @@ class Theatre {
     this.sheet = this.panel.scenery.printOn(document.createElement("canvas"));
     const pieces = [];
     this.recorder = new MediaRecorder(this.sheet.captureStream(FILM_RATE));
-    this.recorder.ondataavailable = (event) => pieces.push(event.data);
+    // What is drawn before the first pictures are in the file would be missing from it.
+    this.rolling = false;
+    this.recorder.ondataavailable = (event) => {
+      pieces.push(event.data);
+      this.rolling ||= event.data.size > 0;
+    };
     this.recorder.onstop = () => {
       const { mimeType } = this.recorder;
       this.recorder = null;
       offer(new Blob(pieces, { type: mimeType }), mimeType.includes("mp4") ? "mp4" : "webm");
     };
-    this.recorder.start();
+    this.recorder.start(FIRST_PICTURES);
     this.share = 0;
     if (this.paused) this.pause(false);
   }
