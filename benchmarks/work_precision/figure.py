@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from work_precision.grid import DIAL
-from work_precision.measurement import Measurement, front
-
 from cosserat_casadi.plots.figure import figure_class, write_figure
 from tests.fine_reference import Reference
+from work_precision.grid import DIAL
+from work_precision.measurement import Measurement, front
 
 STYLES = {
     "magnus4": ("#4477aa", "o", "Magnus, 4th order"),

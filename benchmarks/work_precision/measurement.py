@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from math import isfinite, nan
 from typing import Any
 
-from work_precision.grid import Candidate
-
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.cost import foreseen_operations
 from cosserat_casadi.accuracy.refine import solve_rods
@@ -20,6 +18,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.discretisation import Discretisation
 from tests.fine_reference import Errors, Reference, with_tolerance
+from work_precision.grid import Candidate
 
 LARGEST = 400_000
 """Scalar operations of residual and Jacobian beyond which they are not counted and the compiler is not asked."""

@@ -9,12 +9,6 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
-from work_precision.figure import write_figures
-from work_precision.grid import DIAL, METHODS, QUICK, Candidate, candidates, distinct_methods, method_problems
-from work_precision.measurement import Measurement
-from work_precision.record import CSV, JSON, fingerprint, output_problems, read_rows, write_json, write_rows
-from work_precision.session import Session, richer_candidates
-from work_precision.table import print_bench, print_strains
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.compiler import find_compiler
@@ -23,6 +17,12 @@ from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.plots.figure import figure_class
+from work_precision.figure import write_figures
+from work_precision.grid import DIAL, METHODS, QUICK, Candidate, candidates, distinct_methods, method_problems
+from work_precision.measurement import Measurement
+from work_precision.record import CSV, JSON, fingerprint, output_problems, read_rows, write_json, write_rows
+from work_precision.session import Session, richer_candidates
+from work_precision.table import print_bench, print_strains
 
 Report = Callable[[str, int, int], None]
 """Told the work under way, how many points are done, and of how many (0: not known)."""

@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 import casadi as ca
-from work_precision.measurement import Measurement, front
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.json_text import csv_text, json_text, plain
 from cosserat_casadi.scene.writing import scene_text
+from work_precision.measurement import Measurement, front
 
 CSV = "bench.csv"
 """File of the rows."""

@@ -7,12 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from work_precision.grid import DIAL, Candidate
-from work_precision.measurement import Measurement, Trial
-
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import SceneError
 from tests.fine_reference import Reference, distance, find_reference
+from work_precision.grid import DIAL, Candidate
+from work_precision.measurement import Measurement, Trial
 
 RICHER = {"planar": "kirchhoff", "kirchhoff": "reissner"}
 """The strain model that lets a rod do more."""

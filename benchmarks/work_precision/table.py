@@ -8,10 +8,10 @@ from math import isfinite
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
-from work_precision.measurement import Measurement, front
 
 from cosserat_casadi.cli.effect_times import compact_number
 from tests.fine_reference import Reference
+from work_precision.measurement import Measurement, front
 
 NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
 """Columns that are always shown."""
