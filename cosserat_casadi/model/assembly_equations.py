@@ -48,7 +48,7 @@ from cosserat_casadi.model.frame_pose import FramePose, turn_matrix
 from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, smoothing_at, spring
 from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.scene_actuators import CORNER
-from cosserat_casadi.model.scene_constraints import ASSEMBLED, PlacedConstraint
+from cosserat_casadi.model.scene_constraints import ASSEMBLED, RELEASED, PlacedConstraint
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import Unknowns
 from cosserat_casadi.rod.reaction import Reaction
@@ -153,7 +153,7 @@ class Assembly:
                 if stop.placed is placed:
                     balance = balance - stop.side * self.system.arguments.x[self.discrete.stop(stop)]
             unknown = self.system.arguments.x[self.discrete.coordinate(placed)]
-            rows.append(row_at(balance, unknown, ASSEMBLED, self.load_factor))
+            rows.append(row_at(balance, unknown, RELEASED, self.load_factor))
         return rows
 
     @cached_property
@@ -569,7 +569,7 @@ class Assembly:
         for name in self.frames:
             yield self.discrete.deviation(name), ASSEMBLED
         for placed in self.discrete.free_coordinates:
-            yield self.discrete.coordinate(placed), ASSEMBLED
+            yield self.discrete.coordinate(placed), RELEASED
         for cable in self.discrete.cables:
             yield self.discrete.tension(cable), cable.compliance
         for stop in self.discrete.stops:

@@ -51,6 +51,9 @@ ASSEMBLED = Compliance(power=3)
 """Compliance of constraints that close an assembly: springs that hold rods that do not fit have to be stiff early.
 """
 
+RELEASED = Compliance(power=3)
+"""Spring on the coordinate of a joint, in assemblies that close unloaded too: at first nothing else acts along it."""
+
 
 SAME_AXIS = 1e-14
 """Distance of two unit vectors that are one but for rounding."""

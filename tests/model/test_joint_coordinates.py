@@ -69,6 +69,30 @@ def test_spring_at_a_slide_under_a_force() -> None:
     assert_allclose(pulled.tip().position, [LENGTH + state["displacement"], 0, 0], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("kind", "acts", "load"),
+    [
+        ("prismatic", {"stiffness": 30.0, "rest": -0.02, "force": -1.0}, "force"),
+        ("prismatic", {"force": -1.0}, "force"),
+        ("revolute", {"stiffness": 0.5, "moment": 0.2}, "moment"),
+    ],
+)
+def test_effort_along_a_joint_that_holds_a_clamped_rod_in_the_world(
+    kind: str, acts: dict[str, float], load: str
+) -> None:
+    """The joint without an effort, and a load on the tip in its place, is the same equilibrium."""
+    place = {"world": True, "position": [0.6 * LENGTH, 0.1 * LENGTH, 0.2 * LENGTH]}
+    held = {"name": "held", "kind": kind, "axis": [0, 0, 1], "between": [place, {"rod": "a", "at": 1.0}]}
+    rod = link("a", strain="kirchhoff", base=ALONG)
+    loose = {**TURN, "force": [0, 0, 0], "moment": [0, 0, 0]}
+    with_effort = solve(built([{**held, **acts}], [rod], loads=[]))
+    assert with_effort.converged, with_effort.message
+    effort = with_effort.joint("held")[load]
+    alike = solve(built([held], [rod], loads=[{**loose, load: [0, 0, effort]}]))
+    assert_allclose(with_effort.tip().position, alike.tip().position, rtol=0, atol=1e-9)
+    assert_allclose(with_effort.tip().rotation, alike.tip().rotation, rtol=0, atol=1e-8)
+
+
 @pytest.mark.parametrize("angle", mostly_slow([0.7, 20.0], quick=[20.0]))
 def test_driven_angle_is_a_clamp_at_that_angle(angle: float) -> None:
     half = (np.pi / 2 + angle) / 2
