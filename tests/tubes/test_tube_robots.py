@@ -466,7 +466,6 @@ def test_unstable_robots_are_told(tmp_path: Path) -> None:
         ("export tubes.toml --output out --dynamics", "is for rods"),
         ("export tubes.toml --page out.html", "is for rods"),
         ("tune tubes.toml --output out.toml --range inner.rotation=0:1", "works on rods"),
-        ("bench tubes.toml --output out", "works on rods"),
         ("view tubes.toml --range inner.rotation=0:1", "works on rods"),
         ("path tubes.toml --input inner.rotation --to 3 --branch --output out.json", "is for rods"),
         ("path tubes.toml --input inner.turn --to 3 --output out.json", "is no input"),

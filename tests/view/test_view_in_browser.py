@@ -149,12 +149,11 @@ def test_a_robot_beyond_the_tolerance_is_said_to_be_so_and_refined(page: Any, se
 
 
 def request(server: RobotServer, method: str, path: str, body: str = "", **headers: str) -> tuple[int, bytes]:
-    connection = http.client.HTTPConnection(HOST, server.server_port, timeout=30)
-    connection.request(method, path_of(server, path), body, headers)
-    answer = connection.getresponse()
-    content = answer.read()
-    connection.close()
-    return answer.status, content
+    # The server may refuse a connection in the middle of a question.
+    with contextlib.closing(http.client.HTTPConnection(HOST, server.server_port, timeout=30)) as connection:
+        connection.request(method, path_of(server, path), body, headers)
+        answer = connection.getresponse()
+        return answer.status, answer.read()
 
 
 def path_of(server: RobotServer, path: str) -> str:

@@ -460,7 +460,7 @@ def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[T
 
 
 def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
-    """What is left of a line that rises around a section inside it: two lines, or one where that is next to an end."""
+    """Both sides of a line that rises around a section inside it, or one where that section is next to an end."""
     before = lifted - touch.start
     after = touch.end - lifted
     if not before > 0.0 < after:
