@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from math import isclose
 from typing import Protocol
 
 import numpy as np
@@ -38,6 +40,9 @@ SLOWEST = 3e-6
 
 WHOLE = 1e-9
 """Distance of a quotient of times from a whole number that is put down to rounding."""
+
+ROUNDING = 1e-14
+"""Relative distance of two times up to which they are one and the same time with rounding."""
 
 FAILED_SHRINKAGE = 0.5
 """Factor of a step whose equations were not solved."""
@@ -138,6 +143,12 @@ def _equal_steps(run: StepRun, size: float, after_step: AfterStep | None) -> Ste
     count = max(1, int(np.ceil(quotient - WHOLE)))
     run.size = size if abs(count - quotient) <= WHOLE else (run.stop - begin) / count
     taken = round((run.start.time - begin) / run.size)
+    if run.before is not None and not isclose(
+        begin + taken * run.size, run.start.time, rel_tol=ROUNDING, abs_tol=WHOLE * run.size
+    ):
+        # The motion goes on from within one of these steps: the steps that follow are counted from there.
+        run.before = replace(run.before, begun=run.start.time)
+        return _equal_steps(run, size, after_step)
     for number in range(taken + 1, count + 1):
         end = begin + number * run.size
         if number == count:

@@ -73,6 +73,17 @@ def test_two_parts_have_the_digits_of_one_motion(split: float, suffix: str, tmp_
     assert 0.8 * whole.error_estimate < second.error_estimate < 1.25 * whole.error_estimate
 
 
+@pytest.mark.parametrize("split", [0.07, 0.1])
+def test_a_motion_goes_on_from_within_a_given_step(split: float) -> None:
+    """The steps that follow are counted from there: its times were shifted by up to half a step."""
+    second = moved(swing(0.1875), moved(swing(split)))
+    whole = moved(swing(0.1875))
+    assert second.converged, second.message
+    ends = [motion.tip().position[-1] for motion in (second, whole)]
+    assert np.linalg.norm(ends[0] - ends[1]) / 0.5 < whole.error_estimate
+    assert 0.3 * whole.error_estimate < second.error_estimate < 3.0 * whole.error_estimate
+
+
 @pytest.mark.parametrize("subject", mostly_slow(["held", "free", "touches"], quick=["held"]))
 def test_what_was_interrupted_takes_the_steps_of_one_motion(subject: str) -> None:
     """Controlled steps: the Jacobian in use, the error and the polynomial of the last step are taken over.

@@ -380,6 +380,24 @@ def test_a_blow_shorter_than_errors_of_position_tell_is_right_in_its_velocity() 
     assert errors[1] < 0.1 * errors[0]
 
 
+@pytest.mark.parametrize("until", [0.5, 0.6, 0.7])
+def test_equal_steps_that_go_on_from_within_a_step_are_as_long_as_they_say(until: float) -> None:
+    """A parabola is met exactly: a step whose length differs from the time it is said to take leaves it."""
+    equations = explicit(
+        lambda t, x, v: -2.0 + 0.0 * x, lambda t, x, v: np.zeros((1, 1)), lambda t, x, v: np.zeros((1, 1))
+    )
+    first = fixed(equations, Instant(0.0, np.zeros(1), np.ones(1), np.full(1, -2.0)), until, radau(3), 0.25)
+    settings = StepSettings(np.full(1, 1e-13), size=0.25, newton=1.0)
+    second = integrate(equations, first.end, 2.0, radau(3), settings, memory=first.memory)
+    third = integrate(equations, second.end, 2.6, radau(3), settings, memory=second.memory)
+    assert len(third.steps) == 3
+    for step in (*second.steps, *third.steps):
+        assert_allclose(step.end.time - step.start.time, step.size, rtol=0, atol=1e-14)
+        time = step.end.time
+        assert_allclose(step.end.x, time - time**2, rtol=0, atol=1e-13)
+        assert_allclose(step.end.v, 1.0 - 2.0 * time, rtol=0, atol=1e-13)
+
+
 def test_pieces_are_chained_over_a_jump() -> None:
     # A force that goes from 1 to −1 at t = 1: parabolas, which collocation meets exactly, and no step is refused.
     def pushed(force: float) -> MotionEquations:
