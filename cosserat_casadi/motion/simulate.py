@@ -278,11 +278,12 @@ class Simulator:
         """The motion with a tolerance of a step that is smaller by a factor, and its error by the distance."""
         tolerance = timed.tolerance / factor
         fine = self.controlled(tolerance)
-        if fine.completed and fine.statistics.steps <= timed.history.statistics.steps:
+        steps = fine.statistics.steps
+        if fine.completed and steps <= timed.history.statistics.steps and not has_shorter_steps_at_events(fine):
             # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
             return self.told_by_half(fine, tolerance)
         distance = path_distance(self.paths(timed.history), self.paths(fine))
-        left = left_by(factor) * (1.0 + FEW_STEPS / max(fine.statistics.steps, 1))
+        left = left_by(factor) * (1.0 + FEW_STEPS / max(steps, 1))
         return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:
@@ -351,6 +352,14 @@ class Simulator:
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
             self.tell(MotionProgress(self.stage, time, self.simulation.duration, size))
+
+
+def has_shorter_steps_at_events(history: History) -> bool:
+    """Whether a motion has so many steps next to its events that equal ones of half its longest would be fewer."""
+    statistics = history.statistics
+    if not history.events or not statistics.steps:
+        return False
+    return (history.end.time - history.begin) / statistics.largest_step < 0.5 * statistics.steps
 
 
 def hangs_on_rounding(history: History, distance: float, before: float, tolerance: float) -> bool:

@@ -190,17 +190,21 @@ def test_a_floor_takes_no_momentum_along_it() -> None:
 @pytest.mark.slow
 def test_events_and_tips_converge_with_the_tolerance() -> None:
     found = []
-    for tolerance in (1e-4, 1e-6, 1e-8):
+    for tolerance in (1e-3, 1e-6, 1e-9):
         text = FREE.format(modes=2, along=2.0, duration=0.14, strain="planar", stuff=THIN, tangent="1, 0, 0.6")
         scene = parse_scene(text.replace("tolerance = 1e-4", f"tolerance = {tolerance}") + FLOOR)
         found.append(simulate(build(scene.with_motion_inputs(), moving=True)))
+        # A finer motion has fewer steps here: that it is more exact must not be taken for an error.
+        assert found[-1].converged, found[-1].message
+        assert found[-1].error_estimate < tolerance
     exact = found.pop()
     errors = [abs(one.tip().position - exact.tip().position).max() / LENGTH for one in found]
-    assert errors[0] < 1e-4
-    assert errors[1] < 1e-6
+    for error, motion in zip(errors, found, strict=True):
+        assert error < motion.error_estimate
+    assert errors[1] < 1e-2 * errors[0]
     times = [abs(one.events[-1].time - exact.events[-1].time) for one in found]
-    # The first is as exact already: steps next to events are short, and their errors of velocity count.
-    assert max(times) < 1e-7
+    assert times[0] < 1e-4
+    assert times[1] < 1e-2 * times[0]
 
 
 @pytest.mark.slow
