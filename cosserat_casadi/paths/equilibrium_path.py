@@ -227,14 +227,14 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for.
 
-        It is unresolved where rods are deeper inside each other, or inside smooth obstacles, than their width.
+        It is unresolved as a solve would be: where the nodes are too few, or rods deeper in each other, or in smooth
+        obstacles, than their width.
         """
         x = self.x[index]
         inputs = self.all_inputs[index]
         residual = column(self.model.residual(x, inputs))
-        depth = self.model.contact_depth
-        too_deep = depth is not None and float(depth(x, inputs)) > 1.0
-        outcome = Outcome.UNRESOLVED if too_deep else Outcome.CONVERGED
+        is_resolved = float(self.model.resolution_index(x, inputs)) <= 1.0
+        outcome = Outcome.CONVERGED if is_resolved else Outcome.UNRESOLVED
         solution = Solution(
             self.model,
             inputs,
@@ -246,7 +246,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         )
         solution = with_smooth_contacts(solution)
         stable = self.stable
-        if too_deep or stable is None or self.smallest_eigenvalue is None:
+        if not is_resolved or stable is None or self.smallest_eigenvalue is None:
             return solution
         return replace(
             solution,

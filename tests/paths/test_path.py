@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
-from cosserat_casadi import Model, SceneError, build, discretise, follow, solve
+from cosserat_casadi import Model, Outcome, SceneError, build, discretise, follow, solve
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
 from tests.catalogue.cases import column_tip
@@ -261,6 +261,15 @@ def test_no_start_is_said() -> None:
     assert path.outcome is PathOutcome.NO_START
     assert path.factor.shape == (0,)
     assert path.x.shape == (0, build(far).size)
+
+
+def test_points_on_too_few_nodes_are_unresolved_as_solves_are() -> None:
+    turn = {"name": "turn", "kind": "tip_wrench", "rod": "rod", "moment": [0, 0, 0]}
+    model = build(scene(turn, strain="planar", inputs=["turn.moment"], accuracy={"modes": 2, "nodes": 2}))
+    path = follow(model, "turn.moment", [0, 8.0, 0])
+    solved = solve(model, {"turn.moment": [0, 8.0, 0]})
+    assert path.solution(0).outcome is Outcome.CONVERGED
+    assert path.solution(-1).outcome is solved.outcome is Outcome.UNRESOLVED
 
 
 @pytest.mark.parametrize(
