@@ -224,9 +224,7 @@ def _panels(data: int = DATA) -> list[ca.MX]:
 
 def _by_pair(kernel: ca.Function, arguments: Sequence[Matrix]) -> Matrix:
     """Results of a kernel for every pair of sections of two panels, side by side, the first running faster."""
-    owners = ("first", "first", "second", "second", "law")
-    arranged = [_arranged(field, owner, PANEL, PANEL) for field, owner in zip(arguments, owners, strict=True)]
-    result: Matrix = kernel.map(PANEL**2)(*arranged)
+    result: Matrix = kernel.map(PANEL**2)(*_for_all_pairs(arguments))
     return result
 
 
@@ -299,10 +297,7 @@ def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix], al
     # Of the first load with the second section: transposed, so that sections of the first stand below each other.
     turned = [derivative.T if index in (2, 3) else derivative for index, derivative in enumerate(derivatives)]
     pairs = ca.Function("by_pair", symbols, ca.cse(turned)).map(PANEL**2)
-    owners = ("first", "first", "second", "second", "law")
-    by_pair = pairs.call(
-        [_arranged(field, owner, PANEL, PANEL) for field, owner in zip(arguments, owners, strict=True)]
-    )
+    by_pair = pairs.call(_for_all_pairs(arguments))
     columns = [symbol.shape[0] for symbol in symbols[:4]]
     blocks = []
     for load in range(2):
@@ -651,15 +646,12 @@ LAW_ARGUMENT = ARGUMENTS.index("law")
 """Place of the law among them."""
 
 
-def _arranged(field: Matrix, owner: str, first: int, second: int) -> Matrix:
-    """A field of the panels of one rod, or of neither, for all pairs of panels, the first running faster."""
-    if owner == "first":
-        return ca.repmat(field, 1, second)
-    if owner == "law":
-        return ca.repmat(field, 1, first * second)
-    rows, columns = field.shape
-    panels = ca.reshape(field, rows * columns // second, second)
-    return ca.reshape(ca.repmat(panels, first, 1), rows, columns * first)
+def _for_all_pairs(arguments: Sequence[Matrix]) -> list[Matrix]:
+    """Positions, data and law of two panels for all pairs of their sections, the first running faster."""
+    first, second = arguments[:2], arguments[2:4]
+    of_first = [ca.repmat(field, 1, PANEL) for field in first]
+    of_second = [ca.reshape(ca.repmat(field, PANEL, 1), field.shape[0], PANEL**2) for field in second]
+    return [*of_first, *of_second, ca.repmat(arguments[LAW_ARGUMENT], 1, PANEL**2)]
 
 
 @cache

@@ -296,8 +296,11 @@ class PairTerms:
         for sections in (self.section_pairs.first, self.section_pairs.second):
             fields = (sections.positions, ca.vertcat(sections.data, sections.motion))
             derivatives = [ca.jacobian(ca.vec(field), argument) for field in fields]
-            columns.append(sorted({column for field in derivatives for column in field.sparsity().get_triplet()[1]}))
-            rates.append([ca.densify(field[:, columns[-1]]).T for field in derivatives])
+            # Most unknowns move neither rod: their columns are left out.
+            moving = {column for derivative in derivatives for column in derivative.sparsity().get_triplet()[1]}
+            own = sorted(moving)
+            columns.append(own)
+            rates.append([ca.densify(derivative[:, own]).T for derivative in derivatives])
         parts = self.section_pairs.friction_rates(*rates)
         jacobian = ca.MX(sum(friction.numel() for friction in self.frictions), argument.numel())
         for own, loads in zip(columns, parts, strict=True):
