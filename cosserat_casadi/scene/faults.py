@@ -141,6 +141,11 @@ def shown(value: object) -> str:
     return f"a {type(value).__name__}"
 
 
+def printable(text: str) -> str:
+    """A text in a message, short, and without characters that move the cursor of a terminal."""
+    return repr(shortened(text))[1:-1]
+
+
 def shortened(text: str) -> str:
     """A text, cut off where it is too long for a message."""
     if len(text) <= LONGEST_TEXT:

@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.scene.families import Family, contents_of
-from cosserat_casadi.scene.faults import Fault, Path, shortened, shown
+from cosserat_casadi.scene.faults import Fault, Path, printable, shortened, shown
 from cosserat_casadi.scene.overrides import Assignment
 from cosserat_casadi.scene.records import REFUSED, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
@@ -194,7 +194,7 @@ def problem_of(fault: Fault, applied: Sequence[Assignment]) -> Problem:
         depth = len(assignment.created)
         if fault.path[:depth] == assignment.created:
             beyond = fault.path[len(assignment.leaf) :]
-            where = f"--set {shown(assignment.key)[1:-1]}{_dotted(beyond)}"
+            where = f"--set {printable(assignment.key)}{_dotted(beyond)}"
             break
     return Problem(where, fault.problem, fault.remedy)
 

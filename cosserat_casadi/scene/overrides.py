@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.scene.faults import Path, shown
+from cosserat_casadi.scene.faults import Path, printable, shown
 from cosserat_casadi.scene.toml import keys_are_too_deep
 from cosserat_casadi.spelling import close_matches
 
@@ -78,8 +78,7 @@ def apply_overrides(
             assignment = assign(tables, key, _value(right.strip()), known)
             _refuse_missing_list(tables, assignment)
         except RefusedOverride as error:
-            # Short, and without characters that move the cursor of a terminal.
-            refused.append(Problem(f"--set {shown(key or text)[1:-1]}", *error.args))
+            refused.append(Problem(f"--set {printable(key or text)}", *error.args))
         else:
             applied.insert(0, assignment)
     return applied, refused
