@@ -237,14 +237,18 @@ class _Search:
         return min(rung + MOST_RUNGS, last)
 
     @property
+    def is_damped(self) -> bool:
+        """Whether all rods are damped."""
+        return all(rod.damping is not None for rod in self.scene.rods)
+
+    @property
     def hopeless(self) -> bool:
         """Whether waves without damping that impacts sent out keep motions on more modes far apart.
 
         They have all lengths, so that errors fall slowly on any number of modes.
         """
-        damped = all(rod.damping is not None for rod in self.scene.rods)
         struck = any(event.kind == "impact" for event in self.last.history.events)
-        if damped or not struck or len(self.levels) < 2:
+        if self.is_damped or not struck or len(self.levels) < 2:
             return False
         return self.foreseen(self.ladder[-1], ORDER_OF_WAVES) > self.tolerance
 
@@ -464,8 +468,7 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
 
 def _first_step_tolerance(search: _Search) -> float:
     """Tolerance of a step, over the length, with which motions usually keep to the share of the steps."""
-    damped = all(rod.damping is not None for rod in search.scene.rods)
-    foreseen = TOLD_ERROR_OF_DAMPED if damped else TOLD_ERROR
+    foreseen = TOLD_ERROR_OF_DAMPED if search.is_damped else TOLD_ERROR
     allowed = TIME_SHARE * min(search.tolerance, LOOSEST)
     first = float((allowed / foreseen) ** (1.0 / SLOPE))
     if any(obstacle.is_smooth for obstacle in search.scene.obstacles):
