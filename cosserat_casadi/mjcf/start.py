@@ -1,4 +1,4 @@
-"""Coordinates of joints of MuJoCo at which links and bodies have given poses."""
+"""Coordinates of joints of MuJoCo that bring links and bodies to poses of an equilibrium."""
 
 from __future__ import annotations
 
