@@ -190,11 +190,12 @@ def test_rates_that_constraints_leave_free(family: str, count: int) -> None:
 
 
 @pytest.mark.slow
-def test_a_body_on_a_rod_is_brought_to_rest() -> None:
+def test_a_body_on_two_rods_is_brought_to_rest() -> None:
     push = {**PULL, "position": [0, 0, 0], "force": [0, 0, 0], "moment": [0, 0, 0]}
     plate = {"name": "plate", "mass": 0.3, "inertia": np.diag([0.03, 0.03, 0.03]).tolist()}
-    joints = [joint("a", position=[0, 0, 0])]
-    tables = scene(rod(strain="planar"), loads=[push], bodies=[plate], joints=joints, inputs=["pull.force"])
+    joints = [joint("a", position=[0, 0, 0]), joint("b", "spherical", position=[0.2, 0, 0])]
+    rods = [rod("a", "planar"), rod("b", "planar", base={"position": [0.2, 0, 0]})]
+    tables = scene(*rods, loads=[push], bodies=[plate], joints=joints, inputs=["pull.force"])
     model = build(scene_from_dict(tables), moving=True)
     rest = solve(model, raise_on_failure=True)
     stage = motion_stage(model, 0.05, radau(2))
@@ -213,8 +214,10 @@ def test_a_body_on_a_rod_is_brought_to_rest() -> None:
         states.append(following)
         force += stage.duration * rate
         cost += ca.sumsqr(rate)
-    goal = float(np.ravel(rest.body("plate").position)[0]) + 0.05
+    # A short way: on a long one IPOPT wanders before it settles, and counts of its iterations tell nothing.
+    goal = float(np.ravel(rest.body("plate").position)[0]) + 0.01
     opti.subject_to(model.body["plate"](stage.x(states[-1]), force)[0][0] == goal)
+    # Were all rates asked to vanish, those of the rods would follow from those of the body: too many equations.
     opti.subject_to(stage.independent_rates(states[-1], rest.x, rest.inputs) == 0)
     opti.minimize(cost)
     opti.solver("ipopt", {**IPOPT, "ipopt.tol": 1e-8, "ipopt.max_iter": 20})
