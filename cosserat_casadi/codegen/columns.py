@@ -31,6 +31,12 @@ from cosserat_casadi.rod.tangent import Columns, Tangent
 LANES = TOGETHER
 """Columns that are computed together."""
 
+SHARED_AT_MOST = 2
+"""Instructions of a function before common terms are looked for, over those of its shared form: no function has more.
+
+1.0 to 1.6 on the scenes of examples/. Looking for common terms takes by far the most time of a long function.
+"""
+
 GIVEN = ["x", "inputs", "load_factor"]
 """Arguments of the equations on the path of loads."""
 
@@ -247,12 +253,13 @@ def columned_jacobian(written: WrittenJacobian) -> ColumnedJacobian | None:
     return jacobian if jacobian.rods else None
 
 
-def in_columns(written: WrittenJacobian, name: str) -> ColumnForm | None:
-    """The Jacobian of one rod by columns; None where it has no such form.
+def in_columns(written: WrittenJacobian, name: str, most: int | None = None) -> ColumnForm | None:
+    """The Jacobian of one rod by columns; None where it has no such form, or surely a longer one than is wanted.
 
     Args:
         written: the Jacobian.
         name: what the function is called.
+        most: statements up to which it is wanted, any number by default.
     """
     if len(written.system.discrete.rods) != 1:
         return None
@@ -260,6 +267,9 @@ def in_columns(written: WrittenJacobian, name: str) -> ColumnForm | None:
     if jacobian is None:
         return None
     (rod,) = jacobian.rods
+    apart = jacobian.of_columns.n_instructions() + jacobian.rods[rod].of_one.n_instructions()
+    if most is not None and SHARED_AT_MOST * most < apart:
+        return None
     _, _, entries = jacobian.scalars
     return jacobian.part(ca.densify(entries), rod).form(name)
 

@@ -9,7 +9,7 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT, STRAIGHT_BESIDE_INTERVALS, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.columns import WrittenJacobian, in_columns, on_path
+from cosserat_casadi.codegen.columns import SHARED_AT_MOST, WrittenJacobian, in_columns, on_path
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, differentiable_functions, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.motion_parts import MotionInC
@@ -76,10 +76,8 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
         error_sources.BALANCE: [*unknowns, *missing, *unknowns, *watched],
         error_sources.WATCHED: watched,
     }[entry.spec.name]
-    if chooses(entry.function):
-        return dense(entry.function, entry.kernel)
-    straight = scalar(entry.function, entry.kernel)
-    if _literal(model) or straight.n_instructions() > len(discrete.rods) * STRAIGHT_IN_SHARES:
+    most = len(discrete.rods) * STRAIGHT_IN_SHARES
+    if chooses(entry.function) or _literal(model) or scalar(entry.function, entry.kernel, most) is None:
         return dense(entry.function, entry.kernel)
     return in_one(entry.function, owners, entry.kernel)
 
@@ -104,10 +102,10 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
         if columned is not None:
             return columned
     elif not _literal(model):
-        straight = scalar(entry.function, entry.kernel)
         longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
+        straight = scalar(entry.function, entry.kernel, longest)
         # Without calls of intervals there is nothing to make together.
-        if straight.find_functions(0) and straight.n_instructions() <= longest:
+        if straight is not None and straight.find_functions(0):
             with suppress(UnknownOperationError):
                 return scalars_in_c(straight, dense(entry.function, entry.kernel))
     return kernel(model, entry.function, entry.kernel)
@@ -124,14 +122,14 @@ def by_columns(
         name: its name in C.
         most: statements up to which it is not a long one, MOST_IN_COLUMNS by default.
     """
-    form = in_columns(written, name)
+    within = MOST_IN_COLUMNS if most is None else most
+    form = in_columns(written, name, within)
     if form is None:
         return None
     try:
         columned = columns_in_fours(form, dense(function, name))
     except UnknownOperationError:
         return None
-    within = MOST_IN_COLUMNS if most is None else most
     return columned if columned.n_instructions() <= within else None
 
 
@@ -143,8 +141,8 @@ def _literal(model: Model) -> bool:
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
     """A function under its name in C: of scalars within so many instructions, else of matrices, which become loops."""
     if not _literal(model) and not chooses(function):
-        straight = scalar(function, name)
-        if straight.n_instructions() <= straight_within:
+        straight = scalar(function, name, straight_within)
+        if straight is not None:
             return straight
     return dense(function, name)
 
@@ -156,11 +154,21 @@ def dense(function: ca.Function, name: str) -> ca.Function:
     return ca.Function(name, symbols, results, function.name_in(), function.name_out())
 
 
-def scalar(function: ca.Function, name: str) -> ca.Function:
-    """A function as scalar instructions with dense outputs, constants folded and common terms shared."""
+def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
+    """A function as scalar instructions with dense outputs, constants folded and common terms shared.
+
+    Args:
+        function: of matrices.
+        name: its name in C.
+        most: instructions up to which it is wanted; None stands for a longer one.
+    """
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    expressions = [ca.densify(expression) for expression in ca.cse(list(function.call(symbols)))]
-    return ca.Function(name, symbols, expressions, function.name_in(), function.name_out())
+    expressions = list(function.call(symbols))
+    if ca.Function(name, symbols, expressions).n_instructions() > SHARED_AT_MOST * most:
+        return None
+    shared = [ca.densify(expression) for expression in ca.cse(expressions)]
+    straight = ca.Function(name, symbols, shared, function.name_in(), function.name_out())
+    return straight if straight.n_instructions() <= most else None
 
 
 def differentiable(model: Model, names: Names) -> list[ca.Function]:

@@ -98,8 +98,28 @@ def test_columns_grow_by_groups_of_four() -> None:
     form = in_columns(on_path(model), "jacobian")
     assert form is not None
     assert form.stride == 24
-    straight = scalar(model.path_jacobian, "jacobian").n_instructions()
-    assert columns_in_fours(form, model.path_jacobian).statements < straight / 4
+    straight = scalar(model.path_jacobian, "jacobian", 100_000)
+    assert straight is not None
+    assert columns_in_fours(form, model.path_jacobian).statements < straight.n_instructions() / 4
+
+
+@pytest.mark.parametrize("share", [0.3, 0.9, 1.1])
+def test_a_longer_function_than_is_wanted_is_none(share: float) -> None:
+    """Far longer ones are told before common terms are looked for, others after it."""
+    function = model_of("kirchhoff", "dead force and couple at the tip").path_jacobian
+    whole = scalar(function, "jacobian", 100_000)
+    assert whole is not None
+    straight = scalar(function, "jacobian", int(share * whole.n_instructions()))
+    assert (straight is None) == (share < 1)
+
+
+def test_a_jacobian_by_columns_that_is_far_too_long_is_not_looked_through() -> None:
+    written = on_path(model_of("kirchhoff", "dead force and couple at the tip"))
+    form = in_columns(written, "jacobian")
+    assert form is not None
+    statements = form.function.n_instructions()
+    assert in_columns(written, "jacobian", statements) is not None
+    assert in_columns(written, "jacobian", statements // 3) is None
 
 
 def test_functions_that_look_alike_are_told_apart() -> None:

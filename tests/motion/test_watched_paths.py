@@ -60,7 +60,8 @@ def test_a_rod_that_only_twists_is_as_exact_as_it_says(tolerance: float) -> None
     assert_allclose(motion.tip().position, np.tile([0.0, 0.0, 1.0], (41, 1)), rtol=0, atol=1e-12)
     turn = 2 * np.arctan2(quaternion[:, 3], quaternion[:, 0])
     error = LEVER * np.abs(turn - twist_of_the_tip(motion.times)).max()
-    assert 1e-9 < error <= motion.error_estimate <= tolerance
+    # Not below what the reference itself is off by.
+    assert 1e-10 < error <= motion.error_estimate <= tolerance
 
 
 # A body that hangs by a corner
@@ -106,7 +107,8 @@ def test_a_body_about_its_origin_is_as_exact_as_it_says(tolerance: float) -> Non
     assert_allclose(poses.position, np.tile([0.0, 0.0, 1.0], (21, 1)), rtol=0, atol=1e-10)
     centre = Rotation.from_quat(poses.quaternion[:, [1, 2, 3, 0]]).apply(CENTRE)
     error = np.linalg.norm(centre - centre_of_the_pendulum(motion.times), axis=1).max()
-    assert 1e-9 < error <= motion.error_estimate <= tolerance
+    # Not below what the reference itself is off by.
+    assert 1e-10 < error <= motion.error_estimate <= tolerance
 
 
 # Distances
