@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import ceil
 
+import numpy as np
+
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.required_modes import signal_modes
 
 REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
@@ -37,6 +40,9 @@ VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
 VERIFIED_WAVES = (48, 64, 85, 113, 150)
 """Further ones for scenes that put waves along their rods."""
 
+SHORT = 0.25
+"""Length of an element over that of its rod, up to which it is short: it sees less of a rod, and needs fewer modes."""
+
 SPARE_NODES = 2
 """Intervals of a verified level beyond those that the modes and the turn of a rod need."""
 
@@ -50,6 +56,12 @@ def nodes_for_turn(modes: int, turn: float) -> int:
             the interpolation need a bounded turn of each (docs/theory.md, section 10).
     """
     return nodes_for(modes) + ceil(turn / 2)
+
+
+def in_short_elements(scene: scenes.Scene) -> bool:
+    """Whether every rod is cut into short elements."""
+    widths = np.concatenate([np.diff(element_ends(scene, rod.name)) for rod in scene.rods])
+    return bool(widths.max() <= SHORT + NARROWEST)
 
 
 def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...] = VERIFIED_MODES) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
+from cosserat_casadi.accuracy.levels import VERIFIED_MODES, in_short_elements, seeing_modes, verified_model
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve
 from cosserat_casadi.equilibrium.answer_error import estimated
 from cosserat_casadi.equilibrium.contact.contact_answer_error import beside_finer, estimated_in_contact
@@ -20,6 +20,9 @@ from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution
 from cosserat_casadi.tubes.tube_solve import FEWEST_STEPS, MOST_STEPS, error_beside, finer_than, model_of, solution_near
+
+MODES_OF_SHORT = (2, 4)
+"""Modes of the first levels of rods in short elements: each is a factor on the unknowns of the optimiser."""
 
 
 class Levels(Protocol):
@@ -54,13 +57,19 @@ class LevelsOfRods:
     @property
     def counts(self) -> tuple[int, ...]:
         """Modes of the levels that verify."""
-        return seeing_modes(self.scene)[1:]
+        return self._modes[1:]
 
     def first(self) -> Model:
         """The model of the first level."""
         if self.scene.accuracy.fixed:
             return build(self.scene)
-        return verified_model(self.scene, seeing_modes(self.scene)[0], 0.0)
+        return verified_model(self.scene, self._modes[0], 0.0)
+
+    @property
+    def _modes(self) -> tuple[int, ...]:
+        """Modes of all levels, the first of which nothing verifies."""
+        usual = (*MODES_OF_SHORT, *VERIFIED_MODES) if in_short_elements(self.scene) else VERIFIED_MODES
+        return seeing_modes(self.scene, usual)
 
     def finer(self, count: int, model: Model, solutions: Sequence[Solution]) -> Model:
         """The model of a level, on intervals enough for how far the rods turned on the level before."""

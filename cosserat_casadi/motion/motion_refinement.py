@@ -15,12 +15,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from cosserat_casadi.accuracy.levels import SPARE_NODES, VERIFIED_MODES, seeing_modes
+from cosserat_casadi.accuracy.levels import SPARE_NODES, VERIFIED_MODES, in_short_elements, seeing_modes
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
-from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.felt_modes import REST, SAFETY, UNKNOWN_ORDER, felt, lacking, last_of
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
@@ -92,9 +91,6 @@ ORDERS = 200
 
 FEW_MODES = 4
 """Modes of the first level of rods that are cut into short elements, each of which sees less of a rod."""
-
-SHORT = 0.25
-"""Length of an element over that of its rod, up to which it is short."""
 
 MOST_RUNGS = 3
 """Most rungs of the ladder of modes that are climbed at once."""
@@ -437,10 +433,8 @@ def _given_up(search: _Search) -> Motion:
 
 def _ladder(scene: Scene) -> tuple[int, ...]:
     """Modes of every strain in each element, level by level."""
-    widths = np.concatenate([np.diff(element_ends(scene, rod.name)) for rod in scene.rods])
-    if widths.max() > SHORT + NARROWEST:
-        return seeing_modes(scene)
-    return seeing_modes(scene, (FEW_MODES, *VERIFIED_MODES))
+    usual = (FEW_MODES, *VERIFIED_MODES) if in_short_elements(scene) else VERIFIED_MODES
+    return seeing_modes(scene, usual)
 
 
 def _on_level(search: _Search, simulator: Simulator) -> History:

@@ -8,11 +8,12 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from rich.console import Console
 
-from cosserat_casadi import Inverse, Scene, build, inverse, solve
+from cosserat_casadi import Inverse, Scene, build, inverse, scene_from_dict, solve
 from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
@@ -100,3 +101,27 @@ def test_rows_of_a_table_carry_their_errors(table: TargetTable) -> None:
 def test_rows_within_the_tolerance_say_so(table: TargetTable) -> None:
     found = inverse_rows(wanted(modes=2, nodes=6, tolerance=1e-2), table.rows)
     assert "within the tolerance of 0.01 (line" in summary(table, found)
+
+
+def test_a_robot_with_disks_is_searched_on_few_modes_between_them() -> None:
+    """Tensions that put its tip there, and where more modes see the tip under these tensions."""
+    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}
+    tendon = {"kind": "tendon", "rod": "a", "tension": 1.0, "routing": "disks"}
+    offsets = {"right": [0.05, 0.0], "front": [0.0, 0.05]}
+    tables = {
+        "schema": 1,
+        "accuracy": {"tolerance": 1e-3},
+        "rods": [{"name": "a", "length": 1.0, "strain": "kirchhoff", "stiffness": stiffness, "linear_density": 0.05}],
+        "disks": [{"name": "disks", "rod": "a", "count": 5, "mass": 0.01, "radius": 0.06, "thickness": 0.01}],
+        "actuators": [{**tendon, "name": name, "offset": offset} for name, offset in offsets.items()],
+        "loads": [{"name": "weight", "kind": "gravity", "acceleration": [0.0, 0.0, -9.81]}],
+        "inputs": ["right.tension", "front.tension"],
+    }
+    fine = build(scene_from_dict({**tables, "accuracy": {"modes": 6, "nodes": 10}}))
+    goal = solve(fine, [4.0, 2.0], raise_on_failure=True).tip("a").position
+    target = {"kind": "position", "rod": "a", "position": goal.tolist()}
+    result = inverse(scene_from_dict({**tables, "targets": [target]}))
+    assert result.met, result.solution.message
+    assert max(result.solution.model.discretisation["a"].modes) == 2
+    seen = solve(fine, result.solution.inputs, raise_on_failure=True).tip("a").position
+    assert np.linalg.norm(seen - goal) <= result.solution.error_estimate <= 1e-3
