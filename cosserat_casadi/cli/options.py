@@ -7,11 +7,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import MESHES, are_one_file, check_writable
-from cosserat_casadi.model.load_cases import case_layout, ends_by_column
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import case_layout, ends_by_column, no_column, read_load_cases, read_range
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.reading import files_read
 
@@ -25,7 +27,9 @@ Settings = Annotated[
 Ranges = Annotated[
     list[str] | None,
     typer.Option(
-        "--range", metavar="COLUMN=LOW:HIGH", help="Range of an input or a parameter that modes are chosen for."
+        "--range",
+        metavar="COLUMN=LOW:HIGH[:COUNT]",
+        help="Range of an input or a parameter that modes are chosen for; load cases are COUNT values in it.",
     ),
 ]
 
@@ -39,6 +43,45 @@ def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[floa
     if not ranges:
         return {}
     return ends_by_column(ranges, case_layout(scene))
+
+
+def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> FloatArray | None:
+    """Load cases that ``--over`` and counts of ``--range`` ask for, shape (count, size of a case).
+
+    Several ranges are a grid, and every row of a file meets each of its values.
+
+    Args:
+        over: file of rows.
+        ranges: texts of ``--range``.
+        scene: has their columns.
+
+    Returns:
+        None where there is no file and no range counts values: these are whole ranges.
+
+    Raises:
+        SceneError: with every fault; among them a range without a count beside a file or a range with one.
+    """
+    ranges = ranges or []
+    if over is None and all(read_range(text).count is None for text in ranges):
+        return None
+    layout = case_layout(scene)
+    if not ranges:
+        assert over is not None
+        return read_load_cases(over, layout)
+    # Imported here: few commands have a grid.
+    from cosserat_casadi.sweeps.table import crossed, range_table, read_table
+
+    table = range_table(ranges)
+    if over is not None:
+        table = crossed(read_table(over), table)
+    problems = [
+        no_column(table.where, column, layout.columns) for column in table.columns if column not in layout.columns
+    ]
+    if problems:
+        raise SceneError(*problems)
+    cases = np.tile(layout.default, (len(table.values), 1))
+    cases[:, [layout.columns[column] for column in table.columns]] = table.values
+    return cases
 
 
 def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json", *, meshes: bool = False) -> None:

@@ -180,7 +180,7 @@ def read_ranges(texts: Sequence[str], fault: Callable[[str, AskedRange], Problem
 
 
 def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
-    """Lower and upper end by column of ``column=low:high``.
+    """Lower and upper end by column of ``column=low:high``; a count of values, which a grid has, changes nothing.
 
     Raises:
         SceneError: with every fault.
@@ -189,9 +189,6 @@ def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple
     def fault(text: str, asked: AskedRange) -> Problem | None:
         if asked.column not in layout.columns:
             return no_column("--range", asked.column, layout.columns)
-        if asked.count is not None:
-            problem = f"{text!r} counts values, and modes are chosen for a whole range"
-            return Problem("--range", problem, f"write {asked.column}={asked.low:g}:{asked.high:g}")
         return None
 
     return {column: (asked.low, asked.high) for column, asked in read_ranges(ranges, fault).items()}

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, read_scene, solve
+from cosserat_casadi import SceneError, Solution, build, read_scene, solve
+from cosserat_casadi.cli.options import asked_cases
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.results.json_text import json_text
 from examples.demo import EXPORTED, HANDFUL, MOTIONS, SCENES, command_lines
 from tests.commands import WIRE, cosserat
@@ -390,8 +392,34 @@ def test_tune_refuses_columns_that_are_no_inputs(wire: Path) -> None:
     options = ("--over", "loads.csv", "--range", "push.force.x=0:1")
     both = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)
     assert both.returncode == 2
-    assert "--over: stands beside --range" in both.stderr
+    assert "does not say how many values (write push.force.x=0:1:21" in " ".join(both.stderr.split())
+    twice = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options[:3], "push.force.x=0:1:2", cwd=wire)
+    assert twice.returncode == 2
+    assert "'push.force.x' is a column of loads.csv too" in " ".join(twice.stderr.split())
     assert not (wire / "tuned.toml").exists()
+
+
+def test_counts_of_ranges_are_a_grid_of_load_cases_beside_files(wire: Path) -> None:
+    scene = read_scene(wire / "wire.toml")
+    layout = case_layout(scene)
+    assert asked_cases(None, ["push.force.x=0:1"], scene) is None
+    (wire / "loads.csv").write_text("push.force.z\n0.1\n0.2\n")
+    cases = asked_cases(wire / "loads.csv", ["push.force.x=-1:1:3", "push.force.y=0:1:2"], scene)
+    assert cases is not None
+    columns = [layout.columns[f"push.force.{axis}"] for axis in "zxy"]
+    expected = [[z, x, y] for z in (0.1, 0.2) for x in (-1.0, 0.0, 1.0) for y in (0.0, 1.0)]
+    np.testing.assert_allclose(cases[:, columns], expected, rtol=0, atol=1e-15)
+    others = np.delete(np.arange(cases.shape[1]), columns)
+    np.testing.assert_array_equal(cases[:, others], np.tile(layout.default[others], (12, 1)))
+    with pytest.raises(SceneError, match=r"'pull\.force\.x' is not an input or a parameter"):
+        asked_cases(None, ["pull.force.x=0:1:3"], scene)
+
+
+def test_tune_takes_the_grid_that_a_sweep_takes(wire: Path) -> None:
+    options = ("--tolerance", "1e-3", "--range", "push.force.x=-0.1:0.2:3", "--range", "push.force.y=-0.1:0.1:2")
+    done = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "6 load cases" in done.stdout
 
 
 # Export
@@ -751,7 +779,7 @@ def test_ranges_are_refused_and_nothing_is_written(command: str, wire: Path) -> 
         ("push.force.x=1:-1", "the lower end first"),
         ("push.force.x=0:inf", "no two finite numbers"),
         ("pull.force.x=0:1", "is not an input or a parameter"),
-        ("push.force.x=0:1:5", "counts values, and modes are chosen for a whole range (write push.force.x=0:1)"),
+        ("push.force.x=0:1:a", "no whole number of values"),
     ):
         refused = cosserat(*RANGED[command], "--range", text, cwd=wire)
         assert refused.returncode == 2, refused.stdout + refused.stderr

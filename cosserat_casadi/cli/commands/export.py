@@ -19,7 +19,7 @@ from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
@@ -33,12 +33,12 @@ from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import ExportError, Problem, SceneError
+from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.export import LINKS, check_mjcf, mjcf_of
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.load_cases import case_layout, read_load_cases, spread
+from cosserat_casadi.model.load_cases import case_layout, spread
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import Scene, read_scene
@@ -238,19 +238,25 @@ def export(
     if not targets.need_a_solve:
         return
     asked = asked_ranges(ranges, read)
-    cases = _load_cases(read, over, ranges or [], samples or LOAD_CASES)
+    # Without exact contact a file is refused, and modes are chosen all over ranges whether they count values or not.
+    given_cases = asked_cases(over, ranges, read) if over is not None or read.touches_exactly else None
+    cases = given_cases
+    if cases is None and ranges and read.touches_exactly:
+        cases = spread(ranges, samples or LOAD_CASES, case_layout(read))
+    check_load_cases(read, cases)
     exported_scene = _checked_scene(read, targets, sources, name)
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
     moves = targets.moves(sources)
     solved_scene = exported_scene.held() if moves else exported_scene
     chosen_cases = None
-    if over is not None and cases is not None:
+    if given_cases is not None:
         # A library begins at the scene's own inputs.
-        chosen_cases = [{}, *map(case_layout(read).unpack, cases)]
+        chosen_cases = [{}, *map(case_layout(read).unpack, given_cases)]
     # In exact contact the samples are load cases: choosing modes at as many would take minutes.
-    in_ranges = None if solved_scene.touches_exactly or over is not None else samples
-    solution, choice = solve_for_ranges(solved_scene, asked, chosen_cases, in_ranges)
+    in_ranges = None if solved_scene.touches_exactly else samples
+    chosen_ranges = asked if given_cases is None else {}
+    solution, choice = solve_for_ranges(solved_scene, chosen_ranges, chosen_cases, in_ranges)
     _check_solved(solution)
     _write(targets, sources, name, exported_scene, solution, choice, cases, asked)
     print_choice(Console(), choice)
@@ -334,23 +340,6 @@ def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
     for sentence in model.left_out:
         print_plain(Console(stderr=True), escape(sentence), soft_wrap=True)
     print_plain(Console(), f"wrote {escape(str(path))}; MuJoCo opens it", soft_wrap=True)
-
-
-def _load_cases(scene: Scene, over: Path | None, ranges: list[str], samples: int) -> FloatArray | None:
-    """Load cases whose exact contacts the sources know, shape (count, size of a case); None without exact contact.
-
-    Raises:
-        SceneError: the command has both a file and ranges, or one of them is refused.
-        ExportError: the scene has no exact contact, and a file names load cases.
-    """
-    if over is None and not (ranges and scene.touches_exactly):
-        return None
-    if over is not None and ranges:
-        raise SceneError(Problem("--over", "stands beside --range", "give one of them"))
-    layout = case_layout(scene)
-    cases = read_load_cases(over, layout) if over is not None else spread(ranges, samples, layout)
-    check_load_cases(scene, cases)
-    return cases
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:

@@ -12,12 +12,19 @@ from cosserat_casadi.accuracy.choose import SAMPLES, SAMPLES_IN_CONTACT
 from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.cli.commands.choosing import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_file, check_inputs_stay
+from cosserat_casadi.cli.options import (
+    Ranges,
+    SceneFile,
+    Settings,
+    asked_cases,
+    asked_ranges,
+    check_file,
+    check_inputs_stay,
+)
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.cli.reports.numbers import discretisation_table
-from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.model.load_cases import case_layout, read_load_cases
+from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.scene import read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -47,14 +54,12 @@ def tune(
     layout = case_layout(tuned_scene)
     check_file(output, "--output", ".toml")
     check_inputs_stay({"--output": output}, scene, settings, over)
-    if over is not None and ranges:
-        raise SceneError(Problem("--over", "stands beside --range", "give one of them"))
+    cases = asked_cases(over, ranges, tuned_scene)
     free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
-    if over is None:
+    if cases is None:
         choice = choose_with_progress(free, asked_ranges(ranges, tuned_scene), samples)
     else:
-        cases = [layout.unpack(case) for case in read_load_cases(over, layout)]
-        choice = choose_with_progress(free, cases=cases)
+        choice = choose_with_progress(free, cases=[layout.unpack(case) for case in cases])
     Console().print(discretisation_table(choice.model))
     print_choice(Console(), choice)
     # A scene that misses the tolerance is not written: it would be taken for one that meets it.
