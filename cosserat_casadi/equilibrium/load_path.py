@@ -16,7 +16,7 @@ from cosserat_casadi.model.contact_layers import thinnest
 from cosserat_casadi.model.contact_pairs import thinnest_pair
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import without_noise
-from cosserat_casadi.numerics.broyden import Jacobian
+from cosserat_casadi.numerics.broyden import Jacobian, solved
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 
 FIRST_STEP = 0.25
@@ -68,12 +68,13 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
         dg_dt = path_rate(x, *given, load_factor, no_change, load_factor_rate)
         return column(dg_dt)
 
-    # The same as a function of the inputs, Model.path_tangent, takes as long to write as many a solve.
+    # The same as a function of the inputs, Model.path_tangent, takes as long to write as many a solve. Where the
+    # unloaded stiffness is singular, the path starts by Newton's steps.
     unloaded = model.unloaded()
-    tangent = np.zeros(model.size)
-    if model.size:
-        stiffness = path_jacobian(unloaded, *given, 0.0).full()
-        tangent = without_noise(-np.linalg.solve(stiffness, rate(unloaded, 0.0)))
+    stiffness = path_jacobian(unloaded, *given, 0.0).full()
+    tangent = solved(stiffness, -rate(unloaded, 0.0))
+    if tangent is not None:
+        tangent = without_noise(tangent)
     return Path(
         residual,
         jacobian,

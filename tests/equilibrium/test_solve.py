@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from importlib.metadata import version
+from typing import Any, cast
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import cosserat_casadi
 from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve
+from cosserat_casadi.equilibrium.load_path import continuation_limits, load_path
 from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.broyden import UpdatedJacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
@@ -410,3 +414,27 @@ def test_shapes_of_tip_and_shape_are_those_documented() -> None:
 
 def test_the_package_says_its_version() -> None:
     assert cosserat_casadi.__version__ == version("cosserat-casadi")
+
+
+class SingularAtStart:
+    """A model whose unloaded stiffness is exactly zero."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.model, name)
+
+    def path_jacobian(self, x: Any, *given: Any) -> ca.DM:
+        load_factor = given[-1]
+        return self.model.path_jacobian(x, *given) * float(load_factor > 0.0)
+
+
+def test_a_load_path_that_begins_singular_ends_in_an_outcome() -> None:
+    model = build(scene(push(), WEIGHT))
+    inputs = model.pack()
+    path = load_path(cast(Model, SingularAtStart(model)), inputs)
+    assert path.tangent is None
+    followed = follow(path, continuation_limits(model))
+    assert followed.outcome is Outcome.CONVERGED
+    assert_allclose(followed.x, solve(model, inputs).x, rtol=1e-9, atol=1e-12)
