@@ -29,7 +29,7 @@ from cosserat_casadi.plots.colours import FAILURE, OBSTACLES, PLAIN_TEXT, actuat
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces, surface_lines
-from cosserat_casadi.plots.scenery import CLAMP, draw_supports
+from cosserat_casadi.plots.scenery import draw_supports
 
 FORMATS = (".gif", ".mp4")
 """Suffixes that an animation may have."""
@@ -330,7 +330,7 @@ class _Film:
         axes = self.figure.add_subplot(projection=projection)
         self._frames = frames
         self._canvas = Canvas(axes, plane, shapes.size, view_axes)
-        self._lines = self._draw(frames.model, shapes) + self._draw_obstacles(frames, shapes)
+        self._lines = self._draw(shapes) + self._draw_obstacles(frames, shapes)
         if frames.section_axes:
             self._lines += self._draw_section_axes(frames, shapes)
         standing = [obstacle for obstacle in frames.model.scene.obstacles if obstacle.body is None]
@@ -349,7 +349,7 @@ class _Film:
         words = self._frames.words[index]
         self._canvas.axes.set_title(words, fontsize=10, color=self._frames.colour)
 
-    def _draw(self, model: Model, shapes: MovingShapes) -> list[_Moving]:
+    def _draw(self, shapes: MovingShapes) -> list[_Moving]:
         """Draw all that moves; returns it."""
         canvas = self._canvas
         lines = []
@@ -365,9 +365,7 @@ class _Film:
         for index, (name, centre_lines) in enumerate(shapes.rods.items()):
             rod = canvas.line(centre_lines[0], linewidth=3.5, label=name, **rod_style(index))
             lines.append(_Moving(rod, centre_lines))
-            if model.discrete.unloaded.floating_base(name) is None:
-                bases = centre_lines[:, :1]
-                lines.append(_Moving(canvas.markers(bases[0], **CLAMP), bases))
+        lines += [_Moving(canvas.markers(places[0], **style), places) for style, places in shapes.marks]
         return lines
 
     def _draw_obstacles(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:

@@ -6,6 +6,7 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,9 @@ from cosserat_casadi.files import write_atomically
 
 FORMATS = (".png", ".pdf", ".svg")
 """Suffixes that a figure may have."""
+
+TITLE_LETTER = 0.14
+"""Mean width of a letter of a title, inches."""
 
 # A date or a version in a file would make two drawings of one thing differ.
 _METADATA: dict[str, dict[str, None]] = {
@@ -85,5 +89,6 @@ def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:
 
 
 def add_title(figure: Any, title: str | None) -> None:
-    """Write the title of a scene over its figure."""
-    figure.suptitle(title or "Untitled scene", fontsize=14, fontweight="bold")
+    """Write the title of a scene over its figure, in as many lines as its width asks for."""
+    text = textwrap.fill(title or "Untitled scene", int(figure.get_figwidth() / TITLE_LETTER))
+    figure.suptitle(text, fontsize=14, fontweight="bold")

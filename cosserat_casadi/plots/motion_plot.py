@@ -21,7 +21,7 @@ from cosserat_casadi.plots.colours import CATEGORIES, FAILURE, PLAIN_TEXT, rod_s
 from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
-from cosserat_casadi.plots.scenery import CLAMP, draw_supports
+from cosserat_casadi.plots.scenery import draw_supports
 
 SHAPES = 12
 """Shapes that are drawn of a motion, evenly spaced in time, both ends among them."""
@@ -130,9 +130,8 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
             style = shapes.outline_style(name)
             style["color"] = _faded(style["color"], share)
             canvas.line(outlines[row], linewidth=1.8, label=label, **style)
-    for name, lines in shapes.rods.items():
-        if motion.model.discrete.unloaded.floating_base(name) is None:
-            canvas.markers(lines[-1, :1], **CLAMP)
+    for style, places in shapes.marks:
+        canvas.markers(places[-1], **style)
     draw_supports(canvas, motion.model.scene)
     _draw_obstacles(canvas, motion, shapes, rows)
     _mark_contacts(canvas, motion, rows)

@@ -16,7 +16,7 @@ from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.colours import BODIES, disk_colour
 from cosserat_casadi.plots.scene_view import View, view_of
-from cosserat_casadi.plots.scenery import body_corners, disk_rim
+from cosserat_casadi.plots.scenery import base_style, body_corners, disk_rim, joint_style
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
 """Abscissae at which rods are drawn."""
@@ -33,6 +33,7 @@ class MovingShapes:
         colours: of the outlines, by the same words.
         courses: courses of cables and chambers by actuator, shape (T, k, 3), m.
         followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
+        marks: of joints and clamps: how each is marked, and its place, shape (T, 1, 3), m.
     """
 
     times: FloatArray
@@ -41,6 +42,7 @@ class MovingShapes:
     colours: dict[str, str]
     courses: dict[str, FloatArray]
     followed: dict[str, FloatArray]
+    marks: tuple[tuple[dict[str, Any], FloatArray], ...]
 
     @property
     def points(self) -> FloatArray:
@@ -89,8 +91,18 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
         elif name not in carrying:
             # The tips of rods that carry a body go where the body goes, whose own path says it once.
             followed[name] = lines[:, -1]
+    unloaded = model.discrete.unloaded
+    # A rod that nothing holds has no mark.
+    marks = [(base_style(unloaded, rod.name), rods[rod.name][:, :1]) for rod in model.scene.rods if not rod.base.free]
+    bodies = {body.name: body_poses(model, body.name, x, inputs) for body in model.scene.bodies if not body.thickness}
+    for joint in model.scene.joints:
+        for place in joint.places:
+            if place.body in bodies:
+                poses = bodies[place.body]
+                arms = rotations(poses.quaternion) @ np.array(place.position)
+                marks.append((joint_style(joint), (poses.position + arms)[:, None]))
     for body in model.scene.listed_bodies:
-        poses = body_poses(model, body.name, x, inputs)
+        poses = bodies[body.name]
         world_R_body = rotations(poses.quaternion)
         corners = body_corners(model.scene, body)
         closed = np.concatenate([corners, corners[:1]])
@@ -115,4 +127,4 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
             courses[actuator.name] = sections.position + np.einsum(
                 "tkij,jk->tki", across, known(offset_at(actuator, X)[0])
             )
-    return MovingShapes(times, rods, outlines, colours, courses, followed)
+    return MovingShapes(times, rods, outlines, colours, courses, followed, tuple(marks))

@@ -9,7 +9,6 @@ import numpy as np
 
 from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.constraints.joints import JOINT_KINDS
-from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
 from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.solution import Solution
@@ -21,7 +20,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, disk_colour, rod_style
 from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world
-from cosserat_casadi.scene import Body, Disks, Scene
+from cosserat_casadi.scene import Body, Disks, Joint, Scene
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -66,15 +65,15 @@ def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
         if several:
             label = name
         canvas.line(deformed, linewidth=3.5, label=label, **rod_style(index))
-        canvas.markers(deformed[:1], **_base_style(unloaded, name))
+        canvas.markers(deformed[:1], **base_style(unloaded, name))
         _draw_section_axes(canvas, solution, name, AXES_SECTIONS // len(shapes.deformed))
 
 
-def _base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
+def base_style(unloaded: UnloadedScene, rod: str) -> dict[str, Any]:
     """Mark of a rod's base: of a joint there, of another rod, or of the clamp."""
     for joint in unloaded.scene.joints:
         if joint.rod == rod and joint.holds_base:
-            return _joint_style(JOINT_KINDS[joint.kind].directions(joint))
+            return joint_style(joint)
     return CLAMP if unloaded.floating_base(rod) is None else FIXED
 
 
@@ -172,10 +171,12 @@ def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     outline = np.concatenate([corners, corners[:1]])
     canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
     for (joint, _), point in zip(joints, points, strict=True):
-        canvas.markers(point[None], **_joint_style(JOINT_KINDS[joint.kind].directions(joint)))
+        canvas.markers(point[None], **joint_style(joint))
 
 
-def _joint_style(held: HeldDirections) -> dict[str, Any]:
+def joint_style(joint: Joint) -> dict[str, Any]:
+    """Mark of a joint, by the directions that it holds."""
+    held = JOINT_KINDS[joint.kind].directions(joint)
     if held.slides:
         return SLIDE
     if not held.rotations.size:

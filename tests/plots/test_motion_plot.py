@@ -11,6 +11,7 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
@@ -23,6 +24,7 @@ from cosserat_casadi.plots.motion_plot import (
     shown_rows,
 )
 from cosserat_casadi.plots.moving_shapes import SECTIONS, moving_shapes
+from cosserat_casadi.plots.scenery import CLAMP
 from tests.motions import motion_of, planar_swing, swinging_rod, two_rods_on_a_platform, with_energies, without_start
 from tests.scenes import push, rod, scene
 
@@ -235,3 +237,19 @@ def test_unknown_suffix_is_refused(planar: Motion, tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"cannot be written to .*use one of"):
         planar.write(tmp_path / "figure.doc")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_marks_of_joints_move_with_their_bodies(platform: Motion) -> None:
+    shapes = moving_shapes(platform.model, platform.times, platform.x, platform.inputs)
+    bases = [places for style, places in shapes.marks if style == CLAMP]
+    joints = [places for style, places in shapes.marks if style != CLAMP]
+    rods = list(shapes.rods.values())
+    assert len(joints) == len(platform.model.scene.joints)
+    for places, lines in zip(bases, rods, strict=True):
+        assert_allclose(places[:, 0], lines[:, 0], rtol=0, atol=1e-15)
+    for joint, places in zip(platform.model.scene.joints, joints, strict=True):
+        # The motion is made up: joints are closed at its start alone.
+        assert_allclose(places[0, 0], shapes.rods[joint.rod][0, -1], rtol=0, atol=1e-9)
+        poses = platform.body("platform")
+        turned = Rotation.from_quat(np.roll(poses.quaternion, -1, axis=1)).apply(joint.position)
+        assert_allclose(places[:, 0], poses.position + turned, rtol=0, atol=1e-14)

@@ -21,7 +21,7 @@ from cosserat_casadi.plots import modes_plot
 from cosserat_casadi.plots.arrows import MOST_LINE_ARROWS
 from cosserat_casadi.plots.canvas import CORNER
 from cosserat_casadi.plots.colours import AXES
-from cosserat_casadi.plots.figure import PlotUnavailableError, check_plot_path
+from cosserat_casadi.plots.figure import PlotUnavailableError, add_title, check_plot_path, figure_class
 from cosserat_casadi.plots.material_plot import plot_materials, stress_curves
 from cosserat_casadi.plots.modes_plot import mode_words, plot_modes
 from cosserat_casadi.plots.scene_plot import plot_solution
@@ -447,3 +447,14 @@ def test_figure_and_animation_are_written(modes: Modes, tmp_path: Path, monkeypa
     with Image.open(tmp_path / "m.gif") as film:
         # Sections that only turn are seen to turn.
         assert film.n_frames == 8
+
+
+def test_a_long_title_fits_into_a_narrow_figure() -> None:
+    figure = figure_class()(figsize=(6.0, 4.0), layout="constrained")
+    add_title(figure, " ".join(["tendons"] * 20))
+    title = figure.get_suptitle()
+    assert title.replace("\n", " ") == " ".join(["tendons"] * 20)
+    figure.draw_without_rendering()
+    extent = figure._suptitle.get_window_extent()
+    assert extent.x0 >= 0.0
+    assert extent.x1 <= figure.bbox.width
