@@ -20,6 +20,7 @@ from examples.demo import EXPORTED, HANDFUL, MOTIONS, SCENES, command_lines
 from tests.commands import WIRE, cosserat
 from tests.conftest import ROOT
 from tests.families import mostly_slow
+from tests.mjcf.moved_chains import LOOPS
 
 SCENE = (
     """
@@ -806,3 +807,12 @@ def test_a_solve_prints_what_acts_along_joints(tmp_path: Path) -> None:
     ((moment, angle),) = re.findall(r"hinge │ moment (\S+) N m │ angle (\S+) rad", done.stdout)
     assert float(moment) == pytest.approx(-0.5 * float(angle), rel=1e-4)
     assert float(angle) > 0.01
+
+
+def test_check_names_joints_that_hold_a_loop_in_its_plane_alone(tmp_path: Path) -> None:
+    (tmp_path / "crank.toml").write_text(LOOPS["slider-crank"])
+    (tmp_path / "slide.toml").write_text(LOOPS["slide at the tip"])
+    flat, spatial = (cosserat("check", name, cwd=tmp_path) for name in ("crank.toml", "slide.toml"))
+    assert flat.returncode == spatial.returncode == 0, flat.stderr + spatial.stderr
+    assert "joints[2] closes a loop in a plane and holds nothing across it" in " ".join(flat.stdout.split())
+    assert "holds nothing across it" not in " ".join(spatial.stdout.split())

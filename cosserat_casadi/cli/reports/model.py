@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -61,7 +62,7 @@ def print_check(
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
     if closing:
         print_plain(console, "Ties: " + "; ".join(closing))
-    for note in _notes_on_orientations(model):
+    for note in chain(_notes_on_orientations(model), _notes_on_planes(model)):
         print_plain(console, f"Note: {note}")
     _print_price(console, model, cost)
     if scene.accuracy.chosen_for:
@@ -88,6 +89,17 @@ def _notes_on_orientations(model: Model) -> Iterator[str]:
             yield (
                 f"joints[{number}] turns {escape(joint.rod)} at X = {joint.at:g} to the axes of the world; "
                 "a quaternion or tangent of the joint says otherwise."
+            )
+
+
+def _notes_on_planes(model: Model) -> Iterator[str]:
+    """Sentences on joints that close a loop, and hold it in a plane alone."""
+    whole = {f"joints[{i}]": JOINT_KINDS[one.kind].directions(one).size for i, one in enumerate(model.scene.joints)}
+    for placed in model.discrete.constraints:
+        if placed.closes_assembly and placed.constraint.size < whole.get(placed.where, 0):
+            yield (
+                f"{placed.where} closes a loop in a plane and holds nothing across it; base_wrench has all loads "
+                "across the plane at the base of the rod, however its joints share them."
             )
 
 
