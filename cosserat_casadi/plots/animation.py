@@ -46,6 +46,9 @@ SIZE = (9.6, 5.4)
 DPI = {".gif": 80, ".mp4": 200}
 """Dots per inch: 1920 × 1080 dots in MP4, 768 × 432 in GIF, whose frames are not compressed against each other."""
 
+SMOOTH = 300
+"""Least number of lines that the path of a tip is made of."""
+
 MARGIN = 0.08
 """Free room around the motion, relative to its extent."""
 
@@ -159,12 +162,13 @@ class AnimationFrames:
 
     Attributes:
         model: the model.
-        x: unknowns, shape (frames, model.size).
-        inputs: stacked inputs, shape (frames, model.inputs.size).
+        x: unknowns, shape (rows, model.size), with ``finer`` rows from frame to frame.
+        inputs: stacked inputs, shape (rows, model.inputs.size).
         words: over each frame.
         colour: of the words.
         interval: time from frame to frame, s.
         section_axes: whether lines show the x axes of sections: of a rod that only turns nothing else moves.
+        finer: rows from frame to frame, so that paths are smooth where frames are far apart.
     """
 
     model: Model
@@ -174,6 +178,7 @@ class AnimationFrames:
     colour: str
     interval: float
     section_axes: bool = False
+    finer: int = 1
 
 
 def save_frames(frames: AnimationFrames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
@@ -221,7 +226,10 @@ def save_film(
 
 def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationFrames:
     """Frames of a motion at times, shape (frames,), s, shown at a speed relative to real time."""
-    states = [motion.at(float(time)) for time in times]
+    intervals = len(times) - 1
+    finer = -(-SMOOTH // intervals) if intervals else 1
+    rows = np.arange(intervals * finer + 1) / finer
+    states = [motion.at(float(time)) for time in np.interp(rows, np.arange(len(times)), times)]
     shown_seconds = (times[-1] - times[0]) / speed
     colour = PLAIN_TEXT
     if not motion.converged:
@@ -233,7 +241,8 @@ def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationF
         words=_time_words(motion, times, speed),
         colour=colour,
         # A motion that stopped at its start is one picture, for any time.
-        interval=shown_seconds / (len(times) - 1) or 1 / FRAME_RATE,
+        interval=shown_seconds / max(1, intervals) or 1 / FRAME_RATE,
+        finer=finer,
     )
 
 
@@ -299,14 +308,14 @@ class _Moving:
 
     Attributes:
         line: of matplotlib.
-        points: by frame, shape (frames, k, 3), m; of a trail the one point that is reached, shape (frames, 3).
+        points: by row, shape (rows, k, 3), m; of a trail the one point that is reached, shape (rows, 3).
     """
 
     line: Any
     points: FloatArray
 
     def at(self, index: int) -> FloatArray:
-        """Points of a frame, shape (k, 3)."""
+        """Points of a row, shape (k, 3)."""
         if self.points.ndim == 3:
             return np.asarray(self.points[index])
         return self.points[: index + 1]
@@ -345,7 +354,7 @@ class _Film:
     def show(self, index: int) -> None:
         """Lead all lines to a frame, and write its words over them."""
         for moving in self._lines:
-            self._canvas.move(moving.line, moving.at(index))
+            self._canvas.move(moving.line, moving.at(index * self._frames.finer))
         words = self._frames.words[index]
         self._canvas.axes.set_title(words, fontsize=10, color=self._frames.colour)
 

@@ -94,7 +94,7 @@ def test_trails_grow_with_the_motion(short: Motion) -> None:
     trail = drawn.figure.axes[0].get_lines()[0]
     for index in (0, 3, 10):
         drawn.show(index)
-        assert len(trail.get_xdata()) == index + 1
+        assert len(trail.get_xdata()) == index * animation.SMOOTH / 10 + 1
     assert drawn.figure.axes[0].get_title() == "t = 0.40 s, at 0.5 of its speed"
 
 
