@@ -172,6 +172,14 @@ class Arrangement:
         """A point of the curve solved on new elements, which answers all questions that a solution answers."""
         return contact_equilibrium(self.equations, z, self.inputs(load_factor))
 
+    def resolution_index(self, z: FloatArray, load_factor: float) -> float:
+        """Resolution index of a point, above 1 where the nodes do not resolve the rods."""
+        model = self.equations.model
+        x, inputs, p = self.equations.arguments(z, self.inputs(load_factor))
+        # Without contacts no place moves.
+        places = [p] if model.parameters.size else []
+        return float(model.resolution_index(x, inputs, *places))
+
     def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
         """Each contact where it is, the forces at its ends and the coefficients of that along it, without unit."""
         _, forces, _ = self.equations.parts(z)

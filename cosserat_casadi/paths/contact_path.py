@@ -54,6 +54,12 @@ class ContactPath(EquilibriumPath):
     arrangements: tuple[Arrangement, ...] = ()
     arrangement: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
+    @property
+    def resolution_indices(self) -> FloatArray:
+        """Resolution index at all points, shape (k,): one above 1 is not resolved, as a solve would not be."""
+        points = zip(self.arrangement, self.x, self.factor, strict=True)
+        return np.array([self.arrangements[number].resolution_index(z, factor) for number, z, factor in points])
+
     def contacts(self, index: int) -> tuple[PathContact, ...]:
         """The contacts at a point of the path."""
         arrangement = self.arrangements[self.arrangement[index]]

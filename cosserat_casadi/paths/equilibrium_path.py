@@ -178,6 +178,14 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         every_variation_costs = self.smallest_eigenvalue > 0.0
         return every_variation_costs | self.neutral
 
+    @property
+    def resolution_indices(self) -> FloatArray:
+        """Resolution index at all points, shape (k,): one above 1 is not resolved, as a solve would not be."""
+        if not len(self.factor):
+            return np.zeros(0)
+        indices: FloatArray = self.model.resolution_index.map(len(self.factor))(self.x.T, self.all_inputs.T).full()[0]
+        return indices
+
     def contacts(self, index: int) -> tuple[PathContact, ...]:
         """The contacts at a point of the path; none in a scene without obstacles."""
         return ()

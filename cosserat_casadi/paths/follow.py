@@ -186,7 +186,7 @@ def follow_path(
             model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
         )
         message = _sentence(path.outcome, path.factor) + path.stopped_at
-        return replace(path, message=message)
+        return _resolved(replace(path, message=message))
     if model.scene.rubs:
         if branch:
             problem = "is of a path without friction: one that rubs goes on in increments"
@@ -202,7 +202,7 @@ def follow_path(
             progress=progress,
         )
         message = _sentence(rubbing.outcome, rubbing.factor) + (FROM_NOWHERE if first is None else "")
-        return _within_limits(_unless_too_deep(replace(rubbing, message=message)))
+        return _within_limits(_resolved(replace(rubbing, message=message)))
     values_at_zero = model.inputs.unpack(followed.base)
     start = solve(model, values_at_zero, estimate_error=False)
     if not start.converged:
@@ -211,7 +211,7 @@ def follow_path(
         return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
-    path = _within_limits(_unless_too_deep(followed.record(traced)))
+    path = _within_limits(_resolved(followed.record(traced)))
     return replace(path, message=path.message + left_out_friction(model.scene))
 
 
@@ -231,21 +231,24 @@ def _smooth_guard(followed: _Followed) -> Guard | None:
     return guard
 
 
-def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
-    """The path; not resolved where rods are deeper inside smooth obstacles than their width on the way.
+def _resolved(path: EquilibriumPath) -> EquilibriumPath:
+    """The path; not resolved where one of its points is not: on too few nodes, or too deep in smooth contact.
 
-    One that has not come to its end has its outcome, and tells their depth beside it: it may be why.
+    One that has not come to its end has its outcome, and tells the rest beside it: it may be why.
     """
-    if not len(path.x) or not path.model.scene.has_contact:
+    unresolved = np.flatnonzero(path.resolution_indices > 1.0)
+    if not len(unresolved):
         return path
-    depths = depths_along(path.model, path.x, path.all_inputs)
-    too_deep = np.flatnonzero(depths > 1.0)
-    if not len(too_deep):
-        return path
-    told = (
-        f"From factor {path.factor[too_deep[0]]:.6g} on a rod is up to {depths.max():.3g} widths deep inside an "
-        "obstacle or a rod, too deep to be contact: give the contact more width or stiffness."
-    )
+    told = f"From factor {path.factor[unresolved[0]]:.6g} on the modes and nodes are too few for the shape."
+    # Among exact contacts the unknowns change their number along the path.
+    if path.model.contact_depth is not None and not path.model.scene.touches_exactly:
+        depths = depths_along(path.model, path.x, path.all_inputs)
+        too_deep = np.flatnonzero(depths > 1.0)
+        if len(too_deep):
+            told = (
+                f"From factor {path.factor[too_deep[0]]:.6g} on a rod is up to {depths.max():.3g} widths deep inside "
+                "an obstacle or a rod, too deep to be contact: give the contact more width or stiffness."
+            )
     if not path.converged:
         return replace(path, message=f"{path.message} {told}")
     return replace(path, outcome=PathOutcome.UNRESOLVED, message=f"{PathOutcome.UNRESOLVED.value} {told}")

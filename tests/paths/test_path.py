@@ -263,13 +263,24 @@ def test_no_start_is_said() -> None:
     assert path.x.shape == (0, build(far).size)
 
 
-def test_points_on_too_few_nodes_are_unresolved_as_solves_are() -> None:
+LOW = {"name": "low", "kind": "plane", "point": [0, 0, -5], "normal": [0, 0, 1]}
+
+
+@pytest.mark.parametrize("obstacles", [[], [LOW]])
+def test_points_on_too_few_nodes_are_unresolved_as_solves_are(obstacles: list[dict[str, object]]) -> None:
     turn = {"name": "turn", "kind": "tip_wrench", "rod": "rod", "moment": [0, 0, 0]}
-    model = build(scene(turn, strain="planar", inputs=["turn.moment"], accuracy={"modes": 2, "nodes": 2}))
+    accuracy = {"modes": 2, "nodes": 2}
+    model = build(scene(turn, strain="planar", inputs=["turn.moment"], accuracy=accuracy, obstacles=obstacles))
     path = follow(model, "turn.moment", [0, 8.0, 0])
     solved = solve(model, {"turn.moment": [0, 8.0, 0]})
     assert path.solution(0).outcome is Outcome.CONVERGED
     assert path.solution(-1).outcome is solved.outcome is Outcome.UNRESOLVED
+    # So is the whole path, which tells from where on; one that ends before is converged.
+    assert path.outcome is PathOutcome.UNRESOLVED
+    first = int(np.argmax(path.resolution_indices > 1.0))
+    assert f"From factor {path.factor[first]:.6g} on the modes and nodes are too few" in path.message
+    assert path.solution(first - 1).outcome is Outcome.CONVERGED
+    assert follow(model, "turn.moment", [0, 8.0 * path.factor[first - 1], 0]).converged
 
 
 @pytest.mark.parametrize(

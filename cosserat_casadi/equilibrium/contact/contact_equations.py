@@ -354,10 +354,11 @@ class ContactEquations:
         """The model whose parameters are the places of contact, then those of the scene: what measures rods."""
         return self._moving[0]
 
-    def arguments(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Unknowns, stacked inputs and parameters of :attr:`model`."""
+    def arguments(self, z: FloatArray, given: FloatArray | None = None) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unknowns, stacked inputs and parameters of :attr:`model`, with other inputs of the scene if there are any."""
         x, f, places = self.parts(z)
-        return x, self.nominal.inputs_moved(self.given, f), np.concatenate([places, self.theta])
+        inputs = self.nominal.inputs_moved(self.given if given is None else given, f)
+        return x, inputs, np.concatenate([places, self.theta])
 
     @cached_property
     def _functions(self) -> tuple[ca.Function, ca.Function]:
