@@ -3,7 +3,8 @@
 Families of scenes are those of tests/reference/contact_scenes.py. Exact contact is judged by gaps on a dense grid, by
 signs of the forces and by the balance of all forces. The places of all sections, and what each obstacle presses with,
 are compared with discrete rods that IPOPT minimises, with gaps as constraints (tests/reference/discrete_rods.py). Rods
-with friction go along a path of their weight, and so do the discrete rods, in the same increments.
+with friction go along a path of their weight, and so do the discrete rods, in the same increments. Each scene has a
+process of its own, which is ended at a limit: what was solved by then is told as not compared.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ import time
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +26,7 @@ import typer
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import Solution, build, discretise, follow, parse_scene, solve  # noqa: E402
+from cosserat_casadi import SceneError, Solution, build, discretise, follow, parse_scene, solve  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
 from cosserat_casadi.paths.friction_path import FrictionPath  # noqa: E402
 from tests.contact.verdict import compared, faults  # noqa: E402
@@ -50,33 +53,73 @@ class Judgement:
     """What is said of a scene.
 
     Attributes:
-        outcome: of the solve, or of the path.
+        outcome: of the solve, or of the path; "refused" for a scene that is none.
         touches: whether anything touches at its end.
         faults: what is wrong, a sentence each.
         seconds: processor time of the solve, or of the path.
+        compared: whether the discrete rods were computed within the limit.
     """
 
     outcome: str
     touches: bool
     faults: list[str]
     seconds: float
+    compared: bool = True
+
+    @property
+    def said(self) -> str:
+        """One line for a terminal."""
+        words = [f"{self.outcome}, {self.seconds:.1f} s", *self.faults]
+        return "; ".join([*words, *([] if self.compared else ["not compared"])])
 
 
-def judged(text: str, modes: int) -> Judgement:
-    """Solve a scene, or follow its weight where there is friction, and judge the end."""
-    scene = parse_scene(text)
-    model = build(scene, discretise(scene, modes))
+def judgements(text: str, modes: int) -> Iterator[Judgement]:
+    """Solve a scene, or follow its weight where there is friction: what that says, then what comparing adds."""
     begun = time.process_time()
+    try:
+        scene = parse_scene(text)
+        model = build(scene, discretise(scene, modes))
+    except SceneError:
+        yield Judgement("refused", False, [], time.process_time() - begun)
+        return
     if not scene.rubs:
         solution = solve(model)
-        seconds = time.process_time() - begun
-        return Judgement(solution.outcome.label, bool(solution.contacts), list(_faults(text, solution)), seconds)
+        first = Judgement(solution.outcome.label, bool(solution.contacts), [], time.process_time() - begun, False)
+        yield first
+        yield replace(first, faults=list(_faults(text, solution)), compared=True)
+        return
     still = {"weight.acceleration": [0.0, 0.0, 0.0]}
     path = follow(model, "weight.acceleration", [0.0, 0.0, -9.81], still)
-    seconds = time.process_time() - begun
     assert isinstance(path, FrictionPath), "a model with memory"
+    touches = len(path.factor) > 0 and bool(path.rubbing(-1))
+    first = Judgement(path.outcome.label, touches, [], time.process_time() - begun, False)
+    yield first
     found = list(compared(text, path.solution(0), path)) if path.converged else []
-    return Judgement(path.outcome.label, bool(path.rubbing(-1)), found, seconds)
+    yield replace(first, faults=found, compared=True)
+
+
+def judged(text: str, modes: int, limit: float) -> Judgement:
+    """The last judgement that a process of its own comes to within a limit, s."""
+    receiver, sender = get_context("fork").Pipe(duplex=False)
+    process = get_context("fork").Process(target=_send, args=(sender, text, modes))
+    process.start()
+    sender.close()
+    until = time.monotonic() + limit
+    last = Judgement("no answer", False, [], limit, False)
+    try:
+        while receiver.poll(max(until - time.monotonic(), 0.0)):
+            last = receiver.recv()
+    except EOFError:
+        pass
+    process.kill()
+    process.join()
+    return last
+
+
+def _send(sender: Connection, text: str, modes: int) -> None:
+    for judgement in judgements(text, modes):
+        sender.send(judgement)
+    sender.close()
 
 
 def _faults(text: str, solution: Solution) -> Iterator[str]:
@@ -94,21 +137,22 @@ def main(
     count: Annotated[int, typer.Option(help="Scenes.")] = 100,
     first: Annotated[int, typer.Option(help="Seed of the first.")] = 0,
     modes: Annotated[int, typer.Option(help="Polynomials per strain and element.")] = 7,
+    limit: Annotated[float, typer.Option(help="Time for a scene and its comparison, s.")] = 300.0,
     family: Annotated[str, typer.Option(help=f"One of {', '.join(FAMILIES)}.")] = "",
 ) -> None:
     """Solve and judge scenes, print the figures; exit code 1 if one that converged is wrong."""
     verdicts = []
     for seed in range(first, first + count):
-        verdict = judged(text_of(seed, family), modes)
+        verdict = judged(text_of(seed, family), modes, limit)
         verdicts.append(verdict)
-        said = "; ".join([f"{verdict.outcome}, {verdict.seconds:.1f} s", *verdict.faults])
-        print(f"seed {seed}: {said}", flush=True)
+        print(f"seed {seed}: {verdict.said}", flush=True)
     outcomes = Counter(verdict.outcome for verdict in verdicts)
     touching = sum(verdict.touches for verdict in verdicts)
     wrong = sum(bool(verdict.faults) for verdict in verdicts)
+    left = sum(not verdict.compared for verdict in verdicts)
     seconds = [verdict.seconds for verdict in verdicts]
     cost = f"processor time: median {np.median(seconds):.1f} s, {max(seconds):.1f} s"
-    print(f"{dict(outcomes)}, {touching} touch, {wrong} wrong; {cost}")
+    print(f"{dict(outcomes)}, {touching} touch, {wrong} wrong, {left} not compared; {cost}")
     raise typer.Exit(int(wrong > 0))
 
 
