@@ -56,6 +56,9 @@ AT_TIP = 1e-3
 OPENING = 0.3
 """Share of the way to the nearer end of a line over which it is first thought to open inside."""
 
+SHORT = 0.1
+"""Length of what is left of a line beside a section that is lifted, below which it may be a point."""
+
 ALIKE = 0.05
 """Places of contact that differ by less make the same attempt."""
 
@@ -316,7 +319,14 @@ class Settling:
         z = self.solved(equations, near)
         if z is None:
             return None
-        return contact_equilibrium(equations, z, self.given)
+        found = contact_equilibrium(equations, z, self.given)
+        if self.squeezed is None:
+            return found
+        # A small residual leaves forces of a stretch open: places that have gone far are sought from where they are.
+        beside = ContactEquations(self.scene, self.given, self.grids, found.state)
+        z, solved, taken = sought(beside, beside.start_near(found.solution), self.newton)
+        self.iterations += taken
+        return contact_equilibrium(beside, z, self.given) if solved else found
 
     def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
         """Unknowns, forces and places that solve equations, from a shape near them."""
@@ -460,7 +470,7 @@ def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[T
 
 
 def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
-    """Both sides of a line that rises around a section inside it, or one where that section is next to an end."""
+    """Both sides of a line that rises around a section inside it; of a short side a point, or nothing."""
     before = lifted - touch.start
     after = touch.end - lifted
     if not before > 0.0 < after:
@@ -473,6 +483,15 @@ def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
         parts.append(Touch.line(touch.obstacle, touch.owner, lifted + reach, touch.end))
     if parts:
         yield tuple(parts)
+    if min(before, after) < SHORT <= max(before, after):
+        # What rises may be longer than the short side, of which a point is left.
+        if before < after:
+            short, start, end = touch.start, lifted + NEAR, touch.end
+        else:
+            short, start, end = touch.end, touch.start, lifted - NEAR
+        point = Touch.point(touch.obstacle, touch.owner, short)
+        line = Touch.line(touch.obstacle, touch.owner, start, end)
+        yield (point, line) if before < after else (line, point)
 
 
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
