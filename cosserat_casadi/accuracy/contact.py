@@ -15,7 +15,9 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts, with_contact_error
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
-from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
+from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact, why_unsettled
+from cosserat_casadi.equilibrium.contact.contact_state import state_in
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
@@ -26,6 +28,9 @@ LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
 
 FINER_MODES = 3
 """Modes that are added to those of the user to estimate their error."""
+
+STAYING = 0.9
+"""Share of what is not met on one level from which on it is not less on the next."""
 
 MOST_FAILURES = 1
 """Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""
@@ -71,6 +76,10 @@ def solve_contact_scene(
             assert judged.error_estimate is not None
             if scene.accuracy.fixed or judged.error_estimate <= tolerance:
                 return replace(judged, iterations=fine.iterations)
+            if _stays_inside(coarse, fine):
+                why = why_unsettled(scene, [state_in(fine.model.scene)])
+                unresolved = judged.unresolved()
+                return replace(unresolved, iterations=fine.iterations, message=unresolved.message + why)
         elif scene.accuracy.fixed:
             break
         coarse = fine
@@ -78,6 +87,12 @@ def solve_contact_scene(
     if not coarse.converged:
         return coarse
     return coarse.unresolved()
+
+
+def _stays_inside(coarse: Solution, fine: Solution) -> bool:
+    """Whether more modes leave rods as deep inside obstacles: other contacts should be there, and none were found."""
+    before, after = (equilibrium_in(solution).unmet() for solution in (coarse, fine))
+    return after > coarse.model.scene.accuracy.tolerance and after > STAYING * before
 
 
 def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:

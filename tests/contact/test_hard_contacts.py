@@ -187,12 +187,14 @@ def test_planes_that_coincide_are_as_one() -> None:
     assert_allclose(contact.force, one.contacts[0].force, rtol=1e-9, atol=1e-12)
 
 
+GROOVE = plane("v1", -0.08, (0, 1, 1)) + plane("v2", -0.08, (0, -1, 1))
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("sideways", [3.0, 0.0])
-def test_a_rod_lies_in_a_groove_as_on_a_plane(sideways: float) -> None:
+def test_a_rod_lies_in_a_groove_as_on_a_plane() -> None:
     """At the bottom of the groove; what its walls press along y they press against each other, and the weight."""
-    groove = plane("v1", -0.08, (0, 1, 1)) + plane("v2", -0.08, (0, -1, 1))
-    in_groove = solved(SPATIAL + weight(-60.0, sideways) + groove)
+    sideways = 3.0
+    in_groove = solved(SPATIAL + weight(-60.0, sideways) + GROOVE)
     assert in_groove.converged, in_groove.message
     check_holds(in_groove)
     assert {contact.obstacle for contact in in_groove.contacts} == {"v1", "v2"}
@@ -201,6 +203,24 @@ def test_a_rod_lies_in_a_groove_as_on_a_plane(sideways: float) -> None:
     pressed = sum(contact.force for contact in in_groove.contacts)
     total = 0.1019367991845056 * np.array([0.0, sideways, -60.0])
     assert_allclose(pressed + total, -in_groove.base_wrench().force, rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_a_stretch_that_would_have_to_lie_on_two_planes_is_told_on_two_levels() -> None:
+    """Points stand for the line: poses are right, and the error of its ends, which modes do not lessen, is told."""
+    levels: list[str] = []
+    in_groove = solve(parse_scene(HEAD + SPATIAL + weight(-60.0) + GROOVE), report=levels.append)
+    assert isinstance(in_groove, Solution)
+    assert in_groove.outcome is Outcome.UNRESOLVED
+    assert "touches 'v2' and 'v1' together near X = 0.99" in in_groove.message
+    assert "width" in in_groove.message
+    assert levels == ["5 modes", "7 modes"]
+    on_plane = on_coarse_modes(PLANAR + weight(-60.0) + plane("floor", -0.08))
+    assert_allclose(in_groove.tip().position, on_plane.tip().position, rtol=0, atol=2e-5)
+    # One plane is touched at a section, where it should be up to the tip.
+    missing = 1.0 - min(touch.start for touch in on_plane.contacts)
+    assert in_groove.error_estimate is not None
+    assert in_groove.error_estimate > missing > 1e-2
 
 
 @pytest.mark.slow

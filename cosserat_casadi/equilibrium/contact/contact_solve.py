@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, product
 from math import inf
@@ -79,13 +79,13 @@ def solve_contact(
         return replace(cushioned, iterations=settling.iterations)
     if found is None:
         unsettled = Outcome.CONTACT_UNSETTLED
-        message = unsettled.value + _why_unsettled(bare, guesses)
+        message = unsettled.value + why_unsettled(bare, (state for state, _ in guesses))
         return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=message)
     solution = judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
     if solution.converged and PATH_OF_ENERGY in cushioned.message:
         return replace(solution, message=solution.message + PATH_OF_ENERGY)
     if not holds:
-        return replace(solution, message=solution.message + _why_unsettled(bare, guesses))
+        return replace(solution, message=solution.message + why_unsettled(bare, (state for state, _ in guesses)))
     return solution
 
 
@@ -129,9 +129,9 @@ def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactStat
     return [*((state, sharp.shape) for state in likely_states(sharp)), rough]
 
 
-def _why_unsettled(scene: scenes.Scene, guesses: Sequence[tuple[ContactState, Solution]]) -> str:
+def why_unsettled(scene: scenes.Scene, states: Iterable[ContactState]) -> str:
     """A sentence on contact of a kind that the search does not know; nothing where there is none."""
-    for state, _ in guesses:
+    for state in states:
         sentence = _over_joints(scene, state) or _on_two_obstacles(state)
         if sentence:
             return sentence
