@@ -483,8 +483,9 @@ def _timed(search: _Search) -> TimedHistory:
     level = search.last
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
-    # What the modes have left over of their share is the steps' to use.
-    allowed = max(TIME_SHARE * search.tolerance, search.tolerance - search.space_error)
+    # What the modes have left over of their share is the steps' to use. Where they miss the tolerance no steps meet it.
+    space_error = search.space_error
+    allowed = max(TIME_SHARE * max(search.tolerance, space_error), search.tolerance - space_error)
     return level.simulator.tightened(level.history, search.step_tolerance, allowed)
 
 
