@@ -39,7 +39,7 @@ class GuardKind(IntEnum):
     """The force of a contact, which ends where it would pull."""
 
     END = 1
-    """How far a place is from the ends of its rod."""
+    """How far a place is from the ends of its rod, and one that slides from other contacts."""
 
     BEND = 2
     """The bend of the gap about a section that slides."""
@@ -112,7 +112,7 @@ class ContactGuards:
             placed = [touch._replace(place=place) for touch, place in zip(touches, followed.places, strict=True)]
             for k, (touch, gap) in enumerate(zip(placed, followed.gaps, strict=True)):
                 if touch.facing not in arrangement.laid:
-                    ends[k] = self._within(touch, x, inputs)
+                    ends[k] = min(self._within(touch, x, inputs), apart(touch, placed))
                 if touch.slides:
                     bends[k] = -1.0 if followed.gone[k] else gap.bend - FLATTEST
             others = np.ones(len(self.facings))
@@ -156,6 +156,14 @@ class ContactGuards:
         beside = [end for touch in touches for end in self.meeting_ends.beside(touch, SAME_PLACE)]
         left_out = [X for other, X in beside if other == number]
         return self.facings[number].lowest(nodes, own, left_out)
+
+
+def apart(touch: MovingContact, touches: Sequence[MovingContact]) -> float:
+    """How much farther than counts as one place a section that slides is from other contacts of its rod."""
+    if not touch.slides:
+        return 1.0
+    others = [one for one in touches if one.facing == touch.facing and one is not touch]
+    return min((abs(one.place - touch.place) - SAME_PLACE for one in others), default=1.0)
 
 
 def guarded(guard: int | None, count: int, facings: int) -> tuple[GuardKind | None, int]:

@@ -28,6 +28,7 @@ from cosserat_casadi.motion.contact_guards import (
     ContactGuards,
     ContactPhase,
     GuardKind,
+    apart,
     guarded,
 )
 from cosserat_casadi.motion.contact_onset import Onset, Struck
@@ -166,8 +167,11 @@ class ExactContacts:
         return replace(known, held=tuple(held), left=(left,), events=(event,))
 
     def _come_to_end(self, known: _Known, number: int, before: Instant, inputs: FloatArray) -> _Known:
-        """Contacts of which one has come to an end of its rod, or leaves it: it goes on there, or the rod lies down."""
+        """Contacts of which one has come to an end of its rod or to another, or leaves an end: the rod may lie down."""
         end = known.held[number]
+        if end.slides and apart(end, known.held) < min(end.place - BASE, TIP - end.place):
+            # Two that slide to one place would be one constraint twice.
+            return self._lying(known, end, before, inputs)
         moved = self.meeting_ends.gone_on(end, before.x, inputs)
         if moved.facing in known.laid:
             # Where the next rod lies, this one lies down too.

@@ -9,8 +9,15 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import build, parse_scene, read_scene, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, GuardKind
 from cosserat_casadi.motion.event_restart import ContactEvent
+from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
+from cosserat_casadi.motion.history import equations_of
+from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.numerics.motion_equations import Instant
 from tests.families import mostly_slow
 
 LENGTH = 0.4
@@ -279,6 +286,38 @@ def test_a_leaning_rod_rolls_onto_its_end_and_loses_nothing_on_its_way() -> None
     total = energy.kinetic + energy.elastic + energy.potential
     assert np.diff(total).max() < 1e-4 * np.ptp(total)
     assert np.diff(energy.impacts).min() >= 0.0
+
+
+def test_a_rod_lies_down_where_two_of_its_sections_have_slid_to_one_place() -> None:
+    """They would be one constraint twice, and steps came to a halt. A bowl touches with its middle alone."""
+    model = free_rod(tangent="1, 0, -0.1")
+    contacts = ExactContacts(model)
+    (piece,) = moving_inputs(model).pieces(0.1)
+    inputs = piece.at(0.0).value
+    ((_, pose),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
+    x = model.unloaded()
+    x[model.discrete.unknowns.strain("rod")] = [-0.2, 0.0]
+    (facing,) = contacts.facings
+    x[pose][2] -= facing.minima(facing.nodes(x, inputs), 1.0)[0].gap
+    (middle,) = facing.minima(facing.nodes(x, inputs), TOUCHING)
+    assert 0.4 < middle.place < 0.6
+    plain = equations_of(model, piece)
+    still = np.zeros(model.size)
+    for distance in (1.1 * SAME_PLACE, SAME_PLACE):
+        # The second one is held at its place: what slides alone is followed.
+        touches = (MovingContact(0, middle.place, True), MovingContact(0, middle.place + distance, False))
+        phases = ContactPhase(touches, follower=Follower(contacts.facings, touches), floors=(np.zeros(1),))
+        _, guards = contacts.arranged(plain, piece, phases)
+        state = np.concatenate([x, np.ones(2)])
+        end = guards(Instant(0.0, state, 0.0 * state, 0.0 * state))[GuardKind.END * len(touches)]
+        assert_allclose(end, distance - SAME_PLACE, rtol=0, atol=1e-9)
+    restart = contacts.restarted(
+        plain, piece, Instant(0.0, x, still, still), phases, GuardKind.END * len(touches), 1e-3
+    )
+    assert restart.stalled is None
+    assert "lie_down" in [event.kind for event in restart.events]
+    assert restart.phases.laid == {0}
+    assert not any(touch.slides for touch in restart.phases.touches)
 
 
 @pytest.mark.slow
