@@ -29,6 +29,7 @@ from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall
 from cosserat_casadi.motion.sided_contacts import SidedContacts
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
+from cosserat_casadi.motion.time_between_events import time_between_events
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
@@ -45,7 +46,7 @@ DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
 
 LASTING = 1e-3
-"""Share of the duration over which errors of shorter steps act while a rod touches.
+"""Share of the time between two events over which errors of shorter steps act while a rod touches.
 
 A rod that rolls onto its end does so in microseconds: steps that are exact in its positions only were wrong by a
 hundredth in the velocities that it leaves with.
@@ -468,6 +469,7 @@ def _switched(
 ) -> History:
     """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
     keeper = flight.keeper
+    acting = time_between_events(model, pieces[-1].end) if model.scene.touches_exactly else pieces[-1].end
     legs: list[Leg] = []
     at = flight.to_steps(Instant(pieces[0].start, x, v, np.zeros(model.size)))
     asked = settings
@@ -511,7 +513,7 @@ def _switched(
             ends = None if stops is None else stops(piece, begin_in_model)
             guards, changes = _joined(guards, ends, begin_in_model)
             equations, guards = flight.in_steps(equations, guards)
-            own = _with_forces(settings, equations.size, pieces[-1].end)
+            own = _with_forces(settings, equations.size, acting)
             integration = integrate(
                 equations, begin, piece.end, method, own, after_step, guards, settled, memory, kernels.stepper
             )
@@ -547,19 +549,19 @@ def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tupl
     return lambda instant: np.concatenate([changes(instant), ends(instant)]), len(changes(begin))
 
 
-def _with_forces(settings: StepSettings, size: int, duration: float) -> StepSettings:
+def _with_forces(settings: StepSettings, size: int, acting: float) -> StepSettings:
     """Settings for equations with forces of contacts as further unknowns, which have no tolerance.
 
     Args:
         settings: of the equations of the model.
         size: number of unknowns with the forces.
-        duration: of the motion, s.
+        acting: time over which errors of velocity act, s.
     """
     more = size - len(settings.tolerance)
     if more == 0:
         return settings
     tolerance = np.concatenate([settings.tolerance, np.ones(more)])
-    return replace(settings, tolerance=tolerance, lasting=LASTING * duration)
+    return replace(settings, tolerance=tolerance, lasting=LASTING * acting)
 
 
 def _chatters(legs: Sequence[Leg], duration: float) -> bool:
