@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -52,9 +52,6 @@ A rod that rolls onto its end does so in microseconds: steps that are exact in i
 hundredth in the velocities that it leaves with.
 """
 
-REMEMBERED_TIMES = 16
-"""Times at which the inputs are remembered: those of a step and some more."""
-
 MOST_AT_ONCE = 60
 """Changes between slack and taut, or of contact, in next to no time from which on they count as without end."""
 
@@ -78,8 +75,7 @@ def equations_of(
     """
     kernels = kernels or interpreted(model)
     parameters = [] if p is None else [p]
-    # Every iteration of a step asks for the inputs at the same stages.
-    inputs_at = lru_cache(maxsize=REMEMBERED_TIMES)(piece.at)
+    inputs_at = piece.remembered
 
     def residual_with_parameters(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         value, rate, acceleration = inputs_at(t)
@@ -380,15 +376,17 @@ def free_flight(model: Model, p: FloatArray | None = None, libraries: Libraries 
 
 def _flight(model: Model, centred: bool, libraries: Libraries = INTERPRETED) -> FreeFlight:
     coordinates = CentredCoordinates(model, libraries) if centred else None
-    to_model = None if coordinates is None else coordinates.to_model
-    keeper = MomentumKeeper(model, to_model, libraries.residual) if flies_free(model) else None
+    in_model = None if coordinates is None else coordinates.in_model
+    keeper = MomentumKeeper(model, in_model, libraries.residual) if flies_free(model) else None
     return FreeFlight(model, coordinates, keeper)
 
 
 def functions_of_flight(model: Model) -> list[ca.Function]:
     """The functions that every step of what flies free calls; none where something is held."""
-    functions = CentredCoordinates(model).in_iterations if can_be_centred(model) else []
-    return [*functions, *functions_of_momentum(model)] if flies_free(model) else functions
+    if can_be_centred(model):
+        coordinates = CentredCoordinates(model)
+        return [*coordinates.in_iterations, *functions_of_momentum(model, coordinates.in_model)]
+    return functions_of_momentum(model) if flies_free(model) else []
 
 
 def derivatives_of_flight(model: Model) -> list[ca.Function]:

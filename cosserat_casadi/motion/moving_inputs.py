@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,9 @@ SAME_TIME = 1e-12
 MOST_CUTS = 50
 """Kinks of a table up to which steps end at each of them; a table with more is a record, and steps have their own pace.
 """
+
+REMEMBERED_TIMES = 16
+"""Times at which the inputs are remembered: those of a step and some more."""
 
 
 class InputState(NamedTuple):
@@ -94,6 +98,15 @@ class Piece:
             rate[span] += contribution.rate
             acceleration[span] += contribution.acceleration
         return InputState(value, rate, acceleration)
+
+    @cached_property
+    def remembered(self) -> Callable[[float], InputState]:
+        """The inputs at a time, as :meth:`at`: all that looks at a step asks for them at the same times."""
+        return lru_cache(maxsize=REMEMBERED_TIMES)(self.at)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What is remembered is of one process.
+        return {name: value for name, value in vars(self).items() if name != "remembered"}
 
     def values_at(self, times: FloatArray) -> FloatArray:
         """The values alone at T times, shape (T, inputs)."""
