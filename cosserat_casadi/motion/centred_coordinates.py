@@ -8,7 +8,6 @@ iterations. What the integrator sees is x = φ(y) put into the equations of moti
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -168,13 +167,12 @@ class CentredCoordinates:
         dynamics = self._model.inverse_dynamics
         *_, value, rate, acceleration = dynamics.mx_in()
         y = [ca.MX.sym(word, self._size) for word in ("y", "v", "a")]
-        rows = dynamics(*self.in_model(y), value, rate, acceleration)
+        x, v, a = (
+            self._with_base(own, base)
+            for own, base in zip(y, ca.vertsplit(self._functions.base(*y), POSE_SIZE), strict=True)
+        )
+        rows = dynamics(x, v, a, value, rate, acceleration)
         return ca.Function("centred_dynamics", [*y, value, rate, acceleration], [ca.densify(rows)])
-
-    def in_model(self, y: Sequence[ca.MX]) -> list[ca.MX]:
-        """Unknowns of the model, their rates and accelerations, from those of the steps."""
-        bases = ca.vertsplit(self._functions.base(*y), POSE_SIZE)
-        return [self._with_base(own, base) for own, base in zip(y, bases, strict=True)]
 
     def _with_base(self, own: ca.MX, base: ca.MX) -> ca.MX:
         """Unknowns of the model, or their rates, from those of the steps and those of the base."""

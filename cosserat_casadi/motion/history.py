@@ -376,17 +376,15 @@ def free_flight(model: Model, p: FloatArray | None = None, libraries: Libraries 
 
 def _flight(model: Model, centred: bool, libraries: Libraries = INTERPRETED) -> FreeFlight:
     coordinates = CentredCoordinates(model, libraries) if centred else None
-    in_model = None if coordinates is None else coordinates.in_model
-    keeper = MomentumKeeper(model, in_model, libraries.residual) if flies_free(model) else None
+    to_model = None if coordinates is None else coordinates.to_model
+    keeper = MomentumKeeper(model, to_model, libraries.residual) if flies_free(model) else None
     return FreeFlight(model, coordinates, keeper)
 
 
 def functions_of_flight(model: Model) -> list[ca.Function]:
     """The functions that every step of what flies free calls; none where something is held."""
-    if can_be_centred(model):
-        coordinates = CentredCoordinates(model)
-        return [*coordinates.in_iterations, *functions_of_momentum(model, coordinates.in_model)]
-    return functions_of_momentum(model) if flies_free(model) else []
+    functions = CentredCoordinates(model).in_iterations if can_be_centred(model) else []
+    return [*functions, *functions_of_momentum(model)] if flies_free(model) else functions
 
 
 def derivatives_of_flight(model: Model) -> list[ca.Function]:

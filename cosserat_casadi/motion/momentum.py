@@ -9,7 +9,7 @@ step.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import casadi as ca
@@ -40,9 +40,6 @@ REGULAR = 1e-9
 
 ROUNDING = 8.0 * float(np.finfo(np.float64).eps)
 """Momentum, relative to the largest entry, that is rounding and not missing."""
-
-InModel = Callable[[Sequence[ca.MX]], list[ca.MX]]
-"""Unknowns of a model, their rates and accelerations, from those of the steps, size×1 each."""
 
 
 def flies_free(model: Model) -> bool:
@@ -79,12 +76,15 @@ class MomentumKeeper:
 
     Args:
         model: of what flies free, see :func:`flies_free`.
-        in_model: see :func:`functions_of_momentum`. In the unknowns of the steps too a frame moves with what flies,
-            and its pose has the same entries.
+        to_model: a state in the unknowns of the model, from one in those of the steps; None where they are the same.
+            In both a frame moves with what flies free, and its pose has the same entries.
         library: shared object that has the functions of :func:`functions_of_momentum`; None without one.
     """
 
-    def __init__(self, model: Model, in_model: InModel | None = None, library: str | None = None) -> None:
+    def __init__(
+        self, model: Model, to_model: Callable[[Instant], Instant] | None = None, library: str | None = None
+    ) -> None:
+        self._to_model = to_model or (lambda instant: instant)
         damped = any(rod.properties.mass_damping is not None for rod in model.discrete.rods.values())
         self._loaded = damped or bool(model.scene.loads)
         self._size = model.size
@@ -96,30 +96,32 @@ class MomentumKeeper:
                 model.discrete.unknowns.of_kind(BlockKind.POSE), model.discrete.frames.values(), strict=True
             )
         ]
-        calls = [repeated(function, library) for function in functions_of_momentum(model, in_model)]
+        calls = [repeated(function, library) for function in functions_of_momentum(model)]
         self._momentum, self._rate, self._momenta = calls
 
     def settled(self, step: TimeStep, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
         known, of_piece, momentum = self._last
         if known is not step.start or of_piece is not piece:
-            momentum = self._momentum_of(step.start, piece)
+            momentum = self._momentum_of(self._to_model(step.start), piece)
         wanted = momentum + self._impulse(step, piece)
         rounding = ROUNDING * np.abs(wanted).max()
         end = step.end
         motions = self.rigid_motions(end.x)
+        arrived = self._to_model(end)
         # Not every rigid motion has momentum: a straight rod without rotary inertia may spin about its axis.
-        momenta = self._momenta_of(motions, end, piece)
+        momenta = self._momenta_of(self.rigid_motions(arrived.x), arrived, piece)
         inverse = regular_inverse(momenta, REGULAR)
         if inverse is None:
             inverse = np.linalg.pinv(momenta)
         for _ in range(CORRECTIONS):
-            momentum = self._momentum_of(end, piece)
+            momentum = self._momentum_of(arrived, piece)
             self._last = end, piece, momentum
             missing = wanted - momentum
             if np.abs(missing).max() <= rounding:
                 break
             end = replace(end, v=end.v + motions @ (inverse @ missing))
+            arrived = self._to_model(end)
         return end
 
     def _impulse(self, step: TimeStep, piece: Piece) -> FloatArray:
@@ -127,17 +129,16 @@ class MomentumKeeper:
         if not self._loaded:
             return np.zeros(6)
         stages = step.stages
-        own = slice(0, self._size)
         rates = []
-        for time, x, v, a in zip(stages.times.tolist(), stages.x, stages.v, stages.a, strict=True):
-            rates.append(self._rate(x[own], v[own], a[own], *piece.remembered(time)))
+        for time, x, v, a in zip(stages.times, stages.x, stages.v, stages.a, strict=True):
+            at = self._to_model(Instant(float(time), x, v, a))
+            rates.append(self._rate(at.x, at.v, at.a, *piece.remembered(at.time)))
         return np.asarray(step.size * (step.method.weights @ np.stack(rates)))
 
     def _momentum_of(self, instant: Instant, piece: Piece) -> FloatArray:
         """Momentum and angular momentum, shape (6,), N s and N m s."""
         inputs = piece.remembered(instant.time)
-        own = slice(0, self._size)
-        return self._momentum(instant.x[own], instant.v[own], inputs.value, inputs.rate)
+        return self._momentum(instant.x, instant.v, inputs.value, inputs.rate)
 
     def rigid_motions(self, x: FloatArray) -> FloatArray:
         """Rates of the unknowns as all moves along an axis of the world, and turns about one, shape (size, 6)."""
@@ -157,27 +158,26 @@ class MomentumKeeper:
         value = piece.remembered(instant.time).value
         still = np.zeros_like(value)
         # Column after column, as CasADi has them.
-        columns = [np.tile(part, len(OF_A_BODY)) for part in (instant.x[: self._size], value, still)]
+        columns = [np.tile(part, len(OF_A_BODY)) for part in (instant.x, value, still)]
         self._momenta(columns[0], motions[:, OF_A_BODY].ravel(order="F"), *columns[1:])
         momenta = self._momenta.results[0]
         mass, of_turns = momenta[0, 0], momenta[:, 1:]
         return np.block([[mass * np.eye(3), of_turns[:3]], [of_turns[:3].T, of_turns[3:]]])
 
 
-def functions_of_momentum(model: Model, in_model: InModel | None = None) -> list[ca.Function]:
+def functions_of_momentum(model: Model) -> list[ca.Function]:
     """Momentum, its rate, momenta: momentum of (x, v, inputs, rate), 6×1, at one state, and at four side by side.
 
     The rate is that along a motion, of (x, v, a, inputs, rate, acceleration), 6×1.
-
-    Args:
-        model: of what flies free.
-        in_model: gives the unknowns of the model where the arguments x, v and a are those of the steps, in other
-            coordinates; None where they are the same.
     """
     x, v, a = (ca.MX.sym(name, model.size) for name in ("x", "v", "a"))
     inputs, rate, acceleration = (ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration"))
     momentum = ca.Function(
-        "momentum", [x, v, inputs, rate], [ca.densify(ca.vertcat(*model.momentum(x, v, inputs, rate)))]
+        "momentum",
+        [x, v, inputs, rate],
+        [ca.densify(ca.vertcat(*model.momentum(x, v, inputs, rate)))],
+        ["x", "v", "inputs", "rate"],
+        ["momentum"],
     )
     # One symbol for all that changes: one sweep for its direction, where each of four would cost as much.
     state = ca.MX.sym("state", 2 * model.size + 2 * model.inputs.size)
@@ -186,18 +186,7 @@ def functions_of_momentum(model: Model, in_model: InModel | None = None) -> list
     along = ca.jtimes(momentum(*parts), state, ca.vertcat(v, a, rate, acceleration))
     along = ca.graph_substitute(along, [state], [ca.vertcat(x, v, inputs, rate)])
     momentum_rate = ca.Function("momentum_rate", [x, v, a, inputs, rate, acceleration], [ca.densify(along)])
-    if in_model is not None:
-        of_model = in_model([x, v, a])
-        # Velocities do not depend on accelerations.
-        x_of_model, v_of_model, _ = in_model([x, v, ca.MX(*a.shape)])
-        own = ca.densify(momentum(x_of_model, v_of_model, inputs, rate))
-        along = ca.densify(momentum_rate(*of_model, inputs, rate, acceleration))
-        momentum = ca.Function("centred_momentum", [x, v, inputs, rate], [own])
-        momentum_rate = ca.Function("centred_momentum_rate", [x, v, a, inputs, rate, acceleration], [along])
-    states = [
-        ca.MX.sym(name, len(OF_A_BODY) * size) for name, size in zip(("x", "v", "inputs", "rate"), sizes, strict=True)
-    ]
+    states = [ca.MX.sym(name, len(OF_A_BODY) * size) for name, size in zip(momentum.name_in(), sizes, strict=True)]
     columns = [ca.reshape(state, -1, len(OF_A_BODY)) for state in states]
     together = ca.horzcat(*[momentum(*one) for one in zip(*[ca.horzsplit(c) for c in columns], strict=True)])
-    momenta = "momenta" if in_model is None else "centred_momenta"
-    return [momentum, momentum_rate, ca.Function(momenta, states, [ca.densify(together)])]
+    return [momentum, momentum_rate, ca.Function("momenta", states, [ca.densify(together)])]
