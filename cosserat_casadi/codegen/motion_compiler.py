@@ -168,7 +168,11 @@ def _saves(model: Model, name: str, foreseen: float) -> bool:
     """Whether compiling a function takes less than it saves of the time foreseen for the virtual machine, s."""
     at_least, each = TO_COMPILE[name]
     instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
-    return SAVED[name] * foreseen > at_least + each * instructions
+    saved = SAVED[name]
+    if name == RESIDUAL and can_be_centred(model):
+        # No program runs in its place: the steps have a residual of their own.
+        saved += (1.0 - saved) * SAVED[PROGRAM]
+    return saved * foreseen > at_least + each * instructions
 
 
 def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:

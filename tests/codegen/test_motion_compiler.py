@@ -143,6 +143,18 @@ def test_no_program_is_written_where_steps_are_in_centred_coordinates() -> None:
         assert (residual.program_after is not None) == written
 
 
+def test_machine_code_pays_sooner_where_no_program_runs_in_its_place() -> None:
+    flown = arm()
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}
+    flown["rods"][0].update(base=base, rotary_inertia=[1e-4, 1e-4, 2e-4])
+    for scene, expected in ((arm(), False), (flown, True)):
+        compiler = MotionCompiler()
+        # Of this work of a motion a program saves four fifths.
+        compiler.learn(work(20_000, 1))
+        compiler.kernels(moving(scene))
+        assert is_compiled(compiler, RESIDUAL) == expected
+
+
 def test_a_rod_that_touches_has_its_contacts_in_machine_code() -> None:
     """Residual and derivatives with forces of contacts, in centred coordinates."""
     scene = read_scene("examples/rod_hits_floor.toml", ["accuracy.modes=2", "accuracy.nodes=5"])
