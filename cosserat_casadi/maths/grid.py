@@ -20,7 +20,16 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_matrix,
+    as_vector,
+    is_symbolic,
+    known,
+    legendre_table,
+)
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 Indices = npt.NDArray[np.int64]
@@ -251,6 +260,28 @@ class Grid:
             local = (abscissae[rows] - start) / (end - start)
             matrix[rows, self._nodes_of(element)] = chebyshev.interpolation_matrix(self.intervals, local)
         return matrix.reshape(*np.shape(X), self.size)
+
+    def interpolated(self, fields: Matrix, X: Numbers) -> Matrix:
+        """Fields at the nodes, k×M, at abscissae X of the rod in [0, 1], k×len(X).
+
+        Abscissae and element ends may be expressions. An end belongs to the element that it ends.
+        """
+        if not any_symbolic([X, *self.places]):
+            return fields @ ca.DM(self.interpolation_matrix(known(X)).T)
+        # In each element a series of Legendre polynomials, which have no poles at the nodes as barycentric weights do.
+        to_values = legendre_table(self._nodes_per_element, chebyshev.nodes(self.intervals))
+        to_coefficients = ca.DM(np.linalg.inv(known(to_values)).T)
+        abscissae = ca.MX(as_matrix(X))
+        inner = [-np.inf, *self.places[1:-1], np.inf]
+        values: Matrix = ca.MX.zeros(fields.shape[0], abscissae.shape[0])
+        spans = zip(pairwise(self.places), pairwise(inner), ca.horzsplit(fields, self._nodes_per_element), strict=True)
+        for (start, end), (least, most), own in spans:
+            # Elsewhere the element's value at its end stands for it, so that nothing overflows before it is left out.
+            local = ca.fmin(ca.fmax((abscissae - start) / (end - start), 0), 1)
+            lies_here = (abscissae > least) * (abscissae <= most)
+            basis = as_matrix(legendre_table(self._nodes_per_element, local)).T
+            values = values + (own @ to_coefficients @ basis) * ca.repmat(lies_here.T, fields.shape[0], 1)
+        return values
 
     @property
     def _nodes_per_element(self) -> int:

@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.load import Sort
+from cosserat_casadi.maths.numbers import Numbers
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.arrow_records import DrawnPoses, LoadArrows
@@ -125,13 +126,13 @@ class _Picture:
             fields[rod] = position, quaternion_product(bases, ca.densify(shape.quaternion))
         return fields
 
-    def sections(self, rod: str, X: FloatArray) -> tuple[Matrix, Matrix]:
+    def sections(self, rod: str, X: Numbers) -> tuple[Matrix, Matrix]:
         """World positions 3×k and unit quaternions 4×k of sections: the interpolants through the nodes."""
-        weights = ca.DM(self.system.discrete.rods[rod].grid.interpolation_matrix(X).T)
+        grid = self.system.discrete.rods[rod].grid
         position, quaternion = self._fields[rod]
-        between = quaternion @ weights
+        between = grid.interpolated(quaternion, X)
         norm = ca.sqrt(ca.sum1(between**2))
-        return position @ weights, between / ca.repmat(norm, 4, 1)
+        return grid.interpolated(position, X), between / ca.repmat(norm, 4, 1)
 
     def routing(self, actuator: Any) -> Matrix:
         """Points of an actuator's routing in world axes, 3×k: r + R D."""

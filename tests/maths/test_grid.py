@@ -177,3 +177,18 @@ def test_ends_that_are_expressions_vs_their_numbers():
     assert grid.nodes_in(first, second).tolist() == THERE.nodes_in(0.42, 0.55).tolist()
     with pytest.raises(ValueError, match="no element ends at"):
         grid.node_at(0.42)
+
+
+def test_fields_are_interpolated_where_element_ends_are_expressions() -> None:
+    place = ca.MX.sym("place")
+    sections = ca.MX.sym("sections", 6)
+    moving = Grid((0.0, 0.4, 1.0), 5, (0.0, place, 1.0))
+    nodal = ca.MX.sym("nodal", 2, moving.size)
+    written = ca.Function("written", [nodal, place, sections], [moving.interpolated(nodal, sections)])
+    fields = np.random.default_rng(3).standard_normal((2, moving.size))
+    for end in (0.15, 0.4, 0.83):
+        X = np.array([0.0, 0.1, end, np.nextafter(end, 1.0), 0.9, 1.0])
+        fixed = Grid((0.0, 0.4, 1.0), 5, (0.0, end, 1.0))
+        expected = fields @ fixed.interpolation_matrix(X).T
+        assert_allclose(written(fields, end, X).full(), expected, rtol=0, atol=1e-13)
+        assert_allclose(ca.DM(fixed.interpolated(ca.DM(fields), X)).full(), expected, rtol=0, atol=1e-15)
