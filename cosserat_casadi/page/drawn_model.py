@@ -5,7 +5,7 @@ An ordinary folder does not have this function: it costs the scenes that are exp
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.arrow_records import DrawnPoses, LoadArrows
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, scene_function
 from cosserat_casadi.model.system import Arguments, System
@@ -63,7 +64,12 @@ class DrawnModel(Model):
     )
     def drawn(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ all numbers that a picture is made of, one column."""
-        return [ca.densify(ca.vertcat(*[ca.vec(part.numbers) for part in drawn_parts(written.system)]))]
+        return [drawn_column(drawn_parts(written.system))]
+
+
+def drawn_column(parts: Iterable[Drawn]) -> Matrix:
+    """All numbers of drawn parts, one column."""
+    return ca.densify(ca.vertcat(*[ca.vec(part.numbers) for part in parts]))
 
 
 def drawn_layout(model: Model) -> list[dict[str, Any]]:
@@ -93,9 +99,15 @@ def _symbolic_parts(model: Model) -> Iterator[Drawn]:
     return drawn_parts(System(model.discrete, symbols))
 
 
-def drawn_parts(system: System) -> Iterator[Drawn]:
-    """All that is drawn, as expressions: rods, actuators, bodies, loads, in the order of the scene."""
-    picture = _Picture(system)
+def drawn_parts(system: System, loaded: DiscreteScene | None = None, inputs: Matrix | None = None) -> Iterator[Drawn]:
+    """All that is drawn, as expressions: rods, actuators, bodies, loads, in the order of the scene.
+
+    Args:
+        system: of the equilibrium.
+        loaded: the scene whose loads are drawn; by default that of the system, which in contact has more.
+        inputs: its stacked inputs.
+    """
+    picture = _Picture(system, loaded or system.discrete, system.arguments.inputs if inputs is None else inputs)
     scene = system.discrete.scene
     for rod in system.discrete.rods:
         position, quaternion = picture.sections(rod, SECTIONS)
@@ -109,9 +121,18 @@ def drawn_parts(system: System) -> Iterator[Drawn]:
     yield from picture.arrows()
 
 
+def sections_of(system: System, rod: str, X: Numbers) -> tuple[Matrix, Matrix]:
+    """World positions 3×k and unit quaternions 4×k of sections of a system."""
+    return _Picture(system, system.discrete, system.arguments.inputs).sections(rod, X)
+
+
 @dataclass(frozen=True)
 class _Picture:
+    """Expressions of the picture of a system, with the loads of a scene at these inputs."""
+
     system: System
+    loaded: DiscreteScene
+    inputs: Matrix
 
     @cached_property
     def _fields(self) -> dict[str, tuple[Matrix, Matrix]]:
@@ -145,8 +166,7 @@ class _Picture:
 
     def arrows(self) -> Iterator[Drawn]:
         """Arrows of all loads; a load that is always zero has none."""
-        arguments = self.system.arguments
-        loads = LoadArrows(self.system.discrete, arguments.inputs, self._rod_poses, self._body_pose)
+        loads = LoadArrows(self.loaded, self.inputs, self._rod_poses, self._body_pose)
         for drawn in loads.drawn():
             vectors: dict[Sort, Matrix] = {"line": drawn.force}
             if drawn.at_point:

@@ -12,14 +12,20 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.accuracy.ranges import Given
+from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.texts import fill
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.page.drawn_contact import ALONG_LINE, contact_page_files, ends_of_sliders
 from cosserat_casadi.page.drawn_model import DrawnModel
 from cosserat_casadi.page.page_facts import page_facts
-from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
+from cosserat_casadi.page.slider_ranges import sliders
+from cosserat_casadi.page.webassembly import find_wasm_compiler, linked, wasm_of
 
 LARGEST = 3_000_000
 """Bytes that a page may have: what a mail takes without a word."""
@@ -27,8 +33,13 @@ LARGEST = 3_000_000
 SCRIPTS = ("symmetric_eigenvalues.js", "shapes.js", "frame_pacing.js", "scenery.js", "panel.js", "tip_dragging.js")
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
+IN_CONTACT = {"beginning": "the equilibrium at the scene's own inputs", "along_line": ALONG_LINE}
+"""Facts of a page of a scene in exact contact: from where its solver begins, points at which a line is drawn."""
 
-def export_page(solution: Solution, file: Path, asked: Given | None = None) -> Path:
+
+def export_page(
+    solution: Solution, file: Path, asked: Given | None = None, load_cases: FloatArray | None = None
+) -> Path:
     """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
 
     Args:
@@ -36,21 +47,52 @@ def export_page(solution: Solution, file: Path, asked: Given | None = None) -> P
             :func:`cosserat_casadi.choose` returns, the sliders can go all over the ranges.
         file: path of the page.
         asked: ranges of the sliders; by default the ranges that modes are chosen for.
+        load_cases: stacked inputs, a row for each case, shape (k, m): the page of a scene in exact contact knows the
+            arrangements of contacts that are met on the way to each of them; by default, to both ends of every slider.
 
     Raises:
-        ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.
+        ExportError: there is no compiler for WebAssembly, the page would be larger than a page may be, or C does not
+            know what a scene in exact contact has.
         WriteError: the file cannot be written.
     """
-    refuse_obstacles(solution.model.scene, "a page")
-    model = DrawnModel(solution.model.discrete)
-    module = wasm_of(model, find_wasm_compiler())
-    facts = {**page_facts(solution, asked=asked), **asked_accuracy(solution)}
+    model = page_model(solution)
+    check_contact(model.scene, {})
+    compiler = find_wasm_compiler()
+    if model.scene.touches_exactly:
+        cases = ends_of_sliders(model, sliders(model, asked)) if load_cases is None else load_cases
+        module = linked(contact_page_files(model, cases), compiler)
+    else:
+        module = wasm_of(DrawnModel(model.discrete), compiler)
+    facts = facts_of_page(solution, model, asked)
     content = page_text(facts, [asset("wasm_robot.js")], module).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
         raise ExportError(Problem("--page", problem, "a larger tolerance makes it smaller"))
     write_atomically(file, content)
     return file
+
+
+def page_model(solution: Solution) -> Model:
+    """The model whose inputs a page moves: contacts come and go, and their forces are no inputs."""
+    model = solution.model
+    if not model.scene.touches_exactly:
+        return model
+    scene = without_contacts(model.scene)
+    return build(scene, Grids(model.discretisation).discretisation(scene))
+
+
+def facts_of_page(solution: Solution, model: Model, asked: Given | None = None) -> dict[str, Any]:
+    """Facts of a scene for a page that solves by itself.
+
+    Args:
+        solution: the equilibrium at the scene's own inputs.
+        model: of :func:`page_model`.
+        asked: ranges of the sliders.
+    """
+    facts = {**page_facts(solution, model, asked), **asked_accuracy(solution)}
+    if model.scene.touches_exactly:
+        facts |= {"obstacle_names": [obstacle.name for obstacle in model.scene.obstacles], **IN_CONTACT}
+    return facts
 
 
 def asked_accuracy(solution: Solution) -> dict[str, Any]:

@@ -91,7 +91,21 @@ def wasm_of(model: DrawnModel, compiler: str) -> bytes:
     template = (resources.files("cosserat_casadi.page") / "assets" / "page.c.in").read_text(encoding="utf-8")
     words = {"name": NAME, "MACRO": NAME.upper(), "drawn": model.drawn.size1_out(0)}
     files["page.c"] = fill(template, words)
-    return _compiled(compiler, files, ["page.c", f"{NAME}.c", f"{NAME}_kernels.c"])
+    return linked(files, compiler)
+
+
+def linked(files: Mapping[str, str], compiler: str) -> bytes:
+    """A library, with the calls of a page in page.c, as a WebAssembly module that imports nothing.
+
+    Args:
+        files: texts of sources and headers by name.
+        compiler: path of a clang for WebAssembly.
+
+    Raises:
+        ExportError: the compiler fails.
+    """
+    sources = ("page.c", f"{NAME}.c", f"{NAME}_kernels.c", f"{NAME}_drawn.c")
+    return _compiled(compiler, files, [file for file in sources if file in files])
 
 
 def _compiled(compiler: str, files: Mapping[str, str], sources: list[str]) -> bytes:

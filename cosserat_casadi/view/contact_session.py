@@ -16,13 +16,11 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.page.drawn_contact import ALONG_LINE
 from cosserat_casadi.page.drawn_model import drawn_numbers
 from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.view.answers import accuracy_of, state_of
 from cosserat_casadi.view.robot_session import RobotSession
-
-ALONG_LINE = 25
-"""Points at which a stretch of contact is drawn."""
 
 
 class ContactSession(RobotSession):

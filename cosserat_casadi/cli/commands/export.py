@@ -286,6 +286,7 @@ def _checked_scene(scene: Scene, targets: Targets, sources: SourceOptions, name:
     if sources.parts["batches"] and not scene.touches_exactly:
         check_batches(build(scene, discretise(scene, 1, 2)))
     if targets.page is not None:
+        check_contact(scene, {})
         # Last: a scene that has no page has none with a compiler either.
         find_wasm_compiler()
     return scene
@@ -329,7 +330,7 @@ def _write(
         print_plain(console, f"wrote {escape(str(targets.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
     if targets.page is not None:
         with Console(stderr=True).status("Compiling the page"):
-            export_page(solution, targets.page, ranges)
+            export_page(solution, targets.page, ranges, cases)
         print_plain(console, f"wrote {escape(str(targets.page))}; any browser opens it", soft_wrap=True)
 
 

@@ -67,23 +67,23 @@ class ArrangementKernels:
         """In the order of the words."""
         residual = self._written.residual
         kernels: dict[str, Callable[[], Kernel]] = {
-            "residual": lambda: self._kernel("residual", [residual]),
+            "residual": lambda: self.written_kernel("residual", [residual]),
             "jacobian": self._jacobian,
             "rate": lambda: self._rate_kernel("rate", residual),
-            "nodes": lambda: self._kernel("nodes", [self._nodes(), self._indices()]),
-            "tips": lambda: self._kernel("tips", [self._tips()]),
+            "nodes": lambda: self.written_kernel("nodes", [self._nodes(), self._indices()]),
+            "tips": lambda: self.written_kernel("tips", [self._tips()]),
             "tip_rate": lambda: self._rate_kernel("tip_rate", self._tips()),
-            "contacts": lambda: self._kernel("contacts", [self._resultants(), self._point_forces()]),
-            WATCHED: lambda: self._kernel(WATCHED, [watched(self._written.system).column]),
-            ACTUATORS: lambda: self._kernel(ACTUATORS, self._actuators()),
-            BENDS: lambda: self._kernel(BENDS, [self._bends()]),
+            "contacts": lambda: self.written_kernel("contacts", [self._resultants(), self._point_forces()]),
+            WATCHED: lambda: self.written_kernel(WATCHED, [watched(self._written.system).column]),
+            ACTUATORS: lambda: self.written_kernel(ACTUATORS, self._actuators()),
+            BENDS: lambda: self.written_kernel(BENDS, [self._bends()]),
         }
         return [kernels[word]() for word in self.words]
 
     def differentiable(self) -> Iterator[ca.Function]:
         """Residual and poses, each with its derivatives, named as ``casadi.external`` looks for them."""
         for word, result in (("residual", self._written.residual), ("poses", self._tips())):
-            yield from with_derivatives(self._kernel(word, [result]))
+            yield from with_derivatives(self.written_kernel(word, [result]))
 
     def _jacobian(self) -> Kernel:
         """The Jacobian, by columns where it has such a form that is not too long."""
@@ -107,8 +107,8 @@ class ArrangementKernels:
         count = self.equations.parameters.size
         return jacobian[:, :-count] if count else jacobian
 
-    def _kernel(self, word: str, results: Sequence[Matrix]) -> ca.Function:
-        """A function of z and of the inputs, with dense results."""
+    def written_kernel(self, word: str, results: Sequence[Matrix]) -> ca.Function:
+        """A function of z and of the inputs, from expressions of the written equations; with dense results."""
         return kernel(self.equations.nominal.model, self._of_z(results), f"{self.name}_{word}")
 
     def _rate_kernel(self, word: str, result: Matrix) -> ca.Function:
@@ -205,7 +205,7 @@ class ArrangementKernels:
         forces: list[Matrix] = [ca.MX(0, 1)]
         for touch, ends, line in self._forces():
             if touch.of_body:
-                forces.append(self._unit(touch) * ends * self._normal_of_body(touch))
+                forces.append(self._unit(touch) * ends * self.normal_of_body(touch))
                 continue
             grid = self._written.system.discrete.rods[touch.owner].grid
             force: Matrix = ca.MX.zeros(3)
@@ -268,7 +268,7 @@ class ArrangementKernels:
             bends.append(bend / length)
         return ca.vertcat(*bends)
 
-    def _normal_of_body(self, touch: Touch) -> Matrix:
+    def normal_of_body(self, touch: Touch) -> Matrix:
         """Normal of the obstacle at the origin of the body that touches it."""
         system = self._written.system
         position = system.frame(FrameName("body", touch.owner)).position

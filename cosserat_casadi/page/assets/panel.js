@@ -218,7 +218,8 @@ class Panel {
       const share = loadFactor < 1 ? ` Drawn faintly: the last equilibrium, at ${(100 * loadFactor).toPrecision(2)} % of the load.` : "";
       return ["bad", "✕ No equilibrium shown", text + share];
     }
-    const jump = anew ? " The robot could not be followed here: it has jumped, and was solved anew from the unloaded one." : "";
+    const beginning = this.facts.beginning || "the unloaded one";
+    const jump = anew ? ` The robot could not be followed here: it has jumped, and was solved anew from ${beginning}.` : "";
     if (this.state.met === false) return ["warn", "✓ In equilibrium, the point is not reached", text];
     const steps = `${this.state.iterations} Newton ${this.state.iterations === 1 ? "step" : "steps"}.`;
     const rough = this.accuracy && this.accuracy.within === false;

@@ -58,7 +58,27 @@ class WasmRobot {
       loadFactor: this.library.load_factor(),
       iterations: this.library.iterations(),
       drawn: this.view(this.library.drawn(), this.drawnCount).slice(),
+      contacts: this.contacts(),
     };
+  }
+
+  // Where rods or bodies touch obstacles exactly: points, the resultant on what touches, and both in words.
+  contacts() {
+    const { poses, obstacle_names: obstacles, along_line: alongLine } = this.facts;
+    if (!obstacles) return [];
+    let address = this.library.drawn() + 8 * this.drawnCount;
+    return Array.from({ length: this.library.contacts() }, (_, number) => {
+      const [owner, obstacle, isLine, from, to, ...force] = this.view(this.library.contact(number), 8);
+      const count = isLine ? alongLine : 1;
+      const entries = this.view(address, 3 * count);
+      address += 24 * count;
+      const points = Array.from({ length: count }, (_, k) => [...entries.slice(3 * k, 3 * k + 3)]);
+      const { rod, body } = poses[owner];
+      const along = isLine ? ` from X = ${brief(from, 3)} to ${brief(to, 3)}` : ` at X = ${brief(from, 3)}`;
+      const newtons = brief(Math.hypot(...force), 3);
+      const words = `${rod || body} touches ${obstacles[obstacle]}${body ? "" : along} with ${newtons} N`;
+      return { points, force, words: words.replaceAll("_", " ") };
+    });
   }
 
   // Derivatives of all poses by all inputs, [pose][input][7]; null where there are none.
@@ -72,6 +92,10 @@ class WasmRobot {
   async eigenvalues() {
     const allowed = this.facts.stability;
     if (!allowed || !this.atEquilibrium) return null;
+    if (this.library.smallest_eigenvalue) {
+      const smallest = this.library.smallest_eigenvalue();
+      return Number.isNaN(smallest) ? null : [smallest];
+    }
     this.library.linearise();
     const n = this.facts.unknowns;
     const entries = this.view(this.library.jacobian(), n * n);
@@ -90,9 +114,10 @@ class WasmRobot {
   }
 }
 
-// A small number with its power of ten.
-function brief(number) {
-  return number < 0.001 ? number.toExponential() : String(number);
+// A number, of few digits where that is asked for; a small one with its power of ten.
+function brief(number, digits) {
+  const rounded = digits ? Number(number.toPrecision(digits)) : number;
+  return rounded < 0.001 && rounded !== 0 ? rounded.toExponential() : String(rounded);
 }
 
 function openRobot(facts) {

@@ -18,7 +18,7 @@ async function main() {
     solved.push({
       ...state,
       drawn: [...state.drawn],
-      x: [...robot.view(instance.exports.x(), facts.unknowns)],
+      x: instance.exports.x ? [...robot.view(instance.exports.x(), facts.unknowns)] : null,
       derivatives: derivatives && [...derivatives],
       eigenvalues: await robot.eigenvalues(),
     });
