@@ -602,6 +602,19 @@ def test_refused_uses(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_load_cases_may_name_parameters(tmp_path: Path) -> None:
+    """A softer rod than that of the scene comes to touch: the library knows that contact by the load case alone."""
+    light = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.05]}
+    wanted = scene(rods=[FLAT], loads=[light], obstacles=[BAR], parameters=["rod.stiffness.bending_y"])
+    model = build(wanted, discretise(wanted, 2, 4))
+    (own,) = model.parameters.pack()
+    for name, factor, known in (("stiff", 1.0, [[]]), ("soft", 0.02, [[], ["bar"]])):
+        case = np.array([[*light["force"], factor * own]])
+        folder = export(model, tmp_path / name, load_cases=case, estimate_errors=False)
+        arrangements = json.loads((folder / "manifest.json").read_text())["arrangements"]
+        assert [[contact["obstacle"] for contact in entry["contacts"]] for entry in arrangements] == known
+
+
 def test_load_knows_the_folder_by_its_manifest(bar: ContactLibrary, tmp_path: Path) -> None:
     assert isinstance(load(bar.folder), CompiledContact)
     (tmp_path / "manifest.json").write_text('{"name": "bar", "inputs": [], "files": [], "arrangements": 3}')

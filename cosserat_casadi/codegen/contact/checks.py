@@ -82,7 +82,10 @@ def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None
     if not scene.touches_exactly:
         problem = "load cases say which contacts are exported; no rod of this scene touches an obstacle exactly"
         raise ExportError(Problem("--over", problem, "leave them out"))
-    columns = input_layout(without_contacts(scene)).size
-    if load_cases.ndim != 2 or load_cases.shape[1] != columns or not np.isfinite(load_cases).all():
-        problem = f"load cases are finite numbers of shape (k, {columns}), got shape {load_cases.shape}"
+    inputs = input_layout(without_contacts(scene)).size
+    # Parameters may stand behind the inputs.
+    sizes = sorted({inputs, inputs + parameter_layout(scene).size})
+    if load_cases.ndim != 2 or load_cases.shape[1] not in sizes or not np.isfinite(load_cases).all():
+        shapes = " or ".join(f"(k, {size})" for size in sizes)
+        problem = f"load cases are finite numbers of shape {shapes}, got shape {load_cases.shape}"
         raise ExportError(Problem("--over", problem))
