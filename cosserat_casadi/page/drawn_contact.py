@@ -38,15 +38,16 @@ def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
 
     Args:
         model: of the scene without contacts.
-        cases: stacked inputs, a row for each case, shape (k, m): the library knows the arrangements that are met on the
-            way to each of them that has an equilibrium, one after the other.
+        cases: stacked inputs, a row for each case, shape (k, m), further columns are not read: the library knows the
+            arrangements that are met on the way to each of them that has an equilibrium, one after the other.
 
     Raises:
         ExportError: C does not know what the scene has, or its contacts.
     """
     check_contact(model.scene, {})
     stability = model.has_potential(np.ones(model.inputs.size))
-    chosen = chosen_arrangements(model, cases, estimate_errors=True, leave_out=True, stability=stability)
+    inputs = cases[:, : model.inputs.size]
+    chosen = chosen_arrangements(model, inputs, estimate_errors=True, leave_out=True, stability=stability)
     names = scene_names(NAME, model.scene)
     functions = drawn_kernels(chosen, model, names)
     generated = kernel_sources(functions, names, f"{NAME}_drawn")
