@@ -81,6 +81,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/race.py --write
 	$(BIN)/python benchmarks/motion_precision.py --write
 	$(BIN)/python benchmarks/motion_peers.py --write
+	$(BIN)/python benchmarks/motion_robots.py --write
 
 dial: $(STAMP)
 	$(BIN)/python benchmarks/compiled_cost.py --write

@@ -415,7 +415,7 @@ def exudyn_crank(case: Case, elements: int, step: float) -> Run:
         exudyn_held(system, nodes[0], (0, 1), pin)
         exudyn_held(system, nodes[-1], (1,))
         slider = system.AddNode(items.NodePoint2D(referenceCoordinates=[CRANK + case.rod.length, 0.0]))
-        system.AddObject(items.ObjectMassPoint2D(physicsMass=SLIDER, nodeNumber=slider))
+        system.AddObject(items.ObjectMassPoint2D(mass=SLIDER, nodeNumber=slider))
         for coordinate in (0, 1):
             both = [
                 system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
@@ -503,14 +503,15 @@ def mujoco_tendons(case: Case, elements: int, step: float) -> Run:
     """Tendons as couples; without stiffness against twist, which nothing excites and which would need shorter steps."""
     size = half_more(case.rod, elements)
     cable = mujoco_cable(case.rod, elements, size, -size / 2, "none", 0.0)
+    # A couple on a piece bends the chain up to that piece's middle: two pieces share the couple at the rod's middle.
+    pieces, over = divmod(case.rod.length / 2 / size, 1.0)
+    middle, weights = 1 + int(pieces), np.array([1.0 - over, over])
 
     def act(model: Any, data: Any) -> None:
         share = OFFSET * grown(data.time, PULLED)
         # About y a turn towards z is a negative one.
         data.xfrc_applied[model.nbody - 1, 4] = TENSIONS[0] * share
-        # The middle is a quarter of an element behind a joint: the couple is shared with the next one.
-        middle = 1 + elements // 2
-        data.xfrc_applied[middle : middle + 2, 4] = -TENSIONS[1] * share * np.array([0.75, 0.25])
+        data.xfrc_applied[middle : middle + 2, 4] = -TENSIONS[1] * share * weights
 
     return mujoco_run(case, step, f"<worldbody>{cable}</worldbody>", act, ("cB_last", size))
 
@@ -687,11 +688,26 @@ def drawn(lines: Sequence[Sequence[str]]) -> Any:
     return figure
 
 
-def main(write: Annotated[bool, typer.Option("--write", help="Put table and figure into docs.")] = False) -> None:
+def on_page(name: str) -> list[list[str]]:
+    """Rows of a motion that the page has."""
+    text = DOCS.joinpath("accuracy.md").read_text().split(BEGIN)[1].split(END)[0]
+    rows = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in text.splitlines()]
+    return [row for row in rows if row[0] == CASES[name].title]
+
+
+def main(
+    write: Annotated[bool, typer.Option("--write", help="Put table and figure into docs.")] = False,
+    only: Annotated[
+        str, typer.Option(help="The motion that is run: push, tendons or crank; rows of others are kept.")
+    ] = "",
+) -> None:
     """Print the table."""
     lines = []
     with TemporaryDirectory() as cache, Progress(transient=True) as bar:
         for name in bar.track(CASES, description="moving"):
+            if only not in ("", name):
+                lines += on_page(name)
+                continue
             case = CASES[name]
             os.environ[VARIABLE] = f"{cache}/{name}/default"
             rows = [*motions_of(case), *rivals(name, case)]
