@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.equilibrium.solution import Solution
@@ -23,6 +24,7 @@ from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import (
+    body_corners,
     draw_actuators,
     draw_bodies,
     draw_disks,
@@ -30,7 +32,7 @@ from cosserat_casadi.plots.scenery import (
     draw_supports,
     draw_targets,
 )
-from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
+from cosserat_casadi.plots.solved_shapes import RodShapes, in_world, rod_shapes
 from cosserat_casadi.results.presentation import figure_of
 
 
@@ -86,16 +88,18 @@ def plot_inverse(inverse: Inverse) -> Any:
 
 
 def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: Sequence[Arrow]) -> None:
+    scene = solution.model.scene
     draw_obstacles(canvas, solution, shapes)
     draw_rods(canvas, solution, shapes)
-    draw_supports(canvas, solution.model.scene)
+    draw_supports(canvas, scene)
     draw_actuators(canvas, solution)
     draw_bodies(canvas, solution)
     draw_disks(canvas, solution)
     draw_arrows(canvas, arrows)
-    draw_targets(canvas, solution.model.scene)
+    draw_targets(canvas, scene)
     canvas.label_axes()
-    canvas.equalise(shapes.points)
+    bodies = [in_world(solution.body(body.name), body_corners(scene, body)) for body in scene.listed_bodies]
+    canvas.equalise(np.concatenate([shapes.points, *bodies]))
 
 
 def _draw_subtitle(axes: Any, solution: Solution) -> None:

@@ -13,7 +13,7 @@ import pytest
 from numpy.testing import assert_allclose
 from PIL import Image
 
-from cosserat_casadi import Outcome, SceneError, Solution, build, modes_of, read_scene, solve
+from cosserat_casadi import Outcome, SceneError, Solution, build, modes_of, parse_scene, read_scene, solve
 from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.motion.vibration_modes import Modes
@@ -32,6 +32,7 @@ from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.tubes.tube_solution import TubeShape
 from tests.conftest import ROOT
 from tests.families import mostly_slow
+from tests.mjcf.moved_chains import LOOPS
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 from tests.tubes.pendulum import Pendulum
 
@@ -458,3 +459,11 @@ def test_a_long_title_fits_into_a_narrow_figure() -> None:
     extent = figure._suptitle.get_window_extent()
     assert extent.x0 >= 0.0
     assert extent.x1 <= figure.bbox.width
+
+
+def test_axes_hold_the_bodies_of_a_loop() -> None:
+    solution = solve(build(parse_scene(LOOPS["slider-crank"])))
+    axes = plot_solution(solution).axes[0]
+    places = np.array([[0.0, 0.0, 0.0], solution.body("slider").position])
+    for limits, coordinates in zip((axes.get_xlim(), axes.get_ylim(), axes.get_zlim()), places.T, strict=True):
+        assert limits[0] <= coordinates.min() and coordinates.max() <= limits[1]
