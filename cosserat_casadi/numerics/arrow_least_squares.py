@@ -168,7 +168,7 @@ class Fit(Generic[StateType]):
         cost: half the sum of what residuals and priors cost.
         iterations: steps tried.
         outcome: how it ended.
-        beyond: the state on the other side of the last kink that steps have met; None where they met none.
+        beyond: the state on the other side of a kink that steps from here have met; None where they met none.
     """
 
     shared: FloatArray
@@ -491,7 +491,7 @@ class _Search(Generic[StateType]):
         damping: relative to the squares of the columns.
         growth: factor on the damping where the next step fails.
         along: damping of steps along kinks.
-        beyond: the state on the other side of the last kink that steps have met; None where they met none.
+        beyond: the state on the other side of a kink that steps from here have met; None where they met none.
         shared_scale: largest norms of the columns so far, shape (n,).
         own_scale: likewise, shape (k,).
     """
@@ -622,6 +622,8 @@ class ArrowFit(Generic[StateType]):
             gain = (search.cost - cost) / predicted
             if gain > SUFFICIENT:
                 search.take(shared, own, state, cost)
+                # A kink that was met before is left behind.
+                search.beyond = None
                 search.damping *= max(0.1, 1 - (2 * gain - 1) ** 3)
                 search.damping = max(search.damping, 1e-15)
                 return None

@@ -341,6 +341,41 @@ def test_the_least_sum_may_be_at_a_kink(slope: float) -> None:
     assert fit.iterations < 40
 
 
+def test_a_kink_that_is_left_behind_is_not_told() -> None:
+    """Steps meet the kink at 0.47 on the way to the least sum at 1.3, which is smooth."""
+
+    def beyond(x: FloatArray) -> float:
+        return float(x[0] - 1.0 + 0.3 * np.sin(3.0 * x[0]))
+
+    def residual(x: FloatArray) -> FloatArray:
+        return np.array([x[0] - 2.0, 4.0 + 0.5 * max(beyond(x), 0.0)])
+
+    class Curved:
+        offsets = np.array([0, 2])
+
+        def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point:
+            return Point(shared, own, residual(shared))
+
+        def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+            slope = 0.5 * (beyond(state.shared) > 0.0) * (1.0 + 0.9 * np.cos(3.0 * state.shared[0]))
+            return np.array([[1.0], [slope]]), np.zeros((2, 0))
+
+    met: list[bool] = []
+
+    def kinked(state: Point, other: Point) -> npt.NDArray[np.bool_]:
+        met.append((beyond(state.shared) > 0.0) != (beyond(other.shared) > 0.0))
+        return np.array([met[-1]])
+
+    problem, own = Curved(), np.zeros((1, 0))
+    start = problem.at(np.array([-2.0]), own, None)
+    fit = ArrowFit(problem, free(1), free(0), kinked=kinked).run(start.shared, own, start)
+    least = scipy.optimize.minimize_scalar(lambda x: residual(np.array([x])) @ residual(np.array([x])), (1.0, 1.5))
+    assert fit.outcome is FitOutcome.CONVERGED
+    assert_allclose(fit.shared, [least.x], rtol=0, atol=1e-4)
+    assert any(met)
+    assert fit.beyond is None
+
+
 @pytest.mark.parametrize(("gain", "target"), [(2.0, 3.0), (1.0, 5.0)])
 def test_no_kink_is_told_where_linear_models_from_afar_meet(gain: float, target: float) -> None:
     """The sum is least at the root of a curved equation, far from the start; SciPy finds the root."""
