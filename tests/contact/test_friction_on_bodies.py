@@ -106,7 +106,8 @@ def test_a_ball_is_pulled_from_between_jaws_as_a_point_mass() -> None:
     acceleration = np.polyfit(motion.times[late], heights[late], 2)[0] * 2
     # The stem is one thousandth of the ball.
     assert_allclose(acceleration, -LIMIT / MASS, rtol=5e-3, atol=0)
-    assert_allclose(motion.energy.dissipated[-1], LIMIT * -heights[-1], rtol=2e-2, atol=0)
+    # So soft a spring leaves the height of the equilibrium at the start to rounding.
+    assert_allclose(motion.energy.dissipated[-1], LIMIT * (heights[0] - heights[-1]), rtol=2e-2, atol=0)
     assert np.abs(motion.energy.imbalance).max() < 1e-3
     assert all(stretch.slips for stretch in motion.rubbing(len(motion.times) - 1))
 
@@ -182,7 +183,7 @@ def test_a_gripper_holds_a_ball_by_the_friction_of_its_fingers() -> None:
         start = {f"flexor_{number}.tension": tension for number in (1, 2, 3)} | {"pin.base.position": [0, 0, -0.15]}
         path = follow(model, "pin.base.position", [0, 0, -0.154], start)
         assert path.converged, path.message
-        assert path.section("pin") == 0.5  # its tip is held, and what moves is no load
+        assert path.section("pin") == 1.0  # nothing else holds the ball at its tip
         solutions = [path.solution(row) for row in range(len(path.factor))]
         pulls = np.array([-found.base_wrench("pin").force[2] for found in solutions])
         peak = int(pulls.argmax())
