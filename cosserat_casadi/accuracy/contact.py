@@ -30,7 +30,7 @@ FINER_MODES = 3
 """Modes that are added to those of the user to estimate their error."""
 
 STAYING = 0.9
-"""Share of what is not met on one level from which on it is not less on the next."""
+"""Share of a depth on one level of modes, from which on the depth on the next level is as large."""
 
 MOST_FAILURES = 1
 """Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""

@@ -57,7 +57,7 @@ OPENING = 0.3
 """Share of the way to the nearer end of a line over which it is first thought to open inside."""
 
 SHORT = 0.1
-"""Length of what is left of a line beside a section that is lifted, below which it may be a point."""
+"""Length of a line beside a section that is lifted, below which a point may be left of it."""
 
 ALIKE = 0.05
 """Places of contact that differ by less make the same attempt."""
