@@ -45,7 +45,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_jacobians,
     interpreted_residual,
 )
-from cosserat_casadi.motion.tip_paths import functions_of_tips
+from cosserat_casadi.motion.tip_paths import functions_of_sections
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
@@ -261,7 +261,7 @@ def _residual(model: Model) -> list[ca.Function]:
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
     # Every motion asks for the paths of tips, for how far unknowns move them, and for rows on the constraints.
-    beside = [*functions_of_tips(model), function_of_displacements(model), *functions_of_flight(model)]
+    beside = [*functions_of_sections(model), function_of_displacements(model), *functions_of_flight(model)]
     for points in touching_points(model):
         beside += points.in_iterations
     # With parameters no motion is computed, and rows have no parameters.

@@ -1,4 +1,8 @@
-"""The paths that a tolerance of a motion binds: those of tips, of bases that move and of bodies, and how they turn."""
+"""The paths that a tolerance of a motion binds: those of tips, of bases that move and of bodies, and how they turn.
+
+A tip that a support or a joint holds is where it is held: such a rod is watched between its ends too, at the sections
+of :func:`watched_sections`, as at rest.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +12,23 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
+from cosserat_casadi.model.section_poses import SectionPoses, section_weights
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.pose_series import Frames, frames_of
+from cosserat_casadi.motion.pose_series import Frames, evaluated, frames_of
 from cosserat_casadi.scene.constraint_records import Body
 
 TIP = "motion_tip_"
 """Name of the pose of a tip in C, before the number of its rod."""
+
+BETWEEN = "motion_between_"
+"""Name of the poses of the sections between the ends of a rod in C, before its number."""
 
 WATCHED = 401
 """Times at which paths are compared, evenly spaced."""
@@ -24,14 +36,14 @@ WATCHED = 401
 
 @dataclass(frozen=True)
 class Paths:
-    """Paths of tips, moving bases and bodies at T times, by which two motions are compared.
+    """Paths of watched sections, moving bases and bodies at T times, by which two motions are compared.
 
     A rod that only twists moves neither its tip nor any point of its axis: its tip's turn about the tangent counts too.
 
     Attributes:
-        points: positions of tips, of bases that have unknowns and of points of bodies over the length,
+        points: positions of sections, of bases that have unknowns and of points of bodies over the length,
             shape (T, points, 3), without unit.
-        section_axes: x and y axes of the tips' sections in world axes, shape (T, rods, 3, 2), an axis a column.
+        section_axes: x and y axes of the sections in world axes, shape (T, sections, 3, 2), an axis a column.
     """
 
     points: FloatArray
@@ -44,29 +56,29 @@ def watched_times(history: History, duration: float) -> FloatArray:
     return times[times <= history.end.time]
 
 
-def functions_of_tips(model: Model) -> list[ca.Function]:
-    """The poses of the tips, rod by rod, as :attr:`Model.tip` has them."""
+def functions_of_sections(model: Model) -> list[ca.Function]:
+    """The poses of the tips, rod by rod, as :attr:`Model.tip` has them, and of the sections between ends."""
     functions = []
     for number, tip in enumerate(model.tip.values()):
         at = tip.mx_in()
         functions.append(ca.Function(f"{TIP}{number}", at, tip.call(at), tip.name_in(), tip.name_out()))
-    return functions
+    return [*functions, *_between(model).values()]
 
 
 def paths(history: History, times: FloatArray, library: str | None = None) -> Paths:
-    """The paths of all tips, moving bases and bodies at T times.
+    """The paths of all watched sections, moving bases and bodies at T times.
 
     Args:
         history: the motion.
         times: shape (T,), s.
-        library: shared object that has :func:`functions_of_tips`; None without one.
+        library: shared object that has :func:`functions_of_sections`; None without one.
     """
     model = history.model
-    tips: Mapping[str, ca.Function] = (
-        model.tip
-        if library is None
-        else {name: ca.external(f"{TIP}{number}", library) for number, name in enumerate(model.discrete.rods)}
-    )
+    tips: Mapping[str, ca.Function] = model.tip
+    between = _between(model)
+    if library is not None:
+        tips = {name: ca.external(f"{TIP}{number}", library) for number, name in enumerate(model.discrete.rods)}
+        between = {name: ca.external(function.name(), library) for name, function in between.items()}
     x, inputs = history.rough_positions(times)
     points = []
     section_axes = []
@@ -74,6 +86,10 @@ def paths(history: History, times: FloatArray, library: str | None = None) -> Pa
         tip = frames_of(tips[name], x, inputs)
         points.append(tip.position / rod.properties.length)
         section_axes.append(tip.rotation[:, :, :2])
+        if name in between:
+            positions, quaternions = evaluated(between[name], x, inputs)
+            points += list(np.moveaxis(positions / rod.properties.length, 2, 0))
+            section_axes += [rotations(one)[:, :, :2] for one in np.moveaxis(quaternions, 2, 0)]
         base = model.discrete.unloaded.floating_base(name)
         if base is not None:
             frame = model.discrete.frames[base]
@@ -86,10 +102,29 @@ def paths(history: History, times: FloatArray, library: str | None = None) -> Pa
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
 
 
+def _between(model: Model) -> dict[str, ca.Function]:
+    """(x, inputs) ↦ positions, 3×k, and quaternions, 4×k, of the k watched sections before its tip, by their rod."""
+    return kept_with(model, "_between_ends", lambda: _written_between(model))
+
+
+def _written_between(model: Model) -> dict[str, ca.Function]:
+    discrete = model.discrete
+    arguments = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
+    system = System(discrete, arguments)
+    functions = {}
+    for number, name in enumerate(discrete.rods):
+        sections = watched_sections(model.scene, name)[:-1]
+        if sections.size:
+            poses = SectionPoses(system, name, section_weights(discrete, name, sections.tolist()))
+            outputs = [poses.positions, poses.quaternions]
+            functions[name] = ca.Function(f"{BETWEEN}{number}", [arguments.x, arguments.inputs], outputs)
+    return functions
+
+
 def path_distance(first: Paths, second: Paths) -> float:
     """Largest distance of two sets of paths at the times that both reach, over the length, without unit.
 
-    What a tip is turned about its tangent counts on an arm of LEVER lengths.
+    What a section is turned about its tangent counts on an arm of LEVER lengths.
     """
     rows = min(len(first.points), len(second.points))
     distances = np.linalg.norm(first.points[:rows] - second.points[:rows], axis=2)
@@ -127,10 +162,10 @@ def _moved_with(frames: Frames, arm: FloatArray) -> FloatArray:
 
 
 def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Turns about the tangent from one set of sections to another that lies close, shape (T, rods), rad.
+    """Turns about the tangent from one set of sections to another that lies close, shape (T, sections), rad.
 
     Args:
-        first: x and y axes of sections, shape (T, rods, 3, 2).
+        first: x and y axes of sections, shape (T, sections, 3, 2).
         second: those of the others.
     """
     # cos and sin of the turn, twice: what the tangents are apart enters by its square alone.

@@ -28,7 +28,7 @@ from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
 from cosserat_casadi.motion.simulate import moving_inputs, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted, interpreted_jacobians, interpreted_residual
-from cosserat_casadi.motion.tip_paths import functions_of_tips
+from cosserat_casadi.motion.tip_paths import functions_of_sections
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.integration import StepSettings
@@ -206,7 +206,7 @@ def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:
     x, _, _, inputs, *_ = somewhere(model)
     library = compiler.library(model)
     assert library is not None
-    tip = ca.external(functions_of_tips(model)[0].name(), library)
+    tip = ca.external(functions_of_sections(model)[0].name(), library)
     for found, expected in zip(tip(x, inputs), model.tip["rod"](x, inputs), strict=True):
         assert_allclose(found.full(), expected.full(), rtol=1e-12, atol=1e-14)
     assert_array_equal(displacements(moving(arm()), library), displacements(model))
