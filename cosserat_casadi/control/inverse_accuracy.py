@@ -142,7 +142,7 @@ def inverse_rows(
             judged = replace(result, solution=levels.judged(result.solution, reference))
             if fixed:
                 settled[row] = _fixed_verdict(judged, stable)
-            elif _error_within(judged) or judged.starts_left_out:
+            elif _error_within(judged) or judged.starts_left_out or judged.cut_short:
                 # A search that took too long for its starts is not repeated on more modes, where it takes longer still.
                 settled[row] = with_verdict(judged, stable)
             else:

@@ -37,6 +37,7 @@ class Inverse(Result):
             met the targets from a neighbour.
         starts: starts that were tried, 1 where the first has met the targets.
         starts_left_out: further starts that the search had no time for.
+        cut_short: whether the optimiser ran out of time: the inputs are where it was, which need not be a minimum.
         at_bounds: decision variables that ended at a bound, by name.
     """
 
@@ -47,6 +48,7 @@ class Inverse(Result):
     rounds: int
     starts: int = 1
     starts_left_out: int = 0
+    cut_short: bool = False
     at_bounds: tuple[str, ...] = ()
 
     @property
@@ -132,6 +134,8 @@ def _minimum_sentence(result: Inverse) -> str:
     if result.starts > 1:
         starts = f"{result.starts} starts"
     sentence = f" It is a local minimum {where}, the best of {starts}."
+    if result.cut_short:
+        sentence = f" The optimiser ran out of time {where}, in the best of {starts}: it need not be a local minimum."
     if result.starts_left_out:
         sentence += f" The search took too long for {result.starts_left_out} further ones."
     return sentence

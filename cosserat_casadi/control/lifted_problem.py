@@ -31,12 +31,19 @@ SETTLED = 1e-9
 ROUNDS = 7
 """Most rounds."""
 
+LONGEST_RUN = 60.0
+"""Seconds after which one run of the optimiser ends where it is."""
+
+OUT_OF_TIME = "Maximum_WallTime_Exceeded"
+"""The status that ipopt returns then."""
+
 IPOPT = {
     "print_level": 0,
     "sb": "yes",
     "tol": 1e-10,
     "mu_init": 1e-4,
     "max_iter": 300,
+    "max_wall_time": LONGEST_RUN,
     "bound_relax_factor": 0.0,
     "honor_original_bounds": "yes",
 }
@@ -76,7 +83,8 @@ class LiftedProblem(SoughtInputs):
         centre = change
         rounds = 0
         largest_change = np.inf
-        while rounds < ROUNDS and largest_change > SETTLED:
+        cut_short = False
+        while rounds < ROUNDS and largest_change > SETTLED and not cut_short:
             damping = DAMPING[min(rounds, len(DAMPING) - 1)]
             result = self.optimiser(
                 x0=np.concatenate([x, centre]),
@@ -87,6 +95,7 @@ class LiftedProblem(SoughtInputs):
             )
             optimum = result["x"].full()[:, 0]
             rounds += 1
+            cut_short = self.optimiser.stats()["return_status"] == OUT_OF_TIME
             if not np.all(np.isfinite(optimum)):
                 # What the round before ended at is still a proposal.
                 break
@@ -94,8 +103,8 @@ class LiftedProblem(SoughtInputs):
             change = optimum[size:]
             largest_change = float(np.abs(change - centre).max())
             centre = change
-        result = self.judged(x, centre, rounds)
-        if result.met:
+        result = replace(self.judged(x, centre, rounds), cut_short=cut_short)
+        if result.met or cut_short:
             return result
         return self._polished(result, x, centre)
 

@@ -302,3 +302,18 @@ def test_a_search_that_takes_long_begins_no_further_starts(monkeypatch: pytest.M
     assert len(starts) == 1
     assert starts[0].startswith(f"start 2 of {module.STARTS + 1}, ")
     assert len(told) == 2
+
+
+def test_an_optimiser_that_runs_out_of_time_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The equilibrium at the inputs where it was is judged; no target is met by chance, and no minimum is claimed."""
+    module = importlib.import_module("cosserat_casadi.control.lifted_problem")
+    target = {"kind": "position", "rod": "rod", "position": [0.1, 0.0, 0.99]}
+    near = scene(push(force=[0.0, 0.0, 0.0]), inputs=["push.force"], targets=[target], accuracy={"tolerance": 1e-4})
+    assert not inverse(near).cut_short
+    monkeypatch.setitem(module.IPOPT, "max_wall_time", 1e-9)
+    found = inverse(near)
+    assert found.cut_short
+    assert found.solution.converged
+    assert not found.met
+    assert "The optimiser ran out of time" in found.solution.message
+    assert "It is a local minimum" not in found.solution.message
