@@ -38,7 +38,7 @@ from tests.conftest import case_files  # noqa: E402
 from tests.model import test_joint_coordinates as joint_coordinates  # noqa: E402
 from tests.model import test_joint_stops as joint_stops  # noqa: E402
 from tests.model import test_joints_of_bodies as joints_of_bodies  # noqa: E402
-from tests.motion import transients  # noqa: E402
+from tests.motion import disk_chain, transients  # noqa: E402
 from tests.motion.stepping import moving_model, orders, stepped  # noqa: E402
 from tests.motion.test_loops_in_motion import swayed  # noqa: E402
 from tests.motion.test_reference_motions import reference  # noqa: E402
@@ -257,6 +257,11 @@ def literature() -> Iterator[Row]:
     turned = joint_stops.angles(timed.motion) - joint_stops.elastic_reference(timed.motion.times)
     in_rad = np.abs(turned) * timed.motion.model.scene.rods[0].length
     yield row_of(timed, "lever on an elastic stop, angle", "Lagrange's equations, RK45", in_rad, 1e-7)
+
+    timed = simulated(disk_chain.robot(tolerance=1e-4))
+    coarse, fine = (disk_chain.tip_of_chain(links, timed.motion.times) for links in (20, 40))
+    distances = np.linalg.norm(in_plane(timed.motion) - (fine + (fine - coarse) / 3), axis=1)
+    yield row_of(timed, "five disks, a tendon straight between them", "rigid links, LSODA, Richardson", distances, 1e-5)
 
     timed = simulated(transients.flying_in_plane(tolerance=1e-3))
     distances = np.linalg.norm(in_plane(timed.motion) - transients.FLYING_LOWER, axis=1)
