@@ -2,8 +2,8 @@
 
 The links are L/N long and have half of their mass at each end; hinges between them have the stiffness EI N/L and the
 clamp has twice that, since it is half a link away. A disk is a mass and an inertia at a joint, turned by the mean of
-both links. The chain is a second formulation: angles instead of strains, Lagrange's equations instead of the balance of a
-section, and no spectral integration. Its error falls with 1/N².
+both links. The chain is a second formulation: angles instead of strains, Lagrange's equations instead of the balance of
+a section, and no spectral integration. Its error falls with 1/N².
 """
 
 from __future__ import annotations
