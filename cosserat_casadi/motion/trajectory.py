@@ -174,8 +174,8 @@ class Motion(Result):
         v: their rates, likewise, 1/s; without meaning for multipliers and tensions.
         a: their second derivatives, likewise, 1/s².
         inputs: stacked inputs, shape (T, model.inputs.size).
-        error_estimate: estimated error of the tips' paths relative to the rods' lengths, of space and time together;
-            nan where none was made.
+        error_estimate: estimated error of the paths of tips, bases that move and bodies, and of sections between held
+            ends, relative to the rods' lengths, of space and time together; nan where none was made.
         statistics: what the time steps took.
         start: a sentence on how the motion was started.
         interpolant: the state at a time between the first and the last: the dense output of the steps.

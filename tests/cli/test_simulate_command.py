@@ -99,7 +99,7 @@ def test_all_files_are_written_and_the_report_is_in_words(
         "tip position, m",
         "start: At rest in the equilibrium",
         "steps: 57 of 0.00025 to 0.03 s, 3 rejected; 211 iterations, 18 Jacobians",
-        "estimated error of the tips' paths: 6.0e-06 m, 3.0e-05 of the length",
+        "estimated error of the paths: 6.0e-06 m, 3.0e-05 of the length",
         "energies balance to",
         "wire: modes [3, 3, 3], 8 intervals",
         "wrote m.json",

@@ -64,7 +64,7 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     if np.isfinite(motion.error_estimate):
         longest = max(rod.properties.length for rod in motion.model.discrete.rods.values())
         metres = motion.error_estimate * longest
-        yield f"estimated error of the tips' paths: {metres:.1e} m, {motion.error_estimate:.1e} of the length"
+        yield f"estimated error of the paths: {metres:.1e} m, {motion.error_estimate:.1e} of the length"
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
