@@ -16,7 +16,7 @@ from cosserat_casadi.motion.pose_series import body_poses, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.colours import BODIES, disk_colour
 from cosserat_casadi.plots.scene_view import View, view_of
-from cosserat_casadi.plots.scenery import base_style, body_corners, disk_rim, joint_style
+from cosserat_casadi.plots.scenery import base_style, body_outline, disk_rim, joint_style
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
 """Abscissae at which rods are drawn."""
@@ -33,7 +33,7 @@ class MovingShapes:
         colours: of the outlines, by the same words.
         courses: courses of cables and chambers by actuator, shape (T, k, 3), m.
         followed: points whose paths are drawn, by the name of their rod or body, shape (T, 3), m.
-        marks: of joints and clamps: how each is marked, and its place, shape (T, 1, 3), m.
+        marks: of joints and clamps: style of the marker, and its place, shape (T, 1, 3), m.
     """
 
     times: FloatArray
@@ -94,20 +94,20 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
     unloaded = model.discrete.unloaded
     # A rod that nothing holds has no mark.
     marks = [(base_style(unloaded, rod.name), rods[rod.name][:, :1]) for rod in model.scene.rods if not rod.base.free]
-    bodies = {body.name: body_poses(model, body.name, x, inputs) for body in model.scene.bodies if not body.thickness}
+    bodies = {body.name: body_poses(model, body.name, x, inputs) for body in model.scene.bodies}
+    disks = {body.name for body in model.scene.bodies if body.thickness is not None}
     for joint in model.scene.joints:
         for place in joint.places:
-            if place.body in bodies:
+            if place.body in bodies and place.body not in disks:
                 poses = bodies[place.body]
                 arms = rotations(poses.quaternion) @ np.array(place.position)
                 marks.append((joint_style(joint), (poses.position + arms)[:, None]))
     for body in model.scene.listed_bodies:
         poses = bodies[body.name]
         world_R_body = rotations(poses.quaternion)
-        corners = body_corners(model.scene, body)
-        closed = np.concatenate([corners, corners[:1]])
+        outline = body_outline(model.scene, body)
         colours[body.name] = BODIES
-        outlines[body.name] = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, closed)
+        outlines[body.name] = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, outline)
         followed[body.name] = poses.position
     for number, row in enumerate(model.scene.disks):
         sections = section_poses(model, row.rod, np.array(row.places), x, inputs)

@@ -24,7 +24,7 @@ from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import (
-    body_corners,
+    body_outline,
     draw_actuators,
     draw_bodies,
     draw_disks,
@@ -98,7 +98,7 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     draw_arrows(canvas, arrows)
     draw_targets(canvas, scene)
     canvas.label_axes()
-    bodies = [in_world(solution.body(body.name), body_corners(scene, body)) for body in scene.listed_bodies]
+    bodies = [in_world(solution.body(body.name), body_outline(scene, body)) for body in scene.listed_bodies]
     canvas.equalise(np.concatenate([shapes.points, *bodies]))
 
 

@@ -160,15 +160,14 @@ def draw_bodies(canvas: Canvas, solution: Solution) -> None:
 
 def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     pose = solution.body(body.name)
-    if body.thickness is not None:
-        canvas.line(in_world(pose, disk_rim(body)), color=BODIES, linewidth=1.6)
-        return
     scene = solution.model.scene
+    outline = in_world(pose, body_outline(scene, body))
+    if body.thickness is not None:
+        canvas.line(outline, color=BODIES, linewidth=1.6)
+        return
     joints = [(joint, place.position) for joint in scene.joints for place in joint.places if place.body == body.name]
     points = in_world(pose, np.array([position for _, position in joints]))
-    corners = in_world(pose, body_corners(scene, body))
-    canvas.polygon(corners, BODIES)
-    outline = np.concatenate([corners, corners[:1]])
+    canvas.polygon(outline[:-1], BODIES)
     canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
     for (joint, _), point in zip(joints, points, strict=True):
         canvas.markers(point[None], **joint_style(joint))
@@ -187,6 +186,14 @@ def joint_style(joint: Joint) -> dict[str, Any]:
 def places_in(scene: Scene, body: str) -> FloatArray:
     """Places of the joints of a body in its axes, shape (k, 3), m."""
     return np.array([place.position for joint in scene.joints for place in joint.places if place.body == body])
+
+
+def body_outline(scene: Scene, body: Body) -> FloatArray:
+    """Line that stands for a body, in its own axes, shape (k, 3), m: the rims of a disk, else a closed polygon."""
+    if body.thickness is not None:
+        return disk_rim(body)
+    corners = body_corners(scene, body)
+    return np.concatenate([corners, corners[:1]])
 
 
 def body_corners(scene: Scene, body: Any) -> FloatArray:

@@ -253,3 +253,18 @@ def test_marks_of_joints_move_with_their_bodies(platform: Motion) -> None:
         poses = platform.body("platform")
         turned = Rotation.from_quat(np.roll(poses.quaternion, -1, axis=1)).apply(joint.position)
         assert_allclose(places[:, 0], poses.position + turned, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("thickness", [0.0, 0.01])
+def test_a_disk_on_a_joint_moves_as_its_rims(thickness: float) -> None:
+    disk = {"name": "disk", "mass": 0.05, "radius": 0.06, "thickness": thickness}
+    joint = {"body": "disk", "rod": "rod", "kind": "fixed"}
+    motion = motion_of(scene(push(), bodies=[disk], joints=[joint]), {"push.force": [-0.6, 0.4, 0.3]})
+    shapes = moving_shapes(motion.model, motion.times, motion.x, motion.inputs)
+    assert [style for style, _ in shapes.marks] == [CLAMP]
+    poses = motion.body("disk")
+    rotations = Rotation.from_quat(np.roll(poses.quaternion, -1, axis=1))
+    for row, rotation in enumerate(rotations):
+        in_disk = rotation.inv().apply(shapes.outlines["disk"][row] - poses.position[row])
+        assert_allclose(np.hypot(in_disk[:, 0], in_disk[:, 1]), 0.06, rtol=0, atol=1e-14)
+        assert_allclose(np.abs(in_disk[:, 2]), thickness / 2, rtol=0, atol=1e-14)
