@@ -814,5 +814,5 @@ def test_check_names_joints_that_hold_a_loop_in_its_plane_alone(tmp_path: Path) 
     (tmp_path / "slide.toml").write_text(LOOPS["slide at the tip"])
     flat, spatial = (cosserat("check", name, cwd=tmp_path) for name in ("crank.toml", "slide.toml"))
     assert flat.returncode == spatial.returncode == 0, flat.stderr + spatial.stderr
-    assert "joints[2] closes a loop in a plane and holds nothing across it" in " ".join(flat.stdout.split())
+    assert "Note: end closes a loop in a plane and holds nothing across it" in " ".join(flat.stdout.split())
     assert "holds nothing across it" not in " ".join(spatial.stdout.split())

@@ -94,11 +94,15 @@ def _notes_on_orientations(model: Model) -> Iterator[str]:
 
 def _notes_on_planes(model: Model) -> Iterator[str]:
     """Sentences on joints that close a loop, and hold it in a plane alone."""
-    whole = {f"joints[{i}]": JOINT_KINDS[one.kind].directions(one).size for i, one in enumerate(model.scene.joints)}
+    joints = {f"joints[{i}]": joint for i, joint in enumerate(model.scene.joints)}
     for placed in model.discrete.constraints:
-        if placed.closes_assembly and placed.constraint.size < whole.get(placed.where, 0):
+        joint = joints.get(placed.where)
+        if joint is None or not placed.closes_assembly:
+            continue
+        if placed.constraint.size < JOINT_KINDS[joint.kind].directions(joint).size:
+            name = joint.name or placed.where
             yield (
-                f"{placed.where} closes a loop in a plane and holds nothing across it; base_wrench has all loads "
+                f"{name} closes a loop in a plane and holds nothing across it; base_wrench has all loads "
                 "across the plane at the base of the rod, however its joints share them."
             )
 
