@@ -13,7 +13,7 @@ import typer
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import MESHES, are_one_file, check_writable
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import case_layout, ends_by_column, no_column, read_load_cases, read_range
+from cosserat_casadi.model.load_cases import case_layout, ends_by_column, no_column, read_range
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.reading import files_read
 
@@ -51,7 +51,7 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
     Several ranges are a grid, and every row of a file meets each of its values.
 
     Args:
-        over: file of rows.
+        over: file of rows, or of a grid.
         ranges: texts of ``--range``.
         scene: has their columns.
 
@@ -64,16 +64,14 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
     ranges = ranges or []
     if over is None and all(read_range(text).count is None for text in ranges):
         return None
-    layout = case_layout(scene)
-    if not ranges:
-        assert over is not None
-        return read_load_cases(over, layout)
     # Imported here: few commands have a grid.
     from cosserat_casadi.sweeps.table import crossed, range_table, read_table
 
-    table = range_table(ranges)
-    if over is not None:
-        table = crossed(read_table(over), table)
+    if over is None:
+        table = range_table(ranges)
+    else:
+        table = crossed(read_table(over), range_table(ranges)) if ranges else read_table(over)
+    layout = case_layout(scene)
     problems = [
         no_column(table.where, column, layout.columns) for column in table.columns if column not in layout.columns
     ]

@@ -1,4 +1,4 @@
-"""Sets of load cases: rows of a CSV file, or points spread evenly over ranges of inputs and parameters.
+"""Load cases: their columns, and points spread evenly over ranges of inputs and parameters.
 
 A column is ``load.field.axis`` with axis x, y or z, ``load.field.axis.degree`` for a Legendre coefficient beyond the
 constant one, ``actuator.field`` for a number, or a number of a parameter, spelled as in the scene's list of them. What
@@ -11,7 +11,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +22,7 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene.input_fields import column_suffixes
-from cosserat_casadi.scene.number_table import finite_number, read_numbers
+from cosserat_casadi.scene.number_table import finite_number
 
 
 def column_indices(layout: InputLayout) -> dict[str, int]:
@@ -93,24 +92,6 @@ def case_layout(scene: scenes.Scene) -> CaseLayout:
     """
     refuse_tubes(scene)
     return CaseLayout(input_layout(scene), parameter_layout(scene))
-
-
-def read_load_cases(path: Path, layout: CaseLayout) -> FloatArray:
-    """Load cases of a CSV file with a header, shape (count, size of a case), SI units.
-
-    Raises:
-        SceneError: with every fault: a column that is no input, a row of another length, a cell that is no finite
-            number.
-    """
-    header, numbers, _, problems = read_numbers(path)
-    indices = layout.columns
-    unknown = [column for column in header if column not in indices]
-    problems = [no_column(str(path), column, indices) for column in unknown] + problems
-    if problems:
-        raise SceneError(*problems)
-    cases = np.tile(layout.default, (len(numbers), 1))
-    cases[:, [indices[column] for column in header]] = numbers
-    return cases
 
 
 @dataclass(frozen=True)

@@ -416,6 +416,29 @@ def test_counts_of_ranges_are_a_grid_of_load_cases_beside_files(wire: Path) -> N
         asked_cases(None, ["pull.force.x=0:1:3"], scene)
 
 
+def test_load_cases_of_a_file_are_its_rows_or_its_grid(wire: Path) -> None:
+    scene = read_scene(wire / "wire.toml")
+    layout = case_layout(scene)
+    (wire / "loads.csv").write_text("push.force.z, push.force.x\n-1.5, 2\n\n0,1e-3\n")
+    (wire / "grid.toml").write_text(
+        '"push.force.z" = [-1.5, 0.0]\n"push.force.x" = { from = 0.0, to = 1.0, count = 2 }'
+    )
+    columns = [layout.columns["push.force.z"], layout.columns["push.force.x"]]
+    expected = {
+        "loads.csv": [[-1.5, 2.0], [0.0, 1e-3]],
+        "grid.toml": [[-1.5, 0.0], [-1.5, 1.0], [0.0, 0.0], [0.0, 1.0]],
+    }
+    for file, values in expected.items():
+        cases = asked_cases(wire / file, None, scene)
+        assert cases is not None
+        np.testing.assert_allclose(cases[:, columns], values, rtol=0, atol=0)
+        others = np.delete(np.arange(cases.shape[1]), columns)
+        np.testing.assert_array_equal(cases[:, others], np.tile(layout.default[others], (len(values), 1)))
+    (wire / "wrong.csv").write_text("pull.force.x\n1\n")
+    with pytest.raises(SceneError, match=r"wrong\.csv: 'pull\.force\.x' is not an input or a parameter"):
+        asked_cases(wire / "wrong.csv", None, scene)
+
+
 def test_tune_takes_the_grid_that_a_sweep_takes(wire: Path) -> None:
     options = ("--tolerance", "1e-3", "--range", "push.force.x=-0.1:0.2:3", "--range", "push.force.y=-0.1:0.1:2")
     done = cosserat("tune", "wire.toml", "--output", "tuned.toml", *options, cwd=wire)

@@ -1,8 +1,6 @@
-"""Sets of load cases: columns, refusals, points that cover a box."""
+"""Load cases: columns, refusals, points that cover a box."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_cases import CaseLayout, column_indices, read_load_cases, spread
+from cosserat_casadi.model.load_cases import CaseLayout, column_indices, spread
 from tests.scenes import WIND, push, scene
 
 
@@ -26,37 +24,6 @@ def test_columns_are_named_in_the_order_of_the_inputs(layout: InputLayout) -> No
     stacked = layout.pack({"wind.force": [[0.0, 0.0], [0.7, 0.9], [0.0, 0.0]]})
     assert stacked[places["wind.force.y"]] == 0.7
     assert stacked[places["wind.force.y.1"]] == 0.9
-
-
-def test_rows_of_a_csv(layout: InputLayout, tmp_path: Path) -> None:
-    path = tmp_path / "loads.csv"
-    path.write_text("push.force.x, wind.force.y.1\n-1.5, 2\n\n0,1e-3\n")
-    cases = read_load_cases(path, CaseLayout(layout))
-    places = column_indices(layout)
-    assert cases.shape == (2, layout.size)
-    assert_allclose(cases[:, places["push.force.x"]], [-1.5, 0.0], rtol=0, atol=0)
-    assert_allclose(cases[:, places["wind.force.y.1"]], [2.0, 1e-3], rtol=0, atol=0)
-    assert_allclose(cases[:, places["push.force.y"]], 2.0, rtol=0, atol=0)
-
-
-def test_every_fault_of_a_csv_is_named(layout: InputLayout, tmp_path: Path) -> None:
-    path = tmp_path / "loads.csv"
-    path.write_text("push.force.x,push.force.x,pull.force.x\n1,2,3\n1,2\nnan,x,1\n")
-    with pytest.raises(SceneError) as refused:
-        read_load_cases(path, CaseLayout(layout))
-    said = str(refused.value)
-    for words in ("'pull.force.x' is not an input", "push.force.x twice", "line 3", "2 values", "'nan'", "'x'"):
-        assert words in said
-
-
-@pytest.mark.parametrize("text", ["", "push.force.x\n"])
-def test_a_csv_without_cases_is_refused(layout: InputLayout, tmp_path: Path, text: str) -> None:
-    path = tmp_path / "loads.csv"
-    path.write_text(text)
-    with pytest.raises(SceneError, match="holds no row of numbers"):
-        read_load_cases(path, CaseLayout(layout))
-    with pytest.raises(SceneError, match="cannot be read"):
-        read_load_cases(tmp_path / "none.csv", CaseLayout(layout))
 
 
 def test_points_cover_the_box_evenly(layout: InputLayout) -> None:

@@ -115,6 +115,24 @@ def test_ranges_stand_beside_every_row_of_a_file(tmp_path: Path, on_disc: bool) 
     assert [table.where_of(row) for row in range(4)] == [f"{file}, line {line}" for line in (2, 2, 4, 4)]
 
 
+def test_every_fault_of_a_csv_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "loads.csv"
+    path.write_text("push.force.x,push.force.x,pull.force.x\n1,2,3\n1,2\nnan,x,1\n")
+    with pytest.raises(SceneError) as refused:
+        read_table(path)
+    said = str(refused.value)
+    for words in ("push.force.x twice", "line 3", "2 values", "'nan'", "'x'"):
+        assert words in said
+
+
+@pytest.mark.parametrize("text", ["", "push.force.x\n"])
+def test_a_csv_without_rows_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "loads.csv"
+    path.write_text(text)
+    with pytest.raises(SceneError, match="holds no row of numbers"):
+        read_table(path)
+
+
 def test_files_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "bad.toml").write_text("a = [")
     (tmp_path / "long.toml").write_text(f"a = 1{5000 * '0'}")

@@ -179,7 +179,8 @@ def export(
         typer.Option("--cuda", help="With batches on a GPU: experimental, never run on one, of unmeasured speed."),
     ] = False,
     over: Annotated[
-        Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
+        Path | None,
+        typer.Option(help="Load cases whose exact contacts the sources know: a grid (TOML), or rows (CSV)."),
     ] = None,
     ranges: Ranges = None,
     samples: Annotated[

@@ -33,7 +33,7 @@ def tune(
     scene: SceneFile,
     output: Annotated[Path, typer.Option(help="Write the scene with its discretisation fixed here (TOML).")],
     tolerance: Annotated[float | None, typer.Option(help="Wanted error of the tip poses; else the scene's.")] = None,
-    over: Annotated[Path | None, typer.Option(help="Load cases: CSV with columns such as push.force.x.")] = None,
+    over: Annotated[Path | None, typer.Option(help="Load cases: a grid (TOML), or rows (CSV).")] = None,
     ranges: Ranges = None,
     samples: Annotated[
         int | None,
