@@ -137,6 +137,26 @@ def test_what_is_drawn_and_told_is_what_solve_finds(made: Callable[[], Scene]) -
     assert touching[0] and not all(touching)
 
 
+def test_the_last_equilibrium_stays_where_there_is_none() -> None:
+    solution, model, texts = scene_of(ball_on_table)
+    count = len(drawn_numbers(model, solution))
+    page = Page(texts, model, count)
+    assert not page.library.page_stays()
+    page.move(np.array([0.0, 0.0, -0.9]))
+    before = page.array("drawn", count + 3)
+    assert page.library.page_contacts() == 1
+    page.library.page_inputs()[2] = float("nan")
+    for word in ("track", "solve"):
+        assert getattr(page.library, f"page_{word}")() != 0
+    page.library.page_draw()
+    assert page.library.page_stays()
+    assert page.library.page_contacts() == 1
+    assert_allclose(page.array("drawn", count + 3), before, rtol=0, atol=0)
+    page.library.page_inputs()[2] = 0.2
+    assert page.library.page_solve() == 0
+    assert not page.library.page_stays()
+
+
 @pytest.mark.slow
 @ALL
 def test_the_module_finds_the_same(made: Callable[[], Scene], tmp_path: Path) -> None:

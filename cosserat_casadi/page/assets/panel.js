@@ -213,10 +213,11 @@ class Panel {
 
   // Outcome and stability, in words and in colour.
   get verdict() {
-    const { found, text, anew, loadFactor } = this.state;
+    const { found, text, anew, loadFactor, stays } = this.state;
     if (!found) {
       const share = loadFactor < 1 ? ` Drawn faintly: the last equilibrium, at ${(100 * loadFactor).toPrecision(2)} % of the load.` : "";
-      return ["bad", "✕ No equilibrium shown", text + share];
+      const last = stays ? " Drawn faintly: the last equilibrium." : "";
+      return ["bad", "✕ No equilibrium shown", text + share + last];
     }
     const beginning = this.facts.beginning || "the unloaded one";
     const jump = anew ? ` The robot could not be followed here: it has jumped, and was solved anew from ${beginning}.` : "";

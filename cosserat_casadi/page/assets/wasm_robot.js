@@ -41,7 +41,7 @@ class WasmRobot {
     return this.state(status, anew);
   }
 
-  // The same from the unloaded robot, whatever was before.
+  // The same from where a solve begins, whatever was before.
   async reset(inputs) {
     this.view(this.library.inputs(), inputs.length).set(inputs);
     return this.state(this.library.solve(), false);
@@ -56,6 +56,7 @@ class WasmRobot {
       text: this.string(this.library.text(status)),
       anew,
       loadFactor: this.library.load_factor(),
+      stays: Boolean(this.library.stays && this.library.stays()),
       iterations: this.library.iterations(),
       drawn: this.view(this.library.drawn(), this.drawnCount).slice(),
       contacts: this.contacts(),
