@@ -39,7 +39,9 @@ from cosserat_casadi.motion.simulate import (
     ended_early,
     factor_for,
     hangs_on_rounding,
+    is_struck,
     judged,
+    left_by,
     motion_of,
     not_started,
     started,
@@ -243,8 +245,7 @@ class _Search:
 
         They have all lengths, so that errors fall slowly on any number of modes.
         """
-        struck = any(event.kind == "impact" for event in self.last.history.events)
-        if self.is_damped or not struck or len(self.levels) < 2:
+        if self.is_damped or not is_struck(self.last.history) or len(self.levels) < 2:
             return False
         return self.foreseen(self.ladder[-1], ORDER_OF_WAVES) > self.tolerance
 
@@ -413,7 +414,7 @@ def _is_erratic(search: _Search) -> bool:
         paths = coarse_paths
     if len(distances) < 2 or not hangs_on_rounding(level.history, distances[0], distances[1], search.tolerance):
         return False
-    search.time_error = distances[0]
+    search.time_error = left_by(TIGHTER, level.history) * distances[0]
     return True
 
 

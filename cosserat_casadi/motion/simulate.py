@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
@@ -66,6 +66,12 @@ LEAST_SLOPE = 0.3
 """Power that it is at least taken to go with, where two motions tell an error.
 
 It is 0.8 in the mean, but less between some motions: steps of one may happen to suit the motion.
+"""
+
+LEAST_SLOPE_AFTER_IMPACTS = 0.08
+"""The same of motions with impacts: what errs little before one may err much after some more.
+
+Until steps tell the waves along a rod, motions may be nearer to each other than to the true one.
 """
 
 FEW_STEPS = 10.0
@@ -264,14 +270,13 @@ class Simulator:
                 break
             timed = self.finer(timed, factor)
             distance = timed.distance
-            if hangs_on_rounding(timed.history, distance, before, tolerance):
-                return replace(timed, error=distance)
-            if timed.error <= tolerance:
+            if timed.error <= tolerance or hangs_on_rounding(timed.history, distance, before, tolerance):
                 break
             # Far apart after impacts, the next two motions are compared with these: their steps are to differ alike.
+            # Of two that differ less after impacts both may err by the same.
             far = hangs_on_rounding(timed.history, distance, 0.0, tolerance)
             before = distance if far else np.inf
-            factor = TIGHTER if far else factor_for(timed.error, tolerance)
+            factor = TIGHTER if is_struck(timed.history) else factor_for(timed.error, tolerance)
         return timed
 
     def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
@@ -283,7 +288,7 @@ class Simulator:
             # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
             return self.told_by_half(fine, tolerance)
         distance = path_distance(self.paths(timed.history), self.paths(fine))
-        left = left_by(factor) * (1.0 + FEW_STEPS / max(steps, 1))
+        left = left_by(factor, fine) * (1.0 + FEW_STEPS / max(steps, 1))
         return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:
@@ -373,13 +378,18 @@ def hangs_on_rounding(history: History, distance: float, before: float, toleranc
         before: the same of two that are TIGHTER times as coarse; infinite where it is not known.
         tolerance: error of the paths allowed, over the length.
     """
-    struck = any(event.kind == "impact" for event in history.events)
-    return struck and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
+    return is_struck(history) and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
 
 
-def left_by(factor: float) -> float:
+def is_struck(history: History) -> bool:
+    """Whether a motion has impacts."""
+    return any(event.kind == "impact" for event in history.events)
+
+
+def left_by(factor: float, finer: History) -> float:
     """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances."""
-    return 1.0 / float(factor**LEAST_SLOPE - 1.0)
+    slope = LEAST_SLOPE_AFTER_IMPACTS if is_struck(finer) else LEAST_SLOPE
+    return 1.0 / float(factor**slope - 1.0)
 
 
 def factor_for(error: float, tolerance: float) -> float:

@@ -14,7 +14,7 @@ from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion import simulate as motion_simulate
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion
-from cosserat_casadi.motion.simulate import LEAST_TIGHTENING, TIGHTER, Simulator, TimedHistory, started
+from cosserat_casadi.motion.simulate import LEAST_SLOPE, LEAST_TIGHTENING, TIGHTER, Simulator, TimedHistory, started
 from cosserat_casadi.motion.tip_paths import path_distance
 from tests.families import mostly_slow
 from tests.motion import transients
@@ -156,6 +156,64 @@ def test_estimates_are_above_the_error(scene: str) -> None:
         history: Any = motion.interpolant
         found = exact.paths(history.__self__)
         assert path_distance(found, reference) <= motion.error_estimate
+
+
+def dropped(
+    material: tuple[float, float, float], damping: float, rise: float, below: float, duration: float, **obstacle: Any
+) -> dict[str, Any]:
+    """A rod on few modes that falls on an obstacle of no width.
+
+    Args:
+        material: Young's modulus, Pa, density, kg/m³, and radius, m.
+        damping: retardation time, s.
+        rise: of the rod, by its way along x.
+        below: depth of the floor under its base, m.
+        duration: of the motion, s.
+        obstacle: changes of the floor.
+    """
+    modulus, density, radius = material
+    rod = {
+        "name": "rod",
+        "length": 0.4,
+        "strain": "planar",
+        "material": {"youngs_modulus": modulus, "poisson_ratio": 0.3, "density": density},
+        "section": {"shape": "circle", "radius": radius},
+        "base": {"position": [0, 0, 0], "tangent": [1, 0, rise], "free": True},
+    }
+    if damping > 0.0:
+        rod["damping"] = {"retardation_time": damping}
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, -below], "normal": [0, 0, 1], **obstacle}
+    return {
+        "schema": 1,
+        "accuracy": {"modes": 4, "nodes": 10},
+        "rods": [rod],
+        "loads": [{"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}],
+        "obstacles": [floor],
+        "simulation": {"duration": duration, "frames": 2, "start": "unloaded"},
+    }
+
+
+STEEL = (2e11, 7800.0, 4e-3)
+SOFT = (5e6, 1100.0, 8e-3)
+
+STRUCK: dict[str, tuple[dict[str, Any], float, float]] = {
+    "stiff rubber": (dropped((5e8, 1100.0, 8e-3), 0.0, 0.3, 0.02, 0.12), 1e-2, 1e-4),
+    "soft rubber": (dropped(SOFT, 1e-3, 0.2, 0.04, 0.2), 1e-2, 1e-5),
+    "aluminium": (dropped((7e10, 2700.0, 3e-3), 1e-5, -0.4, 0.18, 0.2), 10.0**-3.5, 1e-6),
+    "bouncing": (dropped(STEEL, 1e-4, 0.2, 0.05, 0.3, restitution=0.5), 1e-2, 1e-5),
+}
+"""Scenes by name, with the step tolerances of the first of two motions and of a far more exact one."""
+
+
+@pytest.mark.parametrize("scene", mostly_slow(STRUCK, quick=["stiff rubber"]))
+def test_estimates_of_rods_that_are_struck_are_above_the_error(scene: str) -> None:
+    """Told as of motions without impacts it was too small by factors of 2 to 4.6."""
+    tables, first, exact = STRUCK[scene]
+    simulator = simulator_on(scene_from_dict(tables))
+    told = simulator.finer(TimedHistory(simulator.controlled(first), float("nan"), first), TIGHTER)
+    error = path_distance(simulator.paths(told.history), simulator.paths(simulator.controlled(exact)))
+    plainly = told.distance / (TIGHTER**LEAST_SLOPE - 1.0)
+    assert 1.2 * plainly < error < told.error
 
 
 def test_steps_of_a_model_are_made_more_exact_until_they_agree() -> None:
