@@ -426,7 +426,7 @@ def _erratic(search: _Search) -> Motion:
 
 def _given_up(search: _Search) -> Motion:
     """The motion of the last level, where those on more modes would come near to it too slowly."""
-    motion = _judged(search, search.last, search.foreseen(search.last.modes, UNKNOWN_ORDER), [])
+    motion = _judged(search, search.last, search.space_error + TIME_SHARE * search.tolerance, [])
     fewer, last = search.levels[-2:]
     told = UNDAMPED.format(fewer=fewer.modes, more=last.modes, distance=last.distance, most=search.ladder[-1])
     return replace(motion, message=f"{motion.message} {told}")
