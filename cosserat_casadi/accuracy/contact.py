@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 
 import numpy.typing as npt
 
@@ -16,7 +17,7 @@ from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts, with_contact_error
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
-from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact, why_unsettled
+from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact, stays_unmet, why_unsettled
 from cosserat_casadi.equilibrium.contact.contact_state import state_in
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
@@ -28,9 +29,6 @@ LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
 
 FINER_MODES = 3
 """Modes that are added to those of the user to estimate their error."""
-
-STAYING = 0.9
-"""Share of a depth on one level of modes, from which on the depth on the next level is as large."""
 
 MOST_FAILURES = 1
 """Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""
@@ -61,7 +59,9 @@ def solve_contact_scene(
         if report is not None:
             report(f"{modes} modes")
         start = coarse if coarse is not None and coarse.converged else None
-        fine = solve_contact(scene, Grids(chosen), values, start=start, progress=progress)
+        # Modes that a scene fixes are all that there are.
+        unmet = 0.0 if scene.accuracy.fixed else _unmet(start)
+        fine = solve_contact(scene, Grids(chosen), values, start=start, progress=progress, unmet_before=unmet)
         failures += not fine.converged
         if failures > MOST_FAILURES:
             return fine
@@ -76,7 +76,8 @@ def solve_contact_scene(
             assert judged.error_estimate is not None
             if scene.accuracy.fixed or judged.error_estimate <= tolerance:
                 return replace(judged, iterations=fine.iterations)
-            if _stays_inside(coarse, fine):
+            if stays_unmet(equilibrium_in(fine), unmet, tolerance):
+                # Other contacts should be there, and none were found.
                 why = why_unsettled(scene, [state_in(fine.model.scene)])
                 unresolved = judged.unresolved()
                 return replace(unresolved, iterations=fine.iterations, message=unresolved.message + why)
@@ -89,10 +90,9 @@ def solve_contact_scene(
     return coarse.unresolved()
 
 
-def _stays_inside(coarse: Solution, fine: Solution) -> bool:
-    """Whether more modes leave rods as deep inside obstacles: other contacts should be there, and none were found."""
-    before, after = (equilibrium_in(solution).unmet() for solution in (coarse, fine))
-    return after > coarse.model.scene.accuracy.tolerance and after > STAYING * before
+def _unmet(solution: Solution | None) -> float:
+    """Error that the contacts of an equilibrium leave, as its ``unmet`` has it; infinite without an equilibrium."""
+    return inf if solution is None else equilibrium_in(solution).unmet()
 
 
 def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:

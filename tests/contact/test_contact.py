@@ -163,13 +163,12 @@ def wire() -> Solution:
     return solved(WIRE)
 
 
-def free_span() -> tuple[float, float, float]:
+def free_span(bending: float = 0.03, weight: float = 0.1 * 9.81, height: float = 0.08) -> tuple[float, float, float]:
     """Length of the span that hangs free, reaction where it meets the table, and x there, by shooting.
 
     θ′ = κ, EI κ′ = −F cos θ with F the vertical force of what is beyond a section on what is before it, F′ = w; at the
     table z = −h, θ = 0 and κ = 0: beyond it the rod is straight.
     """
-    bending, weight, height = 0.03, 0.1 * 9.81, 0.08
 
     def span(unknown: np.ndarray) -> np.ndarray:
         length, curvature, force = unknown
@@ -184,7 +183,9 @@ def free_span() -> tuple[float, float, float]:
         _, z, theta, kappa = span(unknown)
         return np.array([z + height, theta, kappa])
 
-    found = fsolve(missed, [0.6, -1.6, -0.35], xtol=1e-13)
+    # Of a beam with small slopes.
+    length = (72 * bending * height / weight) ** 0.25
+    found = fsolve(missed, [length, -weight * length**2 / (6 * bending), -2 * weight * length / 3], xtol=1e-13)
     assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)
     length, _, force = found
     return length, force + weight * length, span(found)[0]
@@ -283,6 +284,22 @@ def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     check_forces_sum(harder, np.array([0.0, 0.0, -3.3]))
     # No load grows from zero once more: a few steps from the old contacts.
     assert harder.iterations < 10
+
+
+def test_a_depth_that_few_modes_leave_beside_a_line_is_left_to_more_modes() -> None:
+    """On 5 modes the rod enters the table before it lies down: no other contacts are sought in place of the line."""
+    levels: list[str] = []
+    solution = solve(read_scene("examples/rod_on_table.toml"), report=levels.append)
+    assert isinstance(solution, Solution)
+    radius, length = 8e-3, 1.5
+    area = np.pi * radius**2
+    free, reaction, _ = free_span(2e6 * area * radius**2 / 4, 1100.0 * 9.81 * area, 0.15 - radius)
+    (contact,) = solution.contacts
+    assert_allclose(contact.start * length, free, rtol=0, atol=1e-6)
+    assert_allclose(contact.ends, [reaction, 0.0], rtol=0, atol=1e-6)
+    assert levels == ["5 modes", "7 modes", "9 modes"]
+    # Three states are solved; other contacts would take 440 steps more.
+    assert solution.iterations < 60
 
 
 TAPERED = TABLE.replace(

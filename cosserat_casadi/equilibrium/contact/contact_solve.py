@@ -34,6 +34,9 @@ from cosserat_casadi.numerics.progress import Progress
 LEAST_TOLERANCE = 1e-9
 """Depth and pull, relative, below which rounding decides."""
 
+STAYING = 0.9
+"""Share of what contacts leave unmet on coarser modes, from which on more modes do not mend it."""
+
 BESIDE_JOINT = 0.15
 """Distance from the joint of two rods, of a stretch that soft cushions hold off, within which it lies on both."""
 
@@ -47,6 +50,7 @@ def solve_contact(
     contacts: ContactState | None = None,
     newton: NewtonSettings | None = None,
     progress: Progress | None = None,
+    unmet_before: float = 0.0,
 ) -> Solution:
     """Find the contacts of a scene and its equilibrium.
 
@@ -59,6 +63,8 @@ def solve_contact(
         contacts: tried first from the start; by default the contacts of that.
         newton: limits of the solve of each state.
         progress: told the share of the load path that is done.
+        unmet_before: what contacts left unmet on coarser modes; where more modes mend it, contacts that hold to the
+            tolerance are enough.
     """
     bare = without_contacts(scene)
     given = input_layout(bare).pack(values)
@@ -66,7 +72,7 @@ def solve_contact(
     tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
-        near = settled_near(settling, start, contacts)
+        near = settled_near(settling, start, contacts, unmet_before)
         if near is not None:
             return judged(near, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
@@ -74,7 +80,12 @@ def solve_contact(
     first = first_state(cushioned)
     # Where thin bars cut through their cushions before the loads are full, the contacts there may hold all the same.
     guesses = _guesses(cushioned, first) if cushioned.converged else [(first, cushioned)]
-    found, holds = _held(settling, guesses, admits=lambda shape: not passes_through(cushioned, shape, deepest=inf))
+    found, holds = _held(
+        settling,
+        guesses,
+        admits=lambda shape: not passes_through(cushioned, shape, deepest=inf),
+        unmet_before=unmet_before,
+    )
     if not cushioned.converged and not holds:
         return replace(cushioned, iterations=settling.iterations)
     if found is None:
@@ -90,14 +101,19 @@ def solve_contact(
 
 
 def settled_near(
-    settling: Settling, start: Solution, contacts: ContactState | None = None
+    settling: Settling, start: Solution, contacts: ContactState | None = None, unmet_before: float = 0.0
 ) -> ContactEquilibrium | None:
     """The equilibrium to which contacts lead, those of a solution if none are named, from its shape.
 
-    None where none holds, or rods would pass through.
+    None where none holds, or rods would pass through. See :func:`solve_contact`.
     """
     state = state_in(start.model.scene) if contacts is None else contacts
-    found, holds = _held(settling, [(state, start)], admits=lambda shape: not passes_through(start, shape))
+    found, holds = _held(
+        settling,
+        [(state, start)],
+        admits=lambda shape: not passes_through(start, shape),
+        unmet_before=unmet_before,
+    )
     return found if holds else None
 
 
@@ -105,19 +121,29 @@ def _held(
     settling: Settling,
     guesses: Sequence[tuple[ContactState, Solution]],
     admits: Callable[[Solution], bool],
+    unmet_before: float,
 ) -> tuple[ContactEquilibrium | None, bool]:
     """Contacts that hold to the tolerance, as :meth:`Settling.run` finds them.
 
     Where points that enter an obstacle by less than the tolerance stand for a line the places of contact are further
     off: the depth is as the square of that distance. Then contacts are looked for from there that hold more closely.
+    Beside the ends of a line few modes leave a depth too, which more modes lessen.
     """
     found, holds = settling.run(guesses, admits)
-    if found is None or not holds or found.unmet() <= settling.tolerance:
+    if found is None or not holds:
+        return found, holds
+    lies = any(touch.is_line for touch in found.state.touches)
+    if not stays_unmet(found, unmet_before if lies else 0.0, settling.tolerance):
         return found, holds
     closer = replace(settling, tolerance=max(settling.tolerance**2, LEAST_TOLERANCE))
     closest, holds_closer = closer.run([(found.state, found.solution)], admits)
     settling.iterations = closer.iterations
     return (closest if holds_closer else found), True
+
+
+def stays_unmet(found: ContactEquilibrium, before: float, tolerance: float) -> bool:
+    """Whether contacts leave more than a tolerance unmet, and as much as those before on coarser modes."""
+    return found.unmet() > max(tolerance, STAYING * before)
 
 
 def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
