@@ -19,7 +19,7 @@ from cosserat_casadi.constraints.joint_coordinate import JointEffort
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -38,7 +38,7 @@ from cosserat_casadi.model.scene_constraints import PlacedConstraint
 from cosserat_casadi.model.scene_rods import written_base_pose
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
+from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, rod_mass, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.relaxation import Relaxation
 from cosserat_casadi.rod.rod_motion import FrameMotion, RodMotion, StrainRates
@@ -248,10 +248,7 @@ class System:
         if frame.body is not None:
             return frame.body.mass * frame.length**2 + float(np.trace(frame.body.inertia_matrix))
         rod = self.discrete.nominal.rods[name.name]
-        masses = section_masses(rod)
-        if masses is None:
-            return 0.0
-        return float(known(rod.node_lengths) @ masses.mass) * frame.length**2
+        return rod_mass(rod) * frame.length**2
 
     @cached_property
     def body_motions(self) -> dict[str, FrameMotion]:

@@ -6,10 +6,12 @@ neither depends on how long the motion is watched.
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.rod.inertia import section_masses
+from cosserat_casadi.rod.inertia import rod_mass
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.load_records import Gravity
 
@@ -42,8 +44,9 @@ def _time_of_swing(rod: DiscreteRod, tension_unit: float, carried: float) -> flo
         tension_unit: EI/ℓ² of it, N.
         carried: the mass at its other end, kg.
     """
-    masses = section_masses(rod)
+    mass = rod_mass(rod) + carried / RAYLEIGH
+    if mass == 0.0:
+        return inf
     length = float(rod.properties.length)
-    of_rod = 0.0 if masses is None else float(rod.grid.weights @ np.asarray(masses.mass, dtype=float).ravel()) * length
-    mass = of_rod + carried / RAYLEIGH
-    return float(2.0 * np.pi / SLOWEST_ROOT**2 * np.sqrt(mass * length / tension_unit)) or float("inf")
+    slowest_rate = SLOWEST_ROOT**2 * np.sqrt(tension_unit / (mass * length))
+    return float(2.0 * np.pi / slowest_rate)

@@ -61,6 +61,12 @@ class SectionMasses:
     second_moments: dict[int, Numbers]
 
 
+def rod_mass(rod: DiscreteRod) -> float:
+    """Mass of a rod, kg; 0 of a rod without mass."""
+    masses = section_masses(rod)
+    return 0.0 if masses is None else float(known(rod.node_lengths) @ known(masses.mass))
+
+
 def section_masses(rod: DiscreteRod, ratio: Ratio = None) -> SectionMasses | None:
     """Mass and second moments of a rod's sections and of masses fixed to them; None where nothing has mass.
 
