@@ -58,13 +58,19 @@ def nodes_for_turn(modes: int, turn: float) -> int:
     return nodes_for(modes) + ceil(turn / 2)
 
 
-def in_short_elements(scene: scenes.Scene) -> bool:
-    """Whether every rod is cut into short elements."""
+def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int, ...]:
+    """Modes of levels that are verified by the next one, as :func:`seeing_modes` has them.
+
+    Args:
+        scene: the scene.
+        of_short: modes of further levels below the usual ones, where every rod is cut into short elements.
+    """
     widths = np.concatenate([np.diff(element_ends(scene, rod.name)) for rod in scene.rods])
-    return bool(widths.max() <= SHORT + NARROWEST)
+    all_are_short = widths.max() <= SHORT + NARROWEST
+    return seeing_modes(scene, (*of_short, *VERIFIED_MODES) if all_are_short else VERIFIED_MODES)
 
 
-def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...] = VERIFIED_MODES) -> tuple[int, ...]:
+def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...]) -> tuple[int, ...]:
     """Modes of levels that are verified by the next one, two at least: none is blind to what is put along the rods.
 
     Args:
@@ -84,7 +90,7 @@ def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
 
     Args:
         scene: the scene.
-        modes: per strain component and element, one of :func:`seeing_modes`.
+        modes: per strain component and element, one of :func:`verified_modes`.
         turn: largest angle through which an element turned on the level before, rad; 0 on the first.
     """
     nodes = nodes_for_turn(modes, turn) + SPARE_NODES

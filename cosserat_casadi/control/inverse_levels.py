@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import VERIFIED_MODES, in_short_elements, seeing_modes, verified_model
+from cosserat_casadi.accuracy.levels import verified_model, verified_modes
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve
 from cosserat_casadi.equilibrium.answer_error import estimated
 from cosserat_casadi.equilibrium.contact.contact_answer_error import beside_finer, estimated_in_contact
@@ -68,8 +68,7 @@ class LevelsOfRods:
     @property
     def _modes(self) -> tuple[int, ...]:
         """Modes of all levels, the first of which nothing verifies."""
-        usual = (*MODES_OF_SHORT, *VERIFIED_MODES) if in_short_elements(self.scene) else VERIFIED_MODES
-        return seeing_modes(self.scene, usual)
+        return verified_modes(self.scene, MODES_OF_SHORT)
 
     def finer(self, count: int, model: Model, solutions: Sequence[Solution]) -> Model:
         """The model of a level, on intervals enough for how far the rods turned on the level before."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from cosserat_casadi.accuracy.levels import SPARE_NODES, VERIFIED_MODES, in_short_elements, seeing_modes
+from cosserat_casadi.accuracy.levels import SPARE_NODES, verified_modes
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
@@ -434,8 +434,7 @@ def _given_up(search: _Search) -> Motion:
 
 def _ladder(scene: Scene) -> tuple[int, ...]:
     """Modes of every strain in each element, level by level."""
-    usual = (FEW_MODES, *VERIFIED_MODES) if in_short_elements(scene) else VERIFIED_MODES
-    return seeing_modes(scene, usual)
+    return verified_modes(scene, (FEW_MODES,))
 
 
 def _on_level(search: _Search, simulator: Simulator) -> History:
