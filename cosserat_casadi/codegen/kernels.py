@@ -101,14 +101,16 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
         columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
         if columned is not None:
             return columned
-    elif not _literal(model):
-        longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
-        straight = scalar(entry.function, entry.kernel, longest)
-        # Without calls of intervals there is nothing to make together.
-        if straight is not None and straight.find_functions(0):
-            with suppress(UnknownOperationError):
-                return scalars_in_c(straight, dense(entry.function, entry.kernel))
-    return kernel(model, entry.function, entry.kernel)
+        return kernel(model, entry.function, entry.kernel)
+    longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
+    straight = None if _literal(model) else scalar(entry.function, entry.kernel, longest)
+    if straight is None:
+        return dense(entry.function, entry.kernel)
+    # Without calls of intervals there is nothing to make together.
+    if straight.find_functions(0):
+        with suppress(UnknownOperationError):
+            return scalars_in_c(straight, dense(entry.function, entry.kernel))
+    return straight if straight.n_instructions() <= STRAIGHT else dense(entry.function, entry.kernel)
 
 
 def by_columns(
