@@ -20,7 +20,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from doc_tables import put, table
+from doc_tables import put, rows_of, table
 from motion_rivals import INTERVAL, LENGTH, LIMITS, REPEATS, TIMES, Paths, Rival, Run, prepared, rivals
 from rich.progress import Progress
 
@@ -163,8 +163,7 @@ def cells(row: Rival, true: Paths) -> list[str]:
 
 def merged(lines: list[list[str]], only: Collection[str]) -> list[list[str]]:
     """Rows of the table on the page, of which those of some packages are replaced by new ones."""
-    on_page = DOCS.joinpath("accuracy.md").read_text().split(BEGIN)[1].split(END)[0].splitlines()
-    old = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in on_page if line.startswith("| ")][2:]
+    old = rows_of(DOCS / "accuracy.md", BEGIN, END)
     both = [line for line in old if line[0] not in only] + lines
     return [line for package in (*HERE, *LIMITS) for line in both if line[0] == package]
 

@@ -20,7 +20,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from doc_tables import put, table
+from doc_tables import put, rows_of, table
 from motion_rivals import Paths, Rival, Run, prepared
 from rich.progress import Progress
 
@@ -690,9 +690,7 @@ def drawn(lines: Sequence[Sequence[str]]) -> Any:
 
 def on_page(name: str) -> list[list[str]]:
     """Rows of a motion that the page has."""
-    text = DOCS.joinpath("accuracy.md").read_text().split(BEGIN)[1].split(END)[0]
-    rows = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in text.splitlines()]
-    return [row for row in rows if row[0] == CASES[name].title]
+    return [row for row in rows_of(DOCS / "accuracy.md", BEGIN, END) if row[0] == CASES[name].title]
 
 
 def main(
