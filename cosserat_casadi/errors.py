@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -73,6 +75,15 @@ class SceneError(CosseratError):
         if not all(problem.where.startswith("--") or problem.where in ARGUMENTS for problem in problems):
             self.page = "scene"
         super().__init__("\n".join(str(problem) for problem in problems))
+
+
+@contextmanager
+def collect_problems(problems: list[Problem]) -> Iterator[None]:
+    """Keep the problems of a refusal, and let the checks go on: a user sees every fault of a command line at once."""
+    try:
+        yield
+    except SceneError as error:
+        problems.extend(error.problems)
 
 
 class SolveError(CosseratError):

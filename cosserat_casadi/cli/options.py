@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import MESHES, are_one_file, check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column, no_column, read_range
@@ -65,12 +64,9 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
     if over is None and all(read_range(text).count is None for text in ranges):
         return None
     # Imported here: few commands have a grid.
-    from cosserat_casadi.sweeps.table import crossed, range_table, read_table
+    from cosserat_casadi.sweeps.table import asked_table
 
-    if over is None:
-        table = range_table(ranges)
-    else:
-        table = crossed(read_table(over), range_table(ranges)) if ranges else read_table(over)
+    table = asked_table(over, ranges)
     layout = case_layout(scene)
     problems = [
         no_column(table.where, column, layout.columns) for column in table.columns if column not in layout.columns
@@ -181,18 +177,6 @@ def _check_plot(plot: Path | None, *, meshes: bool) -> None:
 
     check_writable(plot, "--plot")
     check_plot_path(plot)
-
-
-@contextmanager
-def collect_problems(problems: list[Problem]) -> Iterator[None]:
-    """Keep the problems of a refusal inside, and let the checks go on.
-
-    A user sees every fault of a command line at once.
-    """
-    try:
-        yield
-    except SceneError as error:
-        problems.extend(error.problems)
 
 
 def given_files(*files: Path | None) -> list[Path]:

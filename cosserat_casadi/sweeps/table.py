@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import AskedRange, read_ranges
 from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
@@ -96,6 +96,32 @@ def range_table(ranges: Sequence[str], scratch: Scratch = MEMORY) -> Table:
     tables = {column: {"from": one.low, "to": one.high, "count": one.count} for column, one in asked.items()}
     columns, values = grid(tables, "--range", scratch)
     return Table(columns, values, "--range", scratch=scratch)
+
+
+def asked_table(over: Path | None, ranges: Sequence[str], *, sobol: bool = False, scratch: Scratch = MEMORY) -> Table:
+    """The rows of a file, of ranges, or every row of the file beside every row of the ranges.
+
+    Args:
+        over: the file; None stands for ranges alone.
+        ranges: texts as of :func:`range_table`, at least one without a file.
+        sobol: whether the file is a grid with random columns, whose rows are drawn for Sobol indices.
+        scratch: where the rows are to lie.
+
+    Raises:
+        SceneError: with every fault of both.
+    """
+    if over is None:
+        return range_table(ranges, scratch)
+    problems: list[Problem] = []
+    rows: Table | None = None
+    grid_of_ranges: Table | None = None
+    with collect_problems(problems):
+        rows = read_table(over, sobol=sobol, scratch=scratch)
+    with collect_problems(problems):
+        grid_of_ranges = range_table(ranges) if ranges else None
+    if problems or rows is None:
+        raise SceneError(*problems)
+    return rows if grid_of_ranges is None else crossed(rows, grid_of_ranges)
 
 
 def crossed(table: Table, ranges: Table) -> Table:

@@ -414,6 +414,12 @@ def test_counts_of_ranges_are_a_grid_of_load_cases_beside_files(wire: Path) -> N
     np.testing.assert_array_equal(cases[:, others], np.tile(layout.default[others], (12, 1)))
     with pytest.raises(SceneError, match=r"'pull\.force\.x' is not an input or a parameter"):
         asked_cases(None, ["pull.force.x=0:1:3"], scene)
+    (wire / "loads.csv").write_text("push.force.z\nmuch\n")
+    with pytest.raises(SceneError) as refused:
+        asked_cases(wire / "loads.csv", ["push.force.x=-1:1"], scene)
+    in_file, in_range = refused.value.problems
+    assert in_file.where.startswith(str(wire / "loads.csv"))
+    assert in_range.where == "--range"
 
 
 def test_load_cases_of_a_file_are_its_rows_or_its_grid(wire: Path) -> None:

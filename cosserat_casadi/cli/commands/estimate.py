@@ -17,14 +17,13 @@ from cosserat_casadi.cli.options import (
     Settings,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
     given_files,
 )
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.results.json_text import json_text

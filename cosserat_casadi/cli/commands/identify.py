@@ -16,7 +16,6 @@ from cosserat_casadi.cli.options import (
     check_file,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
 )
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.format import print_warnings
@@ -24,7 +23,7 @@ from cosserat_casadi.cli.reports.identification import (
     print_identification,
     print_refused_scene,
 )
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification.fitted_scene import beside
 from cosserat_casadi.results.presentation import write_all

@@ -15,11 +15,10 @@ from cosserat_casadi.cli.options import (
     check_animation,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
 )
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.motion import print_modes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
 from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene

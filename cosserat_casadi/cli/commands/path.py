@@ -19,12 +19,11 @@ from cosserat_casadi.cli.options import (
     check_file,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
 )
 from cosserat_casadi.cli.progress import share_display, solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.cli.reports.tubes import print_tube_path
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray

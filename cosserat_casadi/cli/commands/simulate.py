@@ -15,14 +15,13 @@ from cosserat_casadi.cli.options import (
     check_animation,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
     given_files,
 )
 from cosserat_casadi.cli.progress import motion_display, share_display
 from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion
 from cosserat_casadi.cli.signals import StoppedError
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import MESHES, check_writable
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.going_on import StartOfMotion

@@ -15,12 +15,11 @@ from cosserat_casadi.cli.options import (
     Settings,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
 )
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import MESHES, write_whole
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.results.presentation import write_all

@@ -17,13 +17,12 @@ from cosserat_casadi.cli.options import (
     check_file,
     check_inputs_stay,
     check_outputs,
-    collect_problems,
 )
 from cosserat_casadi.cli.progress import CountCallback, sweep_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import Scene, read_scene
@@ -33,7 +32,7 @@ from cosserat_casadi.sweeps.run import SAMPLES, Plan, merge_shards, output_probl
 from cosserat_casadi.sweeps.scratch import Scratch
 from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.sobol import sobol_indices
-from cosserat_casadi.sweeps.table import Table, crossed, range_table, read_table
+from cosserat_casadi.sweeps.table import Table, asked_table
 
 
 def sweep(
@@ -199,19 +198,7 @@ def _asked_table(over: Path | None, ranges: list[str], output: Path, *, sobol: b
         raise SceneError(Problem("--over", "and --range are missing: there is nothing to solve for", remedy))
     if over is None and sobol:
         raise SceneError(Problem("--sobol", "is of random columns, and --over is missing", "name a grid that has some"))
-    scratch = Scratch.beside(output)
-    if over is None:
-        return range_table(ranges, scratch)
-    problems: list[Problem] = []
-    rows: Table | None = None
-    grid: Table | None = None
-    with collect_problems(problems):
-        rows = read_table(over, sobol=sobol, scratch=scratch)
-    with collect_problems(problems):
-        grid = range_table(ranges) if ranges else None
-    if problems or rows is None:
-        raise SceneError(*problems)
-    return rows if grid is None else crossed(rows, grid)
+    return asked_table(over, ranges, sobol=sobol, scratch=Scratch.beside(output))
 
 
 def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, problems: list[Problem]) -> None:
