@@ -258,7 +258,7 @@ def in_columns(written: WrittenJacobian, name: str, most: int | None = None) -> 
 
     Args:
         written: the Jacobian.
-        name: what the function is called.
+        name: of the function.
         most: statements up to which it is wanted, any number by default.
     """
     if len(written.system.discrete.rods) != 1:

@@ -35,7 +35,7 @@ LEAST_TOLERANCE = 1e-9
 """Depth and pull, relative, below which rounding decides."""
 
 STAYING = 0.9
-"""Share of what contacts leave unmet on coarser modes, from which on more modes do not mend it."""
+"""Share of the error that contacts left on coarser modes, from which on more modes do not mend it."""
 
 BESIDE_JOINT = 0.15
 """Distance from the joint of two rods, of a stretch that soft cushions hold off, within which it lies on both."""
@@ -63,7 +63,7 @@ def solve_contact(
         contacts: tried first from the start; by default the contacts of that.
         newton: limits of the solve of each state.
         progress: told the share of the load path that is done.
-        unmet_before: what contacts left unmet on coarser modes; where more modes mend it, contacts that hold to the
+        unmet_before: error that contacts left on coarser modes; where more modes mend it, contacts that hold to the
             tolerance are enough.
     """
     bare = without_contacts(scene)
