@@ -39,7 +39,7 @@ def load_command(name: str) -> Any:
     if name not in LINES:
         raise KeyError(name)
     module = import_module(f"cosserat_casadi.cli.commands.{name}")
-    alone = typer.Typer(add_completion=False, pretty_exceptions_show_locals=False, rich_markup_mode="markdown")
+    alone = typer.Typer(add_completion=False, rich_markup_mode="markdown")
     alone.command(name)(getattr(module, name))
     return typer.main.get_command(alone)
 

@@ -40,7 +40,6 @@ app = typer.Typer(
     cls=CommandGroup,
     help="Cosserat rods: from a scene file to the deformed rod.",
     no_args_is_help=True,
-    pretty_exceptions_show_locals=False,
 )
 
 
@@ -74,7 +73,8 @@ def main() -> None:
     try:
         install_handlers()
         end_in_time(STOPPED, {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED})
-        exit_code = run(app)
+        # The command itself: called as an app it would put Typer's hook for uncaught errors in the place of ours.
+        exit_code = run(typer.main.get_command(app))
         remove_handlers()
     except KeyboardInterrupt:
         # A signal that comes while the command begins or ends finds it outside of what catches the others.

@@ -17,6 +17,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from types import TracebackType
 
 
 class StoppedError(Exception):
@@ -56,6 +57,8 @@ def install_handlers() -> None:
     for number in SIGNALS:
         signal.signal(number, _interrupt)
     sys.unraisablehook = _report_unraisable
+    # Libraries in C that cannot raise an exception print it by this hook, and go on.
+    sys.excepthook = _report_uncaught
 
 
 def end_in_time(sentence: str, exit_codes: Mapping[int, int]) -> None:
@@ -183,6 +186,12 @@ def _report_unraisable(unraisable: sys.UnraisableHookArgs) -> None:
     """Keep quiet of an interrupt that falls where nothing can be raised: it is remembered."""
     if not isinstance(unraisable.exc_value, KeyboardInterrupt):
         sys.__unraisablehook__(unraisable)
+
+
+def _report_uncaught(kind: type[BaseException], error: BaseException, at: TracebackType | None) -> None:
+    """Keep quiet of an interrupt that a library in C has swallowed: it is remembered."""
+    if not issubclass(kind, KeyboardInterrupt):
+        sys.__excepthook__(kind, error, at)
 
 
 def _interrupt(number: int, frame: object) -> None:

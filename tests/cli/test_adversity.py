@@ -429,6 +429,29 @@ def test_signals(folder: Path, command: str, delay: float, number: signal.Signal
     stopped(command, number, delay, folder)
 
 
+SWALLOWED = """
+import ctypes, os, signal
+import typer.core
+from cosserat_casadi.cli import main
+def stopped_in_c(*arguments, **options):
+    # A call from C that raises: a library that prints the error by PyErr_Print, and goes on.
+    ctypes.pythonapi.PyRun_SimpleString(b"import os, signal; os.kill(os.getpid(), signal.SIGINT)")
+    return 0
+typer.core.TyperGroup.main = stopped_in_c
+main.main()
+"""
+"""A command in whose place a library in C swallows an interrupt."""
+
+
+def test_an_interrupt_that_a_library_swallows_shows_no_traceback(folder: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", SWALLOWED], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    code, _, said = ended(process)
+    assert said == ""
+    assert code == 0
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="asks /proc what a process listens to")
 @pytest.mark.parametrize("number", SIGNALS)
