@@ -33,24 +33,24 @@ static void MADE({name})(const casadi_real *given, casadi_real *made, int turns)
 CALL_OF_FOUR = "EVERY_LANE(MADE({name}_turn)(given + lane, made + lane))"
 CALL_OF_ONE = "MADE({name}_turn)(given, made);"
 
-CHOICE = """static void MADE({name})(const casadi_real *given, casadi_real *made, int turns) {{
-  IN_FOURS({name}, (given, made, turns));
+CHOICE = """static void MADE({name})({parameters}) {{
+  IN_FOURS({name}, ({arguments}));
 }}
 """
-"""The same for the width of vectors that the processor has."""
+"""A function in fours for the width of vectors that the processor has."""
 
-CHOICE_OF_LOOP = """static void MADE({name})(casadi_real *w) {{
-  IN_FOURS({name}, (w));
-}}
-"""
-"""The same for a loop over entries."""
+PARAMETERS_OF_CALLEE = "const casadi_real *given, casadi_real *made, int turns"
+PARAMETERS_OF_LOOP = "casadi_real *w"
+PARAMETERS_OF_COLUMNS = (
+    "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed, int groups"
+)
 
 PART_OF_COLUMNS = """static void MADE({name}_{part})(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed){body}"""
 """A part of what computes four columns."""
 
-COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *turns, casadi_real *columns,
-    casadi_real *passed, int groups) {{
+COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed, int groups) {{
   int group;
   for (group = 0; group < groups; group++, turns += {turns}, columns += 4) {{
 {calls}
@@ -112,11 +112,11 @@ class PrintedKernel:
         signature: a function with its name, arguments and results.
         tables: constant arrays in C, by name: the type of their numbers, and these as text. Kernels share equal ones.
         body: functions in C, the kernel itself last; their names stand in ``MADE()``.
-        by_columns: whether some of the functions compute columns, and are compiled for each width of vectors.
         callees: functions that these call by the name of the kernel and a word, by the word.
         reals: size of the array that it works in.
         statements: number of its statements.
         loops: functions that compute entries four at a time, by name: they are compiled for each width of vectors.
+        columns: function that computes columns four at a time, by name, for each width too.
         is_program: whether it is a function of matrices, in loops.
         products: products of matrices whose routines it calls.
         kernels: kernels that it calls.
@@ -125,11 +125,11 @@ class PrintedKernel:
     signature: ca.Function
     tables: Mapping[str, ConstantTable]
     body: str
-    by_columns: bool
     callees: Mapping[str, Callee]
     reals: int
     statements: int
     loops: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
     is_program: bool = False
     products: tuple[Product, ...] = ()
     kernels: tuple[PrintedKernel, ...] = ()
@@ -181,23 +181,19 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
     routines = product_routines(product for kernel in kernels for product in kernel.products)
     tables = _tables(kernels, stem)
     bodies = {kernel.name(): _with_names(kernel, kernel.body, callees, tables) for kernel in kernels}
-    for_each_width = [kernel for kernel in kernels if kernel.by_columns]
-    once = [kernel for kernel in kernels if not kernel.by_columns]
-    called_once = [callees[callee] for kernel in once for callee in kernel.callees.values()]
+    called = [callees[callee] for kernel in kernels for callee in kernel.callees.values()]
     functions = [callee.text(name) for callee, name in callees.items()]
-    functions += [bodies[kernel.name()] for kernel in for_each_width]
-    loops: dict[str, str] = {}
+    choices = [_choice(name, PARAMETERS_OF_CALLEE) for name in dict.fromkeys(called)]
     for kernel in kernels:
-        loops |= {name: _with_names(kernel, text, callees, tables) for name, text in kernel.loops.items()}
-    functions += loops.values()
+        for in_fours, parameters in ((kernel.columns, PARAMETERS_OF_COLUMNS), (kernel.loops, PARAMETERS_OF_LOOP)):
+            functions += [_with_names(kernel, text, callees, tables) for text in in_fours.values()]
+            choices += [_choice(name, parameters) for name in in_fours]
     words = {
         "stem": stem,
         "programs": '#include "program.h"\n' + routines if any_program else "",
-        "choices": "".join(CHOICE.format(name=name) for name in dict.fromkeys(called_once))
-        + "".join(CHOICE_OF_LOOP.format(name=name) for name in loops),
-        "once": "\n".join(bodies[kernel.name()] for kernel in once),
-        "kernels_once": "".join(f"KERNEL({kernel.name()}, KERNEL_ONCE)\n" for kernel in once if kernel in public),
-        "kernels_for_each_width": "".join(f"KERNEL({kernel.name()}, IN_FOURS)\n" for kernel in for_each_width),
+        "choices": "".join(choices),
+        "once": "\n".join(bodies.values()),
+        "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in public),
     }
     source = "".join(table.text(name) for table, name in tables.items())
     included = {}
@@ -210,6 +206,12 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
     source += fill(resource("templates", "kernels_once.c.in"), words)
     prototypes = "".join(kernel.prototype(qualifier) for kernel in public)
     return PrintedSources(source, "\n".join([*functions, words["once"]]), prototypes, included)
+
+
+def _choice(name: str, parameters: str) -> str:
+    """A function in fours under its name, for the processor at hand."""
+    arguments = ", ".join(re.findall(r"\w+(?=,|$)", parameters))
+    return CHOICE.format(name=name, parameters=parameters, arguments=arguments)
 
 
 def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:

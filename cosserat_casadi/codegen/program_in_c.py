@@ -212,7 +212,6 @@ class _Writing:
             self.signature,
             self.tables.by_name,
             "\n".join(self.functions),
-            False,
             self.callees,
             self.memory.size,
             self.statements,

@@ -145,6 +145,7 @@ class _Writing:
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
+        self.column_functions: dict[str, str] = {}
         self.callees: dict[str, Callee] = {}
         self.statements = 0
 
@@ -162,8 +163,15 @@ class _Writing:
         self._write_results()
         self._write_main()
         body = "\n".join(self.functions)
-        by_columns = self.form is not None
-        return PrintedKernel(self.signature, tables, body, by_columns, self.callees, self.reals, self.statements)
+        return PrintedKernel(
+            self.signature,
+            tables,
+            body,
+            self.callees,
+            self.reals,
+            self.statements,
+            columns=self.column_functions,
+        )
 
     def _write_main(self) -> None:
         """Write the function itself, which is a row of others where it is long."""
@@ -364,14 +372,16 @@ class _Writing:
         room = self._room(LANES * passed)
         name = f"{self.name}_columns"
         calls = []
+        functions = []
         for k, part in enumerate(parts):
             block = Block("FOUR", "b", part.statements)
             body = _body(block.lines(partial(self._text_in_columns, part.passed)))
-            self.functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
+            functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
             calls.append(CALL_OF_COLUMNS.format(name=name, part=k))
             self.statements += len(block.statements)
         listed = "\n".join(calls)
-        self.functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
+        functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
+        self.column_functions[name] = "\n".join(functions)
         turns = "TABLE(turns)"
         start = 0
         if form.turns_behind is not None:

@@ -113,7 +113,7 @@ CASADI_SYMBOL_EXPORT int rod_k_tip(const casadi_real** arg, casadi_real* w) {
   casadi_real a0;
   return 0;
 }
-KERNEL(casadi_f0, KERNEL_ONCE)
+KERNEL(casadi_f0)
 """
     header = "#define rod_k_residual_0_SZ_W 100\n#define rod_k_tip_SZ_W 7\n"
     generated = {"rod_kernels.c": source, "rod_kernels.h": header}
