@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.blocks import Front
 from cosserat_casadi.codegen.parts import Parted
+from cosserat_casadi.codegen.texts import render
 
 Words = dict[str, Any]
-
-Render = Callable[[str, Words], str]
 
 MEMBERS = """  {real} entries[{entries}];
   {real} part_unknowns[{macro}_UNKNOWNS];
@@ -24,7 +23,7 @@ MEMBERS = """  {real} entries[{entries}];
 """What the block elimination works in, as members of the workspace."""
 
 
-def dense_words(render: Render, basics: Words) -> Words:
+def dense_words(basics: Words) -> Words:
     """Words of a solver with one dense Jacobian."""
     return {
         "equations": render("dense_equations.c.in", basics),
@@ -37,14 +36,14 @@ def dense_words(render: Render, basics: Words) -> Words:
     }
 
 
-def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
+def block_words(basics: Words, partition: Assembled) -> Words:
     """Words of a solver that eliminates rod after rod."""
     split = partition.blocks
     order = split.by_fronts
     tables, listed = front_tables(order.fronts)
     parteds = {"residual": partition.residual, "jacobian": partition.jacobian, "input": partition.input_jacobian}
     words = {
-        "part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
+        "part_functions": "".join(part_functions(parted) for parted in parteds.values()),
         "part_tables": "".join(part_tables("part", word, parted) for word, parted in parteds.items()),
         "front_tables": f"{tables}static const front FRONTS[FRONT_COUNT] = {{\n{listed},\n}};\n",
         "front_indices": numbers(order.indices),
@@ -81,7 +80,7 @@ def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
     }
 
 
-def part_functions(render: Render, parted: Parted) -> str:
+def part_functions(parted: Parted) -> str:
     """Functions that call the kernels of parts."""
     names = [kernel.name() for kernel in parted.kernels]
     return "".join(render("part.c.in", {"function": _function(name), "kernel": name}) for name in names)

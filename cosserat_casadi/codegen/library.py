@@ -310,9 +310,9 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     motion = contents.motion
     on_device = contents.on_device
     sizes = _sizes(model, names, contents.generated) | {"on_device": on_device}
-    sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
-    linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
-    in_motion = {} if motion is None else motion_words(render, sizes, model, names, motion)
+    sizes |= parameter_words(sizes, model, names, dynamics=motion is not None)
+    linear = dense_words(sizes) if parts is None else block_words(sizes, parts)
+    in_motion = {} if motion is None else motion_words(sizes, model, names, motion)
     sizes |= error_words(model, names)
     sizes |= _batch_words(names.name, contents.rows)
     functions = public_functions(model, names)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import (
-    Render,
     Words,
     front_tables,
     numbers,
@@ -51,7 +50,7 @@ STAGES = 2
 """Stages of the method, which step.c is written for."""
 
 
-def motion_words(render: Render, basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
+def motion_words(basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
     """Words of a library with motions."""
     fronts = motion.order.by_fronts
     whole = motion.blocks.as_a_whole
@@ -74,7 +73,7 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "most_motion_entries": max(len(part.entries) for parted in parteds.values() for part in parted.parts),
         "displacements": numbers(lengths.tolist()),
         "units": numbers(model.discrete.unknowns.units.tolist()),
-        "motion_part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
+        "motion_part_functions": "".join(part_functions(parted) for parted in parteds.values()),
         "motion_part_tables": "".join(part_tables("motion_part", word, parted) for word, parted in parteds.items()),
         "entry_tables": _entry_tables(motion) + _acceleration_table(model),
         "elimination_tables": _elimination_tables(fronts, whole),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosserat_casadi.codegen.block_sources import Render, Words
+from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.manifest import parameter_entries
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.structs import initialiser, listed, parameter_macro, parameter_struct_words
+from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
@@ -38,13 +39,10 @@ WITHOUT: Words = {
 """Words of a library without parameters, beside those that depend on the library."""
 
 
-def parameter_words(
-    render: Render, basics: Words, model: Model | TubeFunctions, names: Names, *, dynamics: bool
-) -> Words:
+def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *, dynamics: bool) -> Words:
     """Words of a library, with parameters where the scene names some.
 
     Args:
-        render: fills in templates.
         basics: names and sizes of the library.
         model: what is exported.
         names: what things are called.

@@ -31,7 +31,6 @@ from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
-from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
 from cosserat_casadi.errors import ExportError, Problem
@@ -121,14 +120,14 @@ def _words(
     under_loads = ",\n   then by how much the quaternion of the frame at the tip of the robot differs from 1 0 0 0"
     return {
         **basics,
-        **dense_words(render, basics),
+        **dense_words(basics),
         **solver_constants(LIMITS, near=NEAR),
         **status_words(names, TUBE_OUTCOMES),
         **input_words(model, names, RANGES),
         **title_words(names, robot.scene, generated),
         **PLAIN_BUILD,
         "of_tubes": True,
-        **parameter_words(render, basics, model, names, dynamics=False),
+        **parameter_words(basics, model, names, dynamics=False),
         **dict.fromkeys(("functions", "prototypes"), ""),
         "inner": "any_",
         "outer": "stacked_" if model.parameters.size else "",
