@@ -23,7 +23,7 @@ from cosserat_casadi.codegen.compiled_results import (
 )
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.lanes import lanes_files
-from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
+from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.names import FUNCTIONS, Names
 from cosserat_casadi.codegen.parameter_values import listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
@@ -38,7 +38,7 @@ OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner 
 
 
 @dataclass(frozen=True)
-class Compiled(LoadedLibrary, CompiledMotion):
+class Compiled(CompiledMotion):
     """An exported folder as compiled functions.
 
     Methods take inputs by name, those not named keeping the scene's values, or all of them stacked; and so

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs
-from cosserat_casadi.codegen.loaded_library import room
+from cosserat_casadi.codegen.input_values import ArgumentValues
+from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
-from cosserat_casadi.codegen.parameter_values import ListedParameters
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.codegen.status import MOTION_STATUSES, MotionStatus
 from cosserat_casadi.maths.typing import FloatArray
@@ -202,33 +201,17 @@ class _StepCall:
         return MOTION_STATUSES[self.info.status] is MotionStatus.DONE
 
 
-class CompiledMotion(ABC):
+class CompiledMotion(LoadedLibrary):
     """What a folder that was exported with ``dynamics=True`` offers beyond statics.
 
     Parameters are given by name or stacked; the scene's own are the default. They may change from one step to the next.
-    Every member but these five raises an AttributeError where the folder was exported without.
+    Its members raise an AttributeError where the folder was exported without.
     """
 
     @property
     @abstractmethod
     def size(self) -> int:
         """Number of unknowns."""
-
-    @property
-    @abstractmethod
-    def inputs(self) -> ListedInputs:
-        """Names, units and default values of the inputs."""
-
-    @property
-    @abstractmethod
-    def parameters(self) -> ListedParameters:
-        """Names, units and default values of the parameters; often none."""
-
-    @abstractmethod
-    def _function(self, word: str) -> Any: ...
-
-    @abstractmethod
-    def _workspace(self) -> Any: ...
 
     def step_memory(self) -> StepMemory:
         """What steps keep from one to the next, and work in: one for each motion, new for a new one."""

@@ -17,8 +17,8 @@ Fields = Sequence[tuple[str, type[Any]]]
 """Names and types of the members of a struct."""
 
 
-class Info(ctypes.Structure):
-    """The struct in C that says how a solve ended."""
+class AnswerInfo(ctypes.Structure):
+    """The struct in C that says how a solve ended, whose answer may know its error."""
 
     _fields_: ClassVar[Fields] = (
         ("status", ctypes.c_int),
@@ -26,35 +26,23 @@ class Info(ctypes.Structure):
         ("jacobians", ctypes.c_int),
         ("residual_norm", ctypes.c_double),
         ("load_factor", ctypes.c_double),
+        ("error_estimate", ctypes.c_double),
     )
 
 
-def answer_words(info: Info, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """What :class:`CompiledAnswer` takes from the struct.
+def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """What :class:`CompiledSolution` takes from the struct.
 
     Args:
         info: the struct.
         outcomes: of the solver, in the order of their numbers.
     """
-    return {
+    words = {
         "outcome": outcomes[info.status],
         "iterations": info.iterations,
         "jacobians": info.jacobians,
         "residual_norm": info.residual_norm,
         "load_factor": info.load_factor,
-    }
-
-
-class AnswerInfo(Info):
-    """The same of a solve whose answer may know its error."""
-
-    _fields_: ClassVar[Fields] = (("error_estimate", ctypes.c_double),)
-
-
-def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """What :class:`CompiledSolution` takes from the struct; arguments as for :func:`answer_words`."""
-    words = {
-        **answer_words(info, outcomes),
         "error_estimate": None if info.error_estimate < 0 else info.error_estimate,
     }
     if isinstance(info, TubeInfo):
@@ -122,6 +110,9 @@ class CompiledAnswer:
         jacobians: Jacobians factorised.
         residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
         load_factor: share of the load that x carries, or of the way of the inputs that was gone; 1 where it converged.
+        error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
+            lengths of cables over the length; 1 where it is not known, None where it was not estimated.
+        tolerance: wanted error of the scene; None where no tolerance has a meaning.
     """
 
     outcome: Outcome
@@ -129,6 +120,8 @@ class CompiledAnswer:
     jacobians: int
     residual_norm: float
     load_factor: float
+    error_estimate: float | None = None
+    tolerance: float | None = None
 
     @property
     def converged(self) -> bool:
@@ -139,20 +132,6 @@ class CompiledAnswer:
     def message(self) -> str:
         """A sentence that says how it ended."""
         return self.outcome.value
-
-
-@dataclass(frozen=True, kw_only=True)
-class JudgedAnswer(CompiledAnswer):
-    """How a call ended whose answer may know its error.
-
-    Attributes:
-        error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
-            lengths of cables over the length; 1 where it is not known, None where it was not estimated.
-        tolerance: wanted error of the scene; None where no tolerance has a meaning.
-    """
-
-    error_estimate: float | None = None
-    tolerance: float | None = None
 
     @property
     def within_tolerance(self) -> bool | None:
@@ -167,7 +146,7 @@ class JudgedAnswer(CompiledAnswer):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompiledSolution(JudgedAnswer):
+class CompiledSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:

@@ -16,8 +16,8 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.compiled_results import (
     SOLVED,
     AnswerInfo,
+    CompiledAnswer,
     CompiledStability,
-    JudgedAnswer,
     StabilityInfo,
     judged_words,
 )
@@ -79,7 +79,7 @@ class ContactInC(ctypes.Structure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompiledContactSolution(JudgedAnswer):
+class CompiledContactSolution(CompiledAnswer):
     """What the solver in C found.
 
     Attributes:
