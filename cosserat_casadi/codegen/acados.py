@@ -143,7 +143,7 @@ def write_acados(
     """
     functions = acados_functions(model, name, moving=moving)
     folder = Path(directory)
-    stale = check_folder(folder, MANIFEST)
+    stale = check_folder(folder)
     files: dict[str, str] = {}
     for function in functions:
         files |= external_sources([function], function.name(), "int")

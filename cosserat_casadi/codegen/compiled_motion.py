@@ -264,8 +264,9 @@ class CompiledMotion(LoadedLibrary):
             options: when Newton's method is done.
         """
         given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
-        taken, _ = self._take("step", state, dt, given, memory, options, [])
-        return taken
+        call = self._prepared("step", state, dt, given, memory, options, [])
+        call.take()
+        return self._end(call)
 
     def steps(
         self,
@@ -327,8 +328,10 @@ class CompiledMotion(LoadedLibrary):
         derivatives, columns = self._input_derivatives(size)
         results = [by_start, *columns]
         given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
-        taken, status = self._take("step_sensitivity", state, dt, given, memory, options, results)
-        if status is not MotionStatus.DONE:
+        call = self._prepared("step_sensitivity", state, dt, given, memory, options, results)
+        status = call.take()
+        taken = self._end(call)
+        if MOTION_STATUSES[status] is not MotionStatus.DONE:
             return taken, None
         return taken, StepSensitivity(by_start.T, **derivatives)
 
@@ -388,21 +391,6 @@ class CompiledMotion(LoadedLibrary):
         ]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
         return LinearMotion(stiffness.T, damping.T, mass.T, **derivatives)
-
-    def _take(
-        self,
-        word: str,
-        state: StepState,
-        dt: float,
-        given: _Given,
-        memory: StepMemory | None,
-        options: StepOptions | None,
-        results: Sequence[FloatArray],
-    ) -> tuple[CompiledStep, MotionStatus]:
-        """A step by one of the two functions in C, and what it returned."""
-        call = self._prepared(word, state, dt, given, memory, options, results)
-        status = call.take()
-        return self._end(call), MOTION_STATUSES[status]
 
     def _prepared(
         self,

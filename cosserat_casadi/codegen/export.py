@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sourc
 from cosserat_casadi.codegen.kernels import differentiable, kernels
 from cosserat_casadi.codegen.lanes import InLanes, in_lanes
 from cosserat_casadi.codegen.library import FolderContents, library_sources
-from cosserat_casadi.codegen.manifest import MANIFEST, manifest, with_manifest
+from cosserat_casadi.codegen.manifest import manifest, with_manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names, scene_names
@@ -157,7 +157,7 @@ def check_export(directory: Path, name: str) -> set[str]:
     except ExportError as error:
         problems.extend(error.problems)
     try:
-        stale = check_folder(directory, MANIFEST)
+        stale = check_folder(directory)
     except ExportError as error:
         problems.extend(error.problems)
     if problems:

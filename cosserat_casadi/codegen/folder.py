@@ -8,16 +8,16 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
 
 
-def check_folder(directory: Path, manifest: str) -> set[str]:
+def check_folder(directory: Path) -> set[str]:
     """Refuse a folder that holds files which an export did not write.
 
     Args:
         directory: the folder; it need not exist.
-        manifest: name of the file that lists what an export wrote.
 
     Returns:
         names of the files of an earlier export.
@@ -32,7 +32,7 @@ def check_folder(directory: Path, manifest: str) -> set[str]:
         raise ExportError(Problem("--output", f"{directory} is no folder", "name one"))
     if not os.access(directory, os.R_OK | os.W_OK | os.X_OK):
         raise ExportError(Problem("--output", f"the folder {directory} cannot be written to", "name another"))
-    ours = _listed(directory / manifest)
+    ours = _listed(directory / MANIFEST)
     held = {path.name: path.name in ours and path.is_file() for path in directory.iterdir()}
     foreign = sorted(name for name, known in held.items() if not known)
     if foreign:

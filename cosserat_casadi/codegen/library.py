@@ -28,12 +28,12 @@ from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import (
+    INPUT,
     initialiser,
-    input_macro,
     input_struct_words,
-    listed,
     pose_name,
     result_struct_words,
+    value_words,
 )
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
@@ -432,25 +432,14 @@ def _ends(values: FloatArray, names: Names) -> str:
 
 def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, Any]:
     """What the templates say of inputs as they are in the manifest: macros, struct, table, default values."""
-    macros = list[str]()
-    rows = list[str]()
-    for entry in entries:
-        macro = input_macro(names, entry["name"])
-        count = len(entry["value"])
-        axes = "" if entry["axes"] == "none" else f", {entry['axes']} axes"
-        numbered = "1 number" if count == 1 else f"{count} numbers"
-        macros.append(f"#define {macro} {entry['first']} /* {numbered}, {entry['unit']}{axes} */")
-        macros.append(f"#define {macro}_SIZE {count}")
-        span = f"{entry['first']} … {entry['first'] + count - 1}" if count > 1 else f"{entry['first']}"
-        rows.append(f"| {span} | `{entry['name']}`{axes} | {entry['unit']} | {listed(entry['value'])} |")
-    values = [number for entry in entries for number in entry["value"]]
+    macros, rows, defaults = value_words(names, entries, INPUT)
     polynomial = any(entry["shape"][1] > 1 for entry in entries)
     return {
-        "input_macros": "\n".join(macros) or "/* This scene leaves none free. */",
+        "input_macros": macros or "/* This scene leaves none free. */",
         **input_struct_words(names, entries),
-        "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
+        "input_rows": rows or "| | none: everything is fixed | | |",
         "input_words": " ".join(entry["name"] for entry in entries) or "none",
-        "defaults": ", ".join(initialiser(value, names) for value in values) or "0",
+        "defaults": defaults or "0",
         "axes_note": "Lists along the rod are Legendre coefficients in 2X − 1, all components of one degree after "
         "another, or values at knots."
         if polynomial

@@ -137,9 +137,7 @@ def manifest(
     """
     known = {entry.kernel: entry for entry in functions_in_c(model, names)}
     return {
-        **head_entries(names, model.scene),
-        "inputs": input_entries(model),
-        **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
+        **head_entries(names, model),
         **_output_entries(model),
         "unknowns": unknown_entries(model),
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
@@ -148,13 +146,15 @@ def manifest(
     }
 
 
-def head_entries(names: Names, scene: Scene) -> dict[str, Any]:
-    """Name, title and versions, with which every manifest begins."""
+def head_entries(names: Names, model: Model | TubeFunctions) -> dict[str, Any]:
+    """Name, title and versions, with which every manifest begins, inputs and parameters."""
     return {
         "schema": SCHEMA,
         "name": names.name,
-        "title": scene.title,
+        "title": model.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        "inputs": input_entries(model),
+        **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
     }
 
 

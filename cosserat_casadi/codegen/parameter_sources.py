@@ -7,7 +7,7 @@ from typing import Any
 from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.manifest import parameter_entries
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.structs import initialiser, listed, parameter_macro, parameter_struct_words
+from cosserat_casadi.codegen.structs import PARAMETER, parameter_struct_words, value_words
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -57,14 +57,13 @@ def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *
             "pose_derivatives": _listed_lines(functions),
         }
     entries = parameter_entries(model)
-    words = {**_described(entries, names), **parameter_struct_words(names, entries)}
     adapters = [f"derivatives_of_{function}" for function in functions]
     rendered = [
         render("pose_adapter.c.in", {**basics, "adapter": adapter, "function": function})
         for adapter, function in zip(adapters, functions, strict=True)
     ]
     return {
-        **words,
+        **_described(entries, names),
         **_arguments(names),
         "with_parameters": True,
         "solves_tangent": True,
@@ -94,7 +93,6 @@ def contact_parameter_words(model: Model, names: Names) -> Words:
     real = f"{names.name}_real"
     return {
         **_described(entries, names),
-        **parameter_struct_words(names, entries),
         "with_parameters": True,
         "parameters": f"const {real} *parameters, ",
         "poses_by_parameters": f"{real} *d_poses_d_parameters, ",
@@ -124,25 +122,14 @@ def _arguments(names: Names) -> Words:
 
 
 def _described(entries: list[dict[str, Any]], names: Names) -> Words:
-    """Macros, defaults and rows of the README."""
-    macros = list[str]()
-    rows = list[str]()
-    values = list[float]()
-    for entry in entries:
-        macro = parameter_macro(names, entry["name"])
-        own = entry["value"]
-        first, count, unit = entry["first"], len(own), entry["unit"]
-        numbered = "1 number" if count == 1 else f"{count} numbers"
-        macros.append(f"#define {macro} {first} /* {numbered}, {unit}: {entry['name']} */")
-        macros.append(f"#define {macro}_SIZE {count}")
-        span = f"{first} … {first + count - 1}" if count > 1 else f"{first}"
-        rows.append(f"| {span} | `{entry['name']}` | {unit} | {listed(own)} |")
-        values += own
+    """Macros, defaults, rows of the README, and the struct."""
+    macros, rows, defaults = value_words(names, entries, PARAMETER)
     return {
-        "parameter_count": len(values),
-        "parameter_macros": "\n".join(macros),
-        "parameter_rows": "\n".join(rows),
-        "parameter_defaults": ", ".join(initialiser(value, names) for value in values),
+        "parameter_count": sum(len(entry["value"]) for entry in entries),
+        "parameter_macros": macros,
+        "parameter_rows": rows,
+        "parameter_defaults": defaults,
+        **parameter_struct_words(names, entries),
     }
 
 

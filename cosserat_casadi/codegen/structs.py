@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.model.build import Model
+
+INPUT, PARAMETER = "INPUT", "PARAMETER"
+"""Words in macros of inputs and of parameters."""
 
 
 def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
@@ -18,7 +20,7 @@ def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str,
         names: what things are called.
         entries: inputs as in the manifest.
     """
-    members, pack, unpack = _struct_lines(names, entries, "inputs", input_macro)
+    members, pack, unpack = _struct_lines(names, entries, "inputs", INPUT)
     return {"input_members": members, "pack_lines": pack, "unpack_lines": unpack}
 
 
@@ -29,27 +31,25 @@ def parameter_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[
         names: what things are called.
         entries: parameters as in the manifest.
     """
-    members, pack, unpack = _struct_lines(names, entries, "parameters", parameter_macro)
+    members, pack, unpack = _struct_lines(names, entries, "parameters", PARAMETER)
     return {"parameter_struct": members, "parameter_pack_lines": pack, "parameter_unpack_lines": unpack}
 
 
-def _struct_lines(
-    names: Names, entries: list[dict[str, Any]], vector: str, macro_of: Callable[[Names, str], str]
-) -> tuple[str, str, str]:
+def _struct_lines(names: Names, entries: list[dict[str, Any]], vector: str, word: str) -> tuple[str, str, str]:
     """Lines of the members of a struct, and of the copies from it into a vector and back.
 
     Args:
         names: what things are called.
         entries: parts of the vector as in the manifest.
         vector: name of the vector in C.
-        macro_of: name of a part ↦ macro of its first entry.
+        word: in the macros of its parts.
     """
     members = list[str]()
     pack = list[str]()
     unpack = list[str]()
     for entry in entries:
         member = identifier(entry["name"])
-        macro = macro_of(names, entry["name"])
+        macro = _macro(names, word, entry["name"])
         members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
         pack.append(f"  memcpy({vector} + {macro}, named->{member}, sizeof named->{member});")
         unpack.append(f"  memcpy(named->{member}, {vector} + {macro}, sizeof named->{member});")
@@ -87,14 +87,34 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
     }
 
 
-def input_macro(names: Names, input_name: str) -> str:
-    """Macro of an input's first entry."""
-    return f"{names.macro}_INPUT_{identifier(input_name).upper()}"
+def value_words(names: Names, entries: list[dict[str, Any]], word: str) -> tuple[str, str, str]:
+    """Lines with the macros of inputs or parameters, rows of the README, and their default values.
+
+    Args:
+        names: what things are called.
+        entries: inputs or parameters as in the manifest.
+        word: in their macros.
+    """
+    macros = list[str]()
+    rows = list[str]()
+    values = list[float]()
+    for entry in entries:
+        macro = _macro(names, word, entry["name"])
+        first, count, unit = entry["first"], len(entry["value"]), entry["unit"]
+        axes = "" if entry.get("axes", "none") == "none" else f", {entry['axes']} axes"
+        remark = axes if word == INPUT else f": {entry['name']}"
+        numbered = "1 number" if count == 1 else f"{count} numbers"
+        macros.append(f"#define {macro} {first} /* {numbered}, {unit}{remark} */")
+        macros.append(f"#define {macro}_SIZE {count}")
+        span = f"{first} … {first + count - 1}" if count > 1 else f"{first}"
+        rows.append(f"| {span} | `{entry['name']}`{axes} | {unit} | {listed(entry['value'])} |")
+        values += entry["value"]
+    return "\n".join(macros), "\n".join(rows), ", ".join(initialiser(value, names) for value in values)
 
 
-def parameter_macro(names: Names, parameter: str) -> str:
-    """Macro of a parameter's first entry."""
-    return f"{names.macro}_PARAMETER_{identifier(parameter).upper()}"
+def _macro(names: Names, word: str, name: str) -> str:
+    """Macro of the first entry of an input or of a parameter."""
+    return f"{names.macro}_{word}_{identifier(name).upper()}"
 
 
 def listed(values: list[float]) -> str:

@@ -54,8 +54,8 @@ def refusal(directory: Path, name: str = "strip") -> tuple[str, str, str]:
 
 
 def test_a_new_folder_and_an_empty_one_are_accepted(tmp_path: Path) -> None:
-    assert check_folder(tmp_path / "new", MANIFEST) == set()
-    assert check_folder(tmp_path, MANIFEST) == set()
+    assert check_folder(tmp_path / "new") == set()
+    assert check_folder(tmp_path) == set()
     assert list(tmp_path.iterdir()) == []
 
 

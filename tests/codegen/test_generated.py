@@ -124,7 +124,7 @@ def write() -> None:
         if name in HASHED:
             hashed[name] = found
     for stale in (path for path in FOLDER.iterdir() if path.is_dir() and path.name not in GENERATED):
-        for file in check_folder(stale, MANIFEST):
+        for file in check_folder(stale):
             (stale / file).unlink()
         stale.rmdir()
     (FOLDER / HASHES).write_text(json.dumps(hashed, indent=1) + "\n")
@@ -135,7 +135,7 @@ def write_one(solution: Solution, name: str, error_estimate: float | None) -> di
     """Write one folder; hashes of the files that are not kept, and the tip of the first rod."""
     files = files_of(solution.model, name, error_estimate)
     kept = {file: text for file, text in files.items() if not is_hashed(name, text)}
-    write_folder(FOLDER / name, kept, check_folder(FOLDER / name, MANIFEST))
+    write_folder(FOLDER / name, kept, check_folder(FOLDER / name))
     hashes = {file: hash_of(text) for file, text in files.items() if file not in kept}
     tip = solution.tip(solution.model.scene.rods[0].name).position
     return {"sha256": hashes, "tip": [float(f"{value:.12g}") for value in tip]}

@@ -32,7 +32,6 @@ from cosserat_casadi.codegen.manifest import (
     accuracy_entries,
     actuator_entries,
     head_entries,
-    input_entries,
     parameter_entries,
     with_manifest,
 )
@@ -327,8 +326,7 @@ def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
         }
         arrangements.append({"contacts": touches, **sizes})
     return {
-        **head_entries(names, chosen.scene),
-        "inputs": input_entries(free),
+        **head_entries(names, free),
         **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
         "rods": [rod.name for rod in chosen.scene.rods],
         **({"bodies": [body.name for body in chosen.scene.bodies]} if chosen.scene.bodies else {}),

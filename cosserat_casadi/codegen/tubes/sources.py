@@ -23,8 +23,6 @@ from cosserat_casadi.codegen.manifest import (
     TUBES,
     accuracy_entries,
     head_entries,
-    input_entries,
-    parameter_entries,
     with_manifest,
 )
 from cosserat_casadi.codegen.names import Names, scene_names
@@ -180,9 +178,7 @@ def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) 
         outermost = robot.names[int(np.argmax(robot.translations(robot.inputs)))]
         unknowns.append({"rod": outermost, "frame": "tip", "first": robot.size, "count": model.size - robot.size})
     return {
-        **head_entries(names, robot.scene),
-        "inputs": input_entries(model),
-        **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
+        **head_entries(names, model),
         TUBES: list(robot.names),
         "unknowns": unknowns,
         "steps": model.steps,
