@@ -43,6 +43,9 @@ IN_CONTACT = " Rods in contact cannot be let settle to less energy."
 NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
 """Sentence in the message of a solution where no try led to a stable equilibrium."""
 
+AT_ONCE = " Parameters change at once, and rods would pass through an obstacle or a rod: change them by less."
+"""Sentence in the message where a solution with other parameters does not lead to one."""
+
 Start = Solution | FloatArray | None
 """Where a solve starts: a solution, unknowns, or the unloaded rod."""
 
@@ -166,7 +169,10 @@ def solve(
         load_factor=end.load_factor,
         tolerance=limits.newton.tolerance,
     )
-    if start is None and solution.outcome is Outcome.LOAD_STALLED:
+    stalled = solution.outcome is Outcome.LOAD_STALLED
+    if stalled and end.load_factor == 0.0 and isinstance(start, Solution) and start.model is not model:
+        solution = replace(solution, message=solution.message + AT_ONCE)
+    if stalled and start is None:
         solution = _settled_on_obstacles(solution, limits, progress)
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)

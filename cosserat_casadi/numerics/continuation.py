@@ -164,6 +164,9 @@ def follow(
     limits = settings or ContinuationSettings()
     current = _first_point(path, limits)
     start = current.correction
+    if start.outcome is Outcome.CONVERGED and not _admitted(path, path.start, start.x, 0.0):
+        # Parameters change at once: there is no way that could be halved.
+        start = replace(start, x=path.start, outcome=Outcome.LOAD_STALLED)
     if start.outcome is not Outcome.CONVERGED:
         return ContinuationResult(
             x=start.x,
@@ -282,7 +285,12 @@ def _stays(path: Path, current: _Point, exact: NewtonResult) -> bool:
         return False
     if not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
         return False
-    return path.admits is None or path.admits((current.x, current.t), (exact.x, current.t))
+    return _admitted(path, current.x, exact.x, current.t)
+
+
+def _admitted(path: Path, before: FloatArray, after: FloatArray, t: float) -> bool:
+    """Whether a correction at one t may lead from unknowns to others."""
+    return path.admits is None or path.admits((before, t), (after, t))
 
 
 def _target(current: _Point, step: float) -> float:

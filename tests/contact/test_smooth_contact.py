@@ -601,6 +601,23 @@ def test_no_step_from_a_solution_passes_through_a_thin_wire() -> None:
     assert far.tip().position[2] > -0.3
 
 
+def test_parameters_that_change_at_once_take_no_rod_through_a_wire() -> None:
+    """A rod above a wire that becomes as soft as one below it stays where it is, and the message says what to do."""
+    name = "rod.stiffness.bending_y"
+    model = build(parse_scene(f'parameters = ["{name}"]' + ROD + PUSH + WIRE))
+    above = solve(model, parameters={name: 5.0})
+    assert above.converged and not above.contacts
+    below = solve(build(parse_scene(ROD + PUSH)))
+    assert below.pose(0.9).position[2] < -0.15
+    jumped = solve(model, start=above)
+    assert jumped.outcome is Outcome.LOAD_STALLED
+    assert "change them by less" in jumped.message
+    assert_allclose(jumped.x, above.x, rtol=0, atol=0)
+    nearer = solve(model, parameters={name: 4.0}, start=above)
+    assert nearer.converged
+    assert nearer.pose(0.9).position[2] < above.pose(0.9).position[2]
+
+
 def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:
     soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
     path = follow(soft, "push.force", [0.0, 0.0, -0.6])
