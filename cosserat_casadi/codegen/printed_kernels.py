@@ -62,6 +62,12 @@ COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *t
 CALL_OF_COLUMNS = "    EVERY_LANE(MADE({name}_{part})(w, turns + lane, columns + lane, passed + lane))"
 
 
+INTEGERS = """#undef INTEGERS
+#define INTEGERS(first) ({stem}_integers + (first))
+"""
+"""How kernels read tables of whole numbers."""
+
+
 @dataclass(frozen=True)
 class Callee:
     """A function that kernels call for intervals.
@@ -99,9 +105,7 @@ class ConstantTable:
 
     def text(self, name: str) -> str:
         """The array in C, under a name; of no numbers one that is not read, since C has no empty arrays."""
-        numbers = self.numbers or ("0",)
-        lines = textwrap.fill(", ".join(numbers), 119, initial_indent="  ", subsequent_indent="  ")
-        return f"static const {self.type} {name}[{len(numbers)}] = {{\n{lines}}};\n"
+        return _array(self.type, name, self.numbers or ("0",))
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +199,7 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
         "once": "\n".join(bodies.values()),
         "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in public),
     }
-    source = "".join(table.text(name) for table, name in tables.items())
+    source = _tables_in_c(tables, stem)
     included = {}
     if functions:
         source += fill(resource("templates", "fours.c.in"), words)
@@ -236,9 +240,31 @@ def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
 
 
 def _tables(kernels: Sequence[PrintedKernel], stem: str) -> dict[ConstantTable, str]:
-    """Names of the constant arrays of kernels: one for all that are equal."""
-    every = dict.fromkeys(table for kernel in kernels for table in kernel.tables.values())
-    return {table: f"{stem}_table_{number}" for number, table in enumerate(every)}
+    """Constant arrays of kernels as they are read in C: one for all that are equal, one of all whole numbers."""
+    name_of: dict[ConstantTable, str] = {}
+    integers = 0
+    for table in dict.fromkeys(table for kernel in kernels for table in kernel.tables.values()):
+        if table.type == "int":
+            name_of[table] = f"INTEGERS({integers})"
+            integers += len(table.numbers)
+        else:
+            name_of[table] = f"{stem}_table_{len(name_of)}"
+    return name_of
+
+
+def _tables_in_c(name_of: Mapping[ConstantTable, str], stem: str) -> str:
+    """The constant arrays in C, from the names by which they are read."""
+    texts = [table.text(name) for table, name in name_of.items() if table.type != "int"]
+    integers = [number for table in name_of if table.type == "int" for number in table.numbers]
+    if integers:
+        texts += [_array("int", f"{stem}_integers", integers), INTEGERS.format(stem=stem)]
+    return "".join(texts)
+
+
+def _array(kind: str, name: str, numbers: Sequence[str]) -> str:
+    """A constant array in C."""
+    lines = textwrap.fill(", ".join(numbers), 119, initial_indent="  ", subsequent_indent="  ")
+    return f"static const {kind} {name}[{len(numbers)}] = {{\n{lines}}};\n"
 
 
 def _with_names(

@@ -45,8 +45,11 @@ FEWEST_TURNS = 5
 LONGEST_PRODUCT_WITHOUT_LOOP = 40
 """Instructions up to which a product of matrices is written without a loop."""
 
-FEW_RUNS = 8
-"""Runs of neighbours up to which entries that lie apart are moved run by run."""
+WIDEST_TURN = 120
+"""Entries of a turn up to which places are looked through for turns that move on by equal steps."""
+
+LEAST_SAVED = 4
+"""Numbers that a table must be shorter by where entries become a group of their own."""
 
 LOOP_IN_FOURS = """static void MADE({name}_turn)(casadi_real *w, int i) {{
 {lines}
@@ -70,9 +73,6 @@ static void MADE({name})(casadi_real *w) {{
 }}
 """
 """The same, one entry at a time: not all its operations have a form in fours."""
-
-WORTH_STRIDES = 2
-"""How many entries a number must stand for where runs of equal stride replace a table of all places."""
 
 UNUSED = -1
 """Place of an entry that has none yet."""
@@ -143,9 +143,14 @@ class ConstantTables:
         self.by_name: dict[str, ConstantTable] = {}
         self._names: dict[ConstantTable, str] = {}
 
-    def of_places(self, places: Numbers) -> str:
+    def of_integers(self, numbers: Numbers) -> str:
         """The name of a table of whole numbers in C."""
-        return self._named(ConstantTable("int", tuple(map(str, places.tolist()))))
+        return self._named(ConstantTable("int", tuple(map(str, numbers.tolist()))))
+
+    def of_places(self, places: Numbers) -> str:
+        """The name of a table of places in groups (program.h), and their count, from an array with an entry a row."""
+        groups = _groups(places)
+        return f"{self.of_integers(np.concatenate(groups))}, {len(groups)}"
 
     def of_numbers(self, values: Sequence[float]) -> str:
         """The name of a table of numbers in C."""
@@ -261,19 +266,9 @@ class _Writing:
 
     def _moved(self, to: str, places: Numbers) -> str:
         """Statement that brings entries together."""
-        starts = np.flatnonzero(np.diff(places, prepend=places[0] - 2) != 1)
-        lengths = np.diff(starts, append=len(places))
-        if len(starts) == 1:
+        if np.all(np.diff(places) == 1):
             return f"program_read({to}, w + {places[0]}, {len(places)});"
-        if len(starts) <= FEW_RUNS and len(places) >= 4 * len(starts):
-            moves = []
-            for start, length in zip(starts.tolist(), lengths.tolist(), strict=True):
-                moves.append(f"program_move({to} + {start}, w + {places[start]}, {length});")
-            return "{ " + " ".join(moves) + " }"
-        strides = _strides(places)
-        if WORTH_STRIDES * strides.size <= len(places):
-            return f"program_strides({to}, w, {self.tables.of_places(strides.ravel())}, {len(strides)});"
-        return f"program_gather({to}, w, {self.tables.of_places(places)}, {len(places)});"
+        return f"program_gather({to}, w, {self.tables.of_places(places[:, None])});"
 
     def _pointer(self, numbers: Numbers) -> str:
         """Pointer to entries that follow on each other; entries that lie apart are gathered before."""
@@ -422,7 +417,7 @@ class _Writing:
         first = self._place_things(k, result.numbers)
         count = len(result.numbers)
         if start:
-            self.lines.append(f"  program_move(w + {first}, {start[0]}, {count});")
+            self.lines.append(f"  program_read(w + {first}, {start[0]}, {count});")
         self.statements += 1
         if left.pattern.is_dense():
             rows, inner = left.pattern.shape
@@ -433,14 +428,13 @@ class _Writing:
             if dense:
                 self.lines.append(f"  {product.name}({x}, {inner}, {y}, {columns}, w + {first});")
                 return
-            table = self.tables.of_places(np.array([*right.pattern.colind(), *right.pattern.row()]))
+            table = self.tables.of_integers(np.array([*right.pattern.colind(), *right.pattern.row()]))
             self.lines.append(f"  {product.name}({x}, {y}, {table}, {columns}, w + {first});")
             return
         if not start:
             self.lines.append(f"  program_clear(w + {first}, {count});")
         triples = _triples(left.pattern, right.pattern, result.pattern)
-        table = self.tables.of_places(triples.ravel())
-        self.lines.append(f"  program_sparse({x}, {y}, {table}, {len(triples)}, w + {first});")
+        self.lines.append(f"  program_sparse({x}, {y}, {self.tables.of_places(triples)}, w + {first});")
 
     def _write_bundle(self, k: int, steps: Sequence[Step]) -> None:
         """Write small steps without loops."""
@@ -660,19 +654,55 @@ def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: in
     return None
 
 
-def _strides(places: Numbers) -> Numbers:
-    """First place, stride and length of each run of places that are equally far apart, shape (runs, 3)."""
-    listed = places.tolist()
-    runs = []
-    first = 0
-    while first < len(listed):
-        last = min(first + 1, len(listed) - 1)
-        stride = listed[last] - listed[first]
-        while last + 1 < len(listed) and listed[last + 1] - listed[last] == stride:
-            last += 1
-        runs.append((listed[first], stride, last + 1 - first))
-        first = last + 1
-    return np.array(runs, dtype=np.int64)
+def _groups(places: Numbers) -> list[Numbers]:
+    """Places in groups whose turns move on by equal steps, as routines of program.h read them.
+
+    Each group is the number of entries of a turn, the number of turns, the places of the first turn and, where there
+    are more, the step of each from turn to turn.
+
+    Args:
+        places: one entry or product a row, shape (count, places of each).
+    """
+    saved, width, turns = _longest_turns(places)
+    groups = []
+    alone = first = 0
+    while first <= len(places):
+        ends = first == len(places)
+        if (ends or saved[first]) and alone < first:
+            groups.append(np.concatenate([[first - alone, 1], places[alone:first].ravel()]))
+        if ends:
+            return groups
+        if not saved[first]:
+            first += 1
+            continue
+        one, count = width[first], turns[first]
+        begin = places[first : first + one]
+        steps = places[first + one : first + 2 * one] - begin
+        groups.append(np.concatenate([[one, count], begin.ravel(), steps.ravel()]))
+        first += one * count
+        alone = first
+    return groups
+
+
+def _longest_turns(places: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """The turns that begin at each entry and save most: numbers that they save, 0 for none, their width and count."""
+    entries, of_each = places.shape
+    saved = np.zeros(entries, dtype=np.int64)
+    width = np.zeros_like(saved)
+    turns = np.zeros_like(saved)
+    # Two turns are as many numbers as places and steps.
+    for one in range(1, min(WIDEST_TURN, entries // 3) + 1):
+        bends = places[2 * one :] - 2 * places[one:-one] + places[: -2 * one]
+        here = np.arange(len(bends))
+        end = np.where(np.any(bends, axis=1), here, len(bends))
+        straight = np.minimum.accumulate(end[::-1])[::-1] - here
+        count = (straight + 2 * one) // one
+        less = of_each * one * (count - 2) - 2
+        better = np.flatnonzero((less >= LEAST_SAVED) & (less > saved[: len(bends)]))
+        saved[better] = less[better]
+        width[better] = one
+        turns[better] = count[better]
+    return saved, width, turns
 
 
 def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:
