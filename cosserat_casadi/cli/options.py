@@ -13,7 +13,7 @@ from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import MESHES, are_one_file, check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column, no_column, read_range
-from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import files_read
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).", show_default=False)]
@@ -78,27 +78,64 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
     return cases
 
 
-def check_outputs(output: Path | None, plot: Path | None, suffix: str = ".json", *, meshes: bool = False) -> None:
-    """Refuse files that cannot be written, before time is spent on a solve.
+SUFFIXES = {"--csv": ".csv", "--write": ".toml"}
+"""Suffix of the only format that an option writes."""
+
+
+def check_files(
+    files: Mapping[str, Path | None],
+    scene: Path,
+    settings: list[str] | None,
+    problems: list[Problem],
+    *others: Path | None,
+    output_suffix: str = ".json",
+    meshes: bool = False,
+) -> None:
+    """Add the faults of files that cannot be written, before time is spent on a solve.
 
     Args:
-        output: file of the result.
-        plot: file of the figure.
-        suffix: of the format that the result is written in.
+        files: to be written, by the option that asks for each; None where none is asked for.
+        scene: as in :func:`check_inputs_stay`.
+        settings: as there.
+        problems: are added to: a file cannot be written, would be written over one that is read, or has the suffix of
+            another format.
+        others: as there.
+        output_suffix: of the format that the result is written in.
         meshes: whether the figure may be a file of meshes.
 
     Raises:
-        SceneError: a file cannot be written, the result has the suffix of another format, or the figure has no suffix
-            that can be drawn.
         PlotUnavailableError: a figure is asked for and matplotlib is not installed.
     """
-    problems: list[Problem] = []
+    for option, file in files.items():
+        if option == "--animation":
+            check_animation(file, problems)
+            continue
+        with collect_problems(problems):
+            if option == "--plot":
+                check_plot(file, meshes=meshes)
+            else:
+                check_file(file, option, SUFFIXES.get(option, output_suffix))
     with collect_problems(problems):
-        check_file(output, "--output", suffix)
+        check_inputs_stay(files, scene, settings, *others)
+
+
+def read_checked(scene: Path, settings: list[str] | None, problems: list[Problem]) -> Scene:
+    """The scene of a file.
+
+    Args:
+        scene: the file.
+        settings: changes of the scene.
+        problems: faults of other options.
+
+    Raises:
+        SceneError: with these problems and every fault of the scene.
+    """
+    checked: Scene | None = None
     with collect_problems(problems):
-        _check_plot(plot, meshes=meshes)
-    if problems:
+        checked = read_scene(scene, tuple(settings or ()))
+    if problems or checked is None:
         raise SceneError(*problems)
+    return checked
 
 
 def check_animation(animation: Path | None, problems: list[Problem], *, meshes: bool = False) -> None:
@@ -166,7 +203,13 @@ def check_inputs_stay(
         raise SceneError(*problems)
 
 
-def _check_plot(plot: Path | None, *, meshes: bool) -> None:
+def check_plot(plot: Path | None, *, meshes: bool = False) -> None:
+    """Refuse a figure that cannot be drawn or written; ``meshes`` says whether it may be a file of meshes.
+
+    Raises:
+        SceneError: the file cannot be written, or has no suffix that can be drawn.
+        PlotUnavailableError: matplotlib is not installed.
+    """
     if plot is None:
         return
     if meshes and plot.suffix.lower() in MESHES:

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
-from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay, check_outputs
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay, check_plot
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
@@ -43,7 +43,7 @@ def check(
 ) -> None:
     """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
     overrides = tuple(settings or ())
-    check_outputs(None, plot)
+    check_plot(plot)
     checked_scene = read_scene(scene, overrides)
     check_inputs_stay({"--plot": plot}, scene, settings)
     if checked_scene.tubes:

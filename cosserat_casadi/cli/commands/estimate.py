@@ -16,19 +16,19 @@ from cosserat_casadi.cli.options import (
     SceneFile,
     Settings,
     check_inputs_stay,
-    check_outputs,
+    check_plot,
     given_files,
+    read_checked,
 )
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
-from cosserat_casadi.errors import Problem, SceneError, collect_problems
+from cosserat_casadi.errors import Problem, collect_problems
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.results.presentation import csv_of
-from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.spelling import counted
 
 FORMATS = (".json", ".csv")
@@ -51,17 +51,13 @@ def estimate(
     with collect_problems(problems):
         check_writable(output, "--output")
     with collect_problems(problems):
-        check_outputs(None, plot)
+        check_plot(plot)
     with collect_problems(problems):
         check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
     suffix = output.suffix.lower()
     if suffix not in FORMATS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))
-    checked_scene: Scene | None = None
-    with collect_problems(problems):
-        checked_scene = read_scene(scene, tuple(settings or ()))
-    if problems or checked_scene is None:
-        raise SceneError(*problems)
+    checked_scene = read_checked(scene, settings, problems)
     with sweep_display() as show_count:
         found = estimation.estimate(checked_scene, cores=cores, progress=show_count)
     text = csv_of(found) if suffix == ".csv" else json_text(found.to_dict())

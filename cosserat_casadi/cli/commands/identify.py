@@ -10,24 +10,17 @@ from rich.console import Console
 
 from cosserat_casadi import identification
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_file,
-    check_inputs_stay,
-    check_outputs,
-)
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files, read_checked
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.identification import (
     print_identification,
     print_refused_scene,
 )
-from cosserat_casadi.errors import Problem, SceneError, collect_problems
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification.fitted_scene import beside
 from cosserat_casadi.results.presentation import write_all
-from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
 ENDED_EARLY = "The numbers are those at which the search ended."
@@ -52,21 +45,12 @@ def identify(
     Exit codes: 0 found, 2 refused, 3 not found, not determined by the data, or found and no scene with --write.
     """
     problems: list[Problem] = []
-    with collect_problems(problems):
-        check_outputs(output, plot)
-    with collect_problems(problems):
-        check_file(write, "--write", ".toml")
-    with collect_problems(problems):
-        check_inputs_stay({"--output": output, "--plot": plot, "--write": write}, scene, settings)
+    check_files({"--output": output, "--plot": plot, "--write": write}, scene, settings, problems)
     if starts is not None and starts < 1:
         problems.append(Problem("--starts", f"must be 1 or more, got {starts}"))
     if hold_out is not None and not 0.0 <= hold_out < 1.0:
         problems.append(Problem("--hold-out", f"must be >= 0 and < 1, got {hold_out:g}"))
-    checked_scene: Scene | None = None
-    with collect_problems(problems):
-        checked_scene = read_scene(scene, tuple(settings or ()))
-    if problems or checked_scene is None:
-        raise SceneError(*problems)
+    checked_scene = read_checked(scene, settings, problems)
 
     with solve_display("Identifying") as display:
 

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from cosserat_casadi import control
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay, check_outputs
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
@@ -47,8 +47,11 @@ def inverse(
     """
     if stable and unstable:
         raise SceneError(Problem("--unstable", "stands beside --stable", "leave one of them out"))
-    check_outputs(output, plot, ".json" if table is None else ".csv")
-    check_inputs_stay({"--output": output, "--plot": plot}, scene, settings, table)
+    problems: list[Problem] = []
+    suffix = ".json" if table is None else ".csv"
+    check_files({"--output": output, "--plot": plot}, scene, settings, problems, table, output_suffix=suffix)
+    if problems:
+        raise SceneError(*problems)
     if table is not None:
         _check_table(output, plot)
         _inverse_of_table(scene, settings, table, output, stable, unstable)

@@ -9,19 +9,12 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_animation,
-    check_inputs_stay,
-    check_outputs,
-)
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files, read_checked
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.motion import print_modes
-from cosserat_casadi.errors import Problem, SceneError, collect_problems
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
 from cosserat_casadi.results.presentation import write_all
-from cosserat_casadi.scene import Scene, read_scene
 
 
 def modes(
@@ -42,14 +35,8 @@ def modes(
         problems.append(Problem("--count", f"must be 1 or more, got {count}"))
     elif not 1 <= mode <= count:
         problems.append(Problem("--mode", f"must be from 1 to {count}, got {mode}", "ask for more modes with --count"))
-    _check_files(output, plot, animation, problems)
-    with collect_problems(problems):
-        check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings)
-    checked_scene: Scene | None = None
-    with collect_problems(problems):
-        checked_scene = read_scene(scene, tuple(settings or ()))
-    if problems or checked_scene is None:
-        raise SceneError(*problems)
+    check_files({"--output": output, "--plot": plot, "--animation": animation}, scene, settings, problems)
+    checked_scene = read_checked(scene, settings, problems)
 
     with solve_display("Finding modes") as display:
         found = modes_of(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
@@ -68,12 +55,6 @@ def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> N
     count = len(found.modes)
     if animation is not None and 0 < count < number:
         raise SceneError(Problem("--mode", f"must be from 1 to {count}: the scene has no more modes; got {number}"))
-
-
-def _check_files(output: Path | None, plot: Path | None, animation: Path | None, problems: list[Problem]) -> None:
-    with collect_problems(problems):
-        check_outputs(output, plot)
-    check_animation(animation, problems)
 
 
 def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) -> list[Path]:

@@ -12,14 +12,7 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_animation,
-    check_file,
-    check_inputs_stay,
-    check_outputs,
-)
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.progress import share_display, solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.cli.reports.tubes import print_tube_path
@@ -88,15 +81,8 @@ def path(
     problems: list[Problem] = []
     if bifurcation == 0:
         problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
-    with collect_problems(problems):
-        check_outputs(output, plot)
-    with collect_problems(problems):
-        check_file(table, "--csv", ".csv")
-    check_animation(animation, problems)
-    with collect_problems(problems):
-        check_inputs_stay(
-            {"--output": output, "--plot": plot, "--csv": table, "--animation": animation}, scene, settings
-        )
+    files = {"--output": output, "--plot": plot, "--csv": table, "--animation": animation}
+    check_files(files, scene, settings, problems)
     checked_scene, way = _check_way(scene, tuple(settings or ()), name, to, ranges or [], problems)
     # The branch that follow leaves along is a number; 0 stays on the path.
     branch_number = bifurcation if branch else 0

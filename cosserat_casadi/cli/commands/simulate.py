@@ -14,7 +14,7 @@ from cosserat_casadi.cli.options import (
     Settings,
     check_animation,
     check_inputs_stay,
-    check_outputs,
+    check_plot,
     given_files,
 )
 from cosserat_casadi.cli.progress import motion_display, share_display
@@ -125,7 +125,7 @@ def _check_files(
         with collect_problems(problems):
             check_motion_path(output)
     with collect_problems(problems):
-        check_outputs(None, plot)
+        check_plot(plot)
     if not speed > 0.0:
         problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
     check_animation(animation, problems, meshes=True)

@@ -10,12 +10,7 @@ from rich.console import Console
 
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_inputs_stay,
-    check_outputs,
-)
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
@@ -55,10 +50,7 @@ def solve(
     """
     # A file that cannot be written is refused before the solve, not after it.
     problems: list[Problem] = []
-    with collect_problems(problems):
-        check_outputs(output, plot, meshes=True)
-    with collect_problems(problems):
-        check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
+    check_files({"--output": output, "--plot": plot}, scene, settings, problems, meshes=True)
     with collect_problems(problems):
         read = read_scene(scene, tuple(settings or ()))
         if every and not read.tubes:

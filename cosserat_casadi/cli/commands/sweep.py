@@ -16,7 +16,7 @@ from cosserat_casadi.cli.options import (
     Settings,
     check_file,
     check_inputs_stay,
-    check_outputs,
+    check_plot,
 )
 from cosserat_casadi.cli.progress import CountCallback, sweep_display
 from cosserat_casadi.cli.reports.format import print_written
@@ -96,7 +96,7 @@ def sweep(
     with collect_problems(problems):
         check_file(sobol, "--sobol", ".json")
     with collect_problems(problems):
-        check_outputs(None, plot)
+        check_plot(plot)
     with collect_problems(problems):
         outputs = {"--output": output, "the record of --output": record_file(output), "--sobol": sobol, "--plot": plot}
         check_inputs_stay(outputs, scene, settings, over)
