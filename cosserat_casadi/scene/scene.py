@@ -12,7 +12,6 @@ from cosserat_casadi.scene.accuracy import Accuracy
 from cosserat_casadi.scene.actuator_records import Actuator
 from cosserat_casadi.scene.constraint_records import Body, Joint, Support
 from cosserat_casadi.scene.disk_record import Disks
-from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_range_records import InputRanges
@@ -28,7 +27,7 @@ from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import TOLERANCE, Simulation
 from cosserat_casadi.scene.target_records import Bound, Target
 from cosserat_casadi.scene.tube_records import Tube
-from cosserat_casadi.scene.unknown_records import IdentificationSettings, Unknown
+from cosserat_casadi.scene.unknown_records import Estimation, IdentificationSettings, Unknown
 from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
 from cosserat_casadi.scene.velocity_record import InitialVelocity
 

@@ -24,11 +24,10 @@ from typing import Self
 
 import casadi as ca
 
-from cosserat_casadi.maths.composition import SHARES
 from cosserat_casadi.maths.magnus import increment
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.tubes.stages import Staged
+from cosserat_casadi.tubes.stages import SHARES, Staged
 
 
 @dataclass(frozen=True)

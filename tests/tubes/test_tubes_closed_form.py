@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq, minimize_scalar
 
 from cosserat_casadi import all_equilibria, follow, solve
-from cosserat_casadi.maths.composition import SHARES
 from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.stages import SHARES
 from cosserat_casadi.tubes.tube_model import TubeModel
 from cosserat_casadi.tubes.tube_stability import stability_of
 from tests.tubes.pendulum import Pendulum
