@@ -6,6 +6,8 @@ m/p times what its last one moves. See docs/theory.md, section 11.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
@@ -13,6 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import watched_times
+from cosserat_casadi.rod.discretisation import Discretisation
 
 UNKNOWN_ORDER = 1.7
 """Power of the modes with which errors fall, before two distances tell; waves of a sudden load have 2.3."""
@@ -32,6 +35,20 @@ TINY = float(np.finfo(float).tiny)
 
 ByStrain = dict[str, list[FloatArray]]
 """Of every rod and each of its strains: a number for the coefficients of each degree."""
+
+
+def told_by_modes(modes: int, others: int, order: float) -> float:
+    """Error of a motion over its distance from one on other modes, from above, if errors go as modes^−order.
+
+    The error of the others is (modes / others)^order times that of the motion.
+    """
+    others_error: float = (modes / others) ** order
+    return SAFETY / abs(1.0 - others_error)
+
+
+def most_modes(chosen: Mapping[str, Discretisation]) -> int:
+    """Most polynomials of a strain in an element, of all rods."""
+    return max(max(discretisation.modes) for discretisation in chosen.values())
 
 
 def felt(history: History, duration: float) -> ByStrain:

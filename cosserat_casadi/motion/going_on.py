@@ -17,7 +17,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
-from cosserat_casadi.motion.felt_modes import lacking
+from cosserat_casadi.motion.felt_modes import UNKNOWN_ORDER, lacking, most_modes, told_by_modes
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
@@ -29,7 +29,9 @@ from cosserat_casadi.motion.simulate import (
     Tell,
     bound_of,
     ended_early,
+    is_struck,
     judged,
+    left_by,
     motion_of,
     moving_inputs,
     tolerance_of,
@@ -118,8 +120,11 @@ def go_on(
         if told.outcome is StepOutcome.INTERRUPTED:
             message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
             return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
-        error += strand.factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
-        companions.append(Companion(told, strand.factor, strand.impacts))
+        factor = strand.factor
+        if is_struck(history) or is_struck(told):
+            factor = max(factor, _factor_after_impacts(first, strand, history, told))
+        error += factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
+        companions.append(Companion(told, factor, strand.impacts))
     by_modes = any(strand.discretisation != first.discretisation for strand in checkpoint.strands)
     if given is None and not scene.accuracy.fixed and not by_modes:
         # The modes were enough so far, as their last coefficients told.
@@ -128,6 +133,24 @@ def go_on(
     total = float(np.maximum(error, checkpoint.error))
     bound = bound_of(scene, asked, tolerance_of(model, asked))
     return judged(simulator, history, total, bound, companions)
+
+
+def _factor_after_impacts(first: Strand, strand: Strand, history: History, told: History) -> float:
+    """Error of a motion over its distance from one that tells it, from above, where either was struck as they went on.
+
+    Args:
+        first: the strand of the motion.
+        strand: that of the one that tells its error.
+        history: the motion.
+        told: the one that tells its error.
+    """
+    modes, others = most_modes(first.discretisation), most_modes(strand.discretisation)
+    if modes != others:
+        return told_by_modes(modes, others, UNKNOWN_ORDER)
+    if strand.settings.size is not None or strand.discretisation != first.discretisation:
+        return strand.factor
+    tighter = float(np.max(strand.settings.tolerance / first.settings.tolerance))
+    return left_by(tighter, history, told)
 
 
 def _moving(subject: Scene | Model, simulation: Simulation | None) -> Scene:

@@ -21,7 +21,16 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.motion.felt_modes import REST, SAFETY, UNKNOWN_ORDER, felt, lacking, last_of
+from cosserat_casadi.motion.felt_modes import (
+    REST,
+    SAFETY,
+    UNKNOWN_ORDER,
+    felt,
+    lacking,
+    last_of,
+    most_modes,
+    told_by_modes,
+)
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -190,7 +199,7 @@ class _Search:
         first, second, third = (level.modes for level in self.levels[-3:])
         told = self.last.distance / self.levels[-2].distance
         # Impacts fall at other times and sections on other modes: distances may shrink by chance.
-        fastest = UNKNOWN_ORDER if self.last.history.lost > 0.0 else FASTEST
+        fastest = UNKNOWN_ORDER if _has_blows(self.last.history) else FASTEST
         orders = np.linspace(SLOWEST, fastest, ORDERS)
         # By the law, the distance of the last two levels over that of the two before falls with the order.
         by_law = (1.0 - (third / second) ** -orders) / ((second / first) ** orders - 1.0)
@@ -215,8 +224,7 @@ class _Search:
 
     def left_over_distance(self, order: float) -> float:
         """Error of the paths that the modes of the last level leave, over their distance from the level before."""
-        left: float = (self.last.modes / self.levels[-2].modes) ** -order
-        return SAFETY * left / (1.0 - left)
+        return told_by_modes(self.last.modes, self.levels[-2].modes, order)
 
     def climb(self) -> int | None:
         """The next rung: as far up as seems to be needed; None where the last one would not do."""
@@ -324,11 +332,15 @@ def _with_fixed(search: _Search) -> Motion:
         history = witness.controlled(_step_tolerance(search, timed))
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
+        # After impacts errors fall as slowly with the modes as in a search.
+        struck = is_struck(timed.history) or is_struck(history)
+        modes = most_modes(model.discretisation)
+        left = told_by_modes(modes, modes + FINER_MODES, UNKNOWN_ORDER) if struck else SAFETY
         if history.completed:
-            space_error = SAFETY * path_distance(level.paths, witness.paths(history))
+            space_error = left * path_distance(level.paths, witness.paths(history))
     companions = [timed.companion]
     if witness.start.found:
-        companions.append(Companion(history, SAFETY))
+        companions.append(Companion(history, left))
     return _judged(search, level, space_error + timed.error, companions)
 
 
@@ -555,13 +567,18 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
             if moved.max() < FELT * search.tolerance:
                 counts.append(1)
                 unseen = max(unseen, REST * kept * float(moved.max()))
-            elif last < FELT * search.tolerance and history.lost == 0.0:
+            elif last < FELT * search.tolerance and not _has_blows(history):
                 counts.append(kept)
                 unseen = max(unseen, REST * kept * last)
             else:
                 counts.append(count)
         chosen[name] = replace(discretisation, modes=tuple(counts))
     return chosen, unseen
+
+
+def _has_blows(history: History) -> bool:
+    """Whether a motion has impacts, also such as take no energy, or cables that snapped taut."""
+    return history.lost > 0.0 or is_struck(history)
 
 
 def _judged(search: _Search, level: ResolvedMotion, error: float, companions: Sequence[Companion | None]) -> Motion:

@@ -288,7 +288,7 @@ class Simulator:
             # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
             return self.told_by_half(fine, tolerance)
         distance = path_distance(self.paths(timed.history), self.paths(fine))
-        left = left_by(factor, fine) * (1.0 + FEW_STEPS / max(steps, 1))
+        left = left_by(factor, fine, timed.history)
         return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:
@@ -386,10 +386,10 @@ def is_struck(history: History) -> bool:
     return any(event.kind == "impact" for event in history.events)
 
 
-def left_by(factor: float, finer: History) -> float:
+def left_by(factor: float, finer: History, *coarser: History) -> float:
     """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances."""
-    slope = LEAST_SLOPE_AFTER_IMPACTS if is_struck(finer) else LEAST_SLOPE
-    return 1.0 / float(factor**slope - 1.0)
+    slope = LEAST_SLOPE_AFTER_IMPACTS if any(map(is_struck, [finer, *coarser])) else LEAST_SLOPE
+    return (1.0 + FEW_STEPS / max(finer.statistics.steps, 1)) / float(factor**slope - 1.0)
 
 
 def factor_for(error: float, tolerance: float) -> float:

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
-from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, lacking, out_of_phase
+from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, lacking, out_of_phase, told_by_modes
 from cosserat_casadi.motion.motion_refinement import FASTEST, SLOWEST, ResolvedMotion, _Search
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.scene.simulation import Simulation
@@ -23,7 +23,7 @@ from tests.motion.stepping import moving_model
 def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3, lost: float = 0.0) -> _Search:
     """A search whose errors are modes^−order, and whose impacts took an energy, J."""
     anything: Any = None
-    history: Any = SimpleNamespace(lost=lost)
+    history: Any = SimpleNamespace(lost=lost, events=())
     found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance, VERIFIED_MODES)
     before = float("inf")
     for number in modes:
@@ -37,6 +37,13 @@ def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3, lost: 
 @pytest.mark.parametrize("modes", [(6, 9, 12), (9, 12, 16), (6, 12, 14)])
 def test_errors_by_a_power_are_told_with_the_factor_of_safety(modes: tuple[int, ...], order: float) -> None:
     assert_allclose(search(modes, order).space_error, SAFETY * modes[-1] ** -order, rtol=2e-3, atol=0)
+
+
+@pytest.mark.parametrize("order", [0.5, 1.7, 4.0])
+@pytest.mark.parametrize(("modes", "others"), [(8, 12), (12, 8), (1, 5)])
+def test_two_motions_tell_the_error_of_either(modes: int, others: int, order: float) -> None:
+    own, other = (float(number) ** -order for number in (modes, others))
+    assert_allclose(told_by_modes(modes, others, order) * abs(own - other), SAFETY * own, rtol=1e-12, atol=0)
 
 
 def test_orders_beyond_belief_are_bounded() -> None:

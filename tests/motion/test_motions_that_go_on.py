@@ -11,7 +11,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import SceneError, scene_from_dict, simulate
+from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.motion.checkpoint import Checkpoint, EnergyAccount, Resume, Strand
+from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, told_by_modes
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.simulate import Simulator, started
@@ -22,6 +24,8 @@ from tests.motion.stepping import moving_model
 from tests.motion.test_exact_contact_in_motion import BALL, moving, rod
 
 STEP = 1.0 / 64.0
+
+BLOCK = {"name": "block", "kind": "sphere", "centre": [0.4, 0, -0.08], "radius": 0.04}
 
 
 def swing(duration: float, *, step: float | None = STEP, free: bool = False, **more: Any) -> dict[str, Any]:
@@ -162,3 +166,19 @@ def test_modes_that_were_enough_for_a_rod_at_rest_are_judged_anew_where_it_is_kn
     exact = moved({**tables, "simulation": tables["simulation"] | {"tolerance": 5e-3}}).tip().position
     error = np.linalg.norm(second.tip().position - exact[-len(second.times) :], axis=1).max() / 0.5
     assert 1e-3 < error < second.error_estimate
+
+
+def test_blows_count_in_the_error_of_a_motion_that_goes_on_to_them() -> None:
+    """Before them two motions tell an error with smaller factors: that of its steps was a fifth of what it is."""
+    tables = {**swing(0.125, step=None), "motions": [], "obstacles": [BLOCK]}
+    tables["accuracy"]["tolerance"] = 1e-3
+    first = moved({**tables, "simulation": {**tables["simulation"], "duration": 0.0625}})
+    second = moved(tables, first)
+    assert not first.events
+    assert any(event.kind == "impact" for event in second.events)
+    assert first.end is not None and second.end is not None
+    (steps, modes), factors = ([strand.factor for strand in motion.end.strands[1:]] for motion in (first, second))
+    assert 4.0 * steps < factors[0]
+    assert_allclose(modes, SAFETY, rtol=1e-12, atol=0)
+    assert_allclose(factors[1], told_by_modes(2, 2 + FINER_MODES, UNKNOWN_ORDER), rtol=1e-12, atol=0)
+    assert first.error_estimate < second.error_estimate
