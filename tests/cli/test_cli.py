@@ -166,6 +166,7 @@ def test_check_says_how_lists_were_read(wire: Path) -> None:
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,"], "--to: must be a number or a list"),
         (["path", "wire.toml", "--input", "push.force", "--to", '["a",0,1]'], "--to: must be a number or a list"),
         (["path", "wire.toml", "--input", "push.force", "--to", "1], b = [2"], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "0,0,1"], "write it as in TOML: [0, 0, -5.0]"),
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--csv", "no/p.csv"], "--csv"),
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--plot", "f.doc"], "--plot"),
         (["inverse", "wire.toml", "--output", "r.json"], "targets: missing"),

@@ -232,10 +232,10 @@ def _vector(text: str) -> FloatArray:
         SceneError: the text is none of these, or a number is not finite.
     """
     try:
-        # Inside a list the text must be one value: "1], b = [2" would be two keys otherwise.
-        value = tomllib.loads(f"value = [{text}]")["value"][0]
+        # Inside a list the text must be one value: "1], b = [2" would be two keys otherwise, and "1,5" the number 1.
+        (value,) = tomllib.loads(f"value = [{text}]")["value"]
         array = _array(value)
-    except (tomllib.TOMLDecodeError, LookupError, TypeError, ValueError):
+    except (tomllib.TOMLDecodeError, TypeError, ValueError):
         fault = f"must be a number or a list of numbers, got {text}"
         raise SceneError(Problem("--to", fault, "write it as in TOML: [0, 0, -5.0]")) from None
     if not np.all(np.isfinite(array)):
