@@ -10,7 +10,6 @@ from collections.abc import Callable
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.cli.command_group import CommandGroup
@@ -27,7 +26,7 @@ from cosserat_casadi.cli.signals import (
     was_interrupted,
     was_terminated,
 )
-from cosserat_casadi.cli.terminal import flush_streams, prepare_streams, silence_output
+from cosserat_casadi.cli.terminal import Console, flush_streams, prepare_streams, silence_output
 from cosserat_casadi.errors import CosseratError, ExportError, SceneError, WriteError
 from cosserat_casadi.spelling import counted
 

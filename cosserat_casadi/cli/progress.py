@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rich.console import Console
 from rich.progress import (
     BarColumn,
     Progress,
@@ -22,6 +21,7 @@ from rich.progress import (
 from rich.text import Text
 
 from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt, take_time
+from cosserat_casadi.cli.terminal import Console
 
 # Only named in a signature: a solve shows how far it is without any module of motions.
 if TYPE_CHECKING:

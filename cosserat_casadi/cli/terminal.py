@@ -12,6 +12,8 @@ from contextlib import suppress
 from itertools import groupby
 from typing import Any, BinaryIO
 
+from rich import console
+
 PLAIN = {
     "µ": "u",
     "λ": "lambda",
@@ -34,6 +36,13 @@ PLAIN = {
 
 HANDLER = "cosserat_plain"
 """Name of the error handler that writes it."""
+
+
+class Console(console.Console):
+    """A console that shows colons as they are: rich makes an emoji of the ``:b:`` in ``x=a:b:3``."""
+
+    def __init__(self, *, stderr: bool = False) -> None:
+        super().__init__(stderr=stderr, emoji=False)
 
 
 def prepare_streams() -> None:

@@ -126,7 +126,7 @@ def read_range(text: str) -> AskedRange:
         raise SceneError(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
     # At most nine digits: Python refuses to read integers of thousands.
     if colon and not re.fullmatch(r"[0-9]{1,9}", values):
-        problem = f"{text!r} has no whole number of values"
+        problem = f"{text!r} has no whole number of values below 10⁹"
         raise SceneError(Problem("--range", problem, "such as push.force.x=-1:1:21"))
     return AskedRange(name.strip(), low, high, int(values) if colon else None)
 

@@ -24,6 +24,7 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.scene import Scene, scene_from_dict
+from cosserat_casadi.scene.faults import listing
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
@@ -101,6 +102,9 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     free = _with_swept_inputs(scene, table.columns)
     layout = input_layout(free)
     index_of = column_indices(layout)
+    whole = list(_named_whole(table, layout, index_of))
+    if whole:
+        raise SceneError(*whole)
     input_columns = [k for k, column in enumerate(table.columns) if column in index_of]
     parameter_columns = [k for k, column in enumerate(table.columns) if column not in index_of]
     inputs = table.scratch.array((len(table.values), layout.size))
@@ -131,6 +135,15 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     if problems:
         raise SceneError(*shortened(problems, table.where))
     return Variants(free.baked(), tuple(entries), inputs, layout, parameters, arguments, p)
+
+
+def _named_whole(table: Table, layout: InputLayout, index_of: Mapping[str, int]) -> Iterator[Problem]:
+    """Columns with the name of an input of several numbers, which would be refused in every row."""
+    for name in layout.names:
+        if name in table.columns and name not in index_of:
+            entries = [column for column in index_of if column.startswith(f"{name}.")]
+            problem = f"{name!r} has {len(entries)} numbers, and a column is one"
+            yield Problem(table.where, problem, listing(entries, "name its entries"))
 
 
 def _overridden(

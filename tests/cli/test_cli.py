@@ -155,7 +155,7 @@ def test_check_says_how_lists_were_read(wire: Path) -> None:
         (["path", "wire.toml"], "--input: is missing"),
         (["path", "wire.toml", "--input", "push.force"], "--to: is missing: the value that push.force goes to"),
         (["path", "wire.toml", "--range", "push.force=0:1:5"], "no number of an input"),
-        (["path", "wire.toml", "--range", "push.force.x=0:1:1"], "asks for 1 points"),
+        (["path", "wire.toml", "--range", "push.force.x=0:1:1"], "asks for 1 point ("),
         (["path", "wire.toml", "--range", "push.force.x=2:2"], "ends where it begins"),
         (["path", "wire.toml", "--range", "push.force.x=0:1", "--to", "[0,0,1]"], "beside --input or --to"),
         (["path", "wire.toml", "--range", "push.force.x=0:1", "--range", "push.force.y=0:1"], "follows one input"),

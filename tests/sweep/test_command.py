@@ -50,6 +50,12 @@ def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
             ["does not say how many values (write push.force.x=0:1:21"],
         ),
         (("--output", "a.csv", "--range", "push.force.x=0:1:many"), ["has no whole number of values"]),
+        # Colons about a letter are no emoji.
+        (("--output", "a.csv", "--range", "push.force.x=a:b:3"), ["'push.force.x=a:b:3' has no two finite numbers"]),
+        (
+            ("--output", "a.csv", "--range", "push.force=0:1:300"),
+            ["Refused: 1 problem", "'push.force' has 3 numbers", "name its entries: push.force.x, push.force.y, push"],
+        ),
         (("--output", "a.csv", "--range", "push.force.x=0:1:1"), ["has one value between two ends"]),
         (
             ("--output", "a.csv", "--range", "push.force.x=0:1:10000", "--range", "push.force.z=0:1:10000"),

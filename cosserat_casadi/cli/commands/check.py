@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
@@ -15,6 +14,7 @@ from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import NOT_KNOWN, locking_note, may_be_locked
 from cosserat_casadi.equilibrium.solve import solve

@@ -6,12 +6,12 @@ import sys
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.markdown import Markdown
 from rich.markup import escape
 
 from cosserat_casadi.cli.reports.format import print_plain, table_of
 from cosserat_casadi.cli.shipped import page_title, pages
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
@@ -23,6 +22,7 @@ from cosserat_casadi.cli.options import (
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, collect_problems
 from cosserat_casadi.estimation import Estimate

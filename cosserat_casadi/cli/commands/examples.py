@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of
 from cosserat_casadi.cli.shipped import Example, shipped_folder
 from cosserat_casadi.cli.shipped import examples as shipped_examples
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.accuracy.choose import SAMPLES, Choice
@@ -23,6 +22,7 @@ from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_batches, check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model

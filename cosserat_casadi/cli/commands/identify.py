@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi import identification
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
@@ -17,6 +16,7 @@ from cosserat_casadi.cli.reports.identification import (
     print_identification,
     print_refused_scene,
 )
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification.fitted_scene import beside

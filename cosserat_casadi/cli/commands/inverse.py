@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi import control
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
@@ -14,6 +13,7 @@ from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import read_targets
 from cosserat_casadi.errors import Problem, SceneError

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files, read_checked
 from cosserat_casadi.cli.progress import solve_display
 from cosserat_casadi.cli.reports.motion import print_modes
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.motion.vibration_modes import DEFAULT_COUNT, Modes, modes_of
 from cosserat_casadi.results.presentation import write_all

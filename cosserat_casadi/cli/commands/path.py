@@ -9,13 +9,13 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.progress import share_display, solve_display
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.cli.reports.tubes import print_tube_path
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
@@ -27,6 +27,7 @@ from cosserat_casadi.paths.path_refinement import follow
 from cosserat_casadi.paths.tube_path import TubePath, usual_limits
 from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.spelling import counted
 from cosserat_casadi.tubes.robot import robot_of
 
 MOST_POINTS = 1000
@@ -175,7 +176,7 @@ def _asked_range(text: str) -> AskedRange:
         raise SceneError(Problem("--range", f"{text!r} ends where it begins", "give another value to go to"))
     if asked.count is not None and not 2 <= asked.count <= MOST_POINTS:
         remedy = f"a path has 2 to {MOST_POINTS} points; leave the count out for as many as it needs"
-        raise SceneError(Problem("--range", f"{text!r} asks for {asked.count} points", remedy))
+        raise SceneError(Problem("--range", f"{text!r} asks for {counted(asked.count, 'point')}", remedy))
     return asked
 
 

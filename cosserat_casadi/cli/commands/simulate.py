@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
@@ -21,6 +20,7 @@ from cosserat_casadi.cli.progress import motion_display, share_display
 from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion
 from cosserat_casadi.cli.signals import StoppedError
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import MESHES, check_writable
 from cosserat_casadi.model.tube_checks import refuse_tubes

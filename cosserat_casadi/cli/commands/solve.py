@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
-from cosserat_casadi.cli.terminal import binary_output
+from cosserat_casadi.cli.terminal import Console, binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import MESHES, write_whole

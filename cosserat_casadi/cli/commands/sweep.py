@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
@@ -22,6 +21,7 @@ from cosserat_casadi.cli.progress import CountCallback, sweep_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.json_text import json_text

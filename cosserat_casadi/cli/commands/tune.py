@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.accuracy.choose import SAMPLES, SAMPLES_IN_CONTACT
 from cosserat_casadi.accuracy.fixing import unfixed
@@ -23,6 +22,7 @@ from cosserat_casadi.cli.options import (
 )
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.cli.reports.numbers import discretisation_table
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.scene import read_scene

@@ -6,7 +6,6 @@ import webbrowser
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
 from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.commands.solving import solve_rods_with_progress, solve_with_progress
@@ -16,6 +15,7 @@ from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
+from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import locking_note, locking_sentence
 from cosserat_casadi.equilibrium.solution import Equilibrium
