@@ -5,6 +5,7 @@ See docs/contact.md, "Paths", and contact_transitions.py for how one leads to an
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from itertools import product
 
@@ -57,8 +58,7 @@ class ContactPath(EquilibriumPath):
     @property
     def resolution_indices(self) -> FloatArray:
         """Resolution index at all points, shape (k,): one above 1 is not resolved, as a solve would not be."""
-        points = zip(self.arrangement, self.x, self.factor, strict=True)
-        return np.array([self.arrangements[number].resolution_index(z, factor) for number, z, factor in points])
+        return np.array([self.arrangements[number].resolution_index(z, factor) for z, factor, number in self._points])
 
     def contacts(self, index: int) -> tuple[PathContact, ...]:
         """The contacts at a point of the path."""
@@ -70,41 +70,24 @@ class ContactPath(EquilibriumPath):
             contacts.append(_path_contact(touch, forces, inside))
         return tuple(contacts)
 
-    def tip(self, rod: str | None = None) -> SolvedPoses:
-        """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
-        name = self.model.rod_name(rod)
-        poses = [self._pose(index, TIP, name) for index in range(len(self.factor))]
-        return SolvedPoses(
-            position=np.array([pose.position for pose in poses]).reshape(-1, 3),
-            rotation=np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
-            quaternion=np.array([pose.quaternion for pose in poses]).reshape(-1, 4),
-        )
-
-    def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
-        """Pose of a rod's tip at an event."""
-        name = self.model.rod_name(rod)
-        return self.arrangements[event.arrangement].poses(event.x, event.factor, TIP, name)
-
-    def position(self, X: float, rod: str | None = None) -> FloatArray:
-        """Positions of a section at the k points of the path, shape (k, 3), m."""
-        name = self.model.rod_name(rod)
-        positions = [self._pose(index, X, name).position for index in range(len(self.factor))]
-        return np.array(positions).reshape(-1, 3)
-
-    def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
-        """Position of a section at an event, shape (3,), m."""
-        name = self.model.rod_name(rod)
-        return self.arrangements[event.arrangement].poses(event.x, event.factor, X, name).position
-
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
         arrangement = self.arrangements[self.arrangement[index]]
         found = arrangement.equilibrium_at(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
-    def _pose(self, index: int, X: float, rod: str) -> SolvedPoses:
-        arrangement: Arrangement = self.arrangements[self.arrangement[index]]
-        return arrangement.poses(self.x[index], float(self.factor[index]), X, rod)
+    @property
+    def _points(self) -> Iterable[tuple[FloatArray, float, int]]:
+        """Unknowns, factor and number of the arrangement of contacts of each point."""
+        return zip(self.x, self.factor.tolist(), self.arrangement.tolist(), strict=True)
+
+    def _tip(self, rod: str, x: FloatArray, factor: float, arrangement: int) -> SolvedPoses:
+        """Pose of a rod's tip."""
+        return self.arrangements[arrangement].poses(x, factor, TIP, rod)
+
+    def _position(self, rod: str, X: float, x: FloatArray, factor: float, arrangement: int) -> FloatArray:
+        """Position of a section of a rod, shape (3,), m."""
+        return self.arrangements[arrangement].poses(x, factor, X, rod).position
 
     @property
     def stopped_at(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
@@ -197,12 +198,16 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     def tip(self, rod: str | None = None) -> SolvedPoses:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
         name = self.model.rod_name(rod)
-        return self._tips(name, self.factor, self.x)
+        poses = [self._tip(name, *point) for point in self._points]
+        return SolvedPoses(
+            position=np.array([pose.position for pose in poses]).reshape(-1, 3),
+            rotation=np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
+            quaternion=np.array([pose.quaternion for pose in poses]).reshape(-1, 4),
+        )
 
     def event_tip(self, event: PathEvent, rod: str | None = None) -> SolvedPoses:
         """Pose of a rod's tip at an event."""
-        tips = self._tips(self.model.rod_name(rod), [event.factor], [event.x])
-        return SolvedPoses(tips.position[0], tips.rotation[0], tips.quaternion[0])
+        return self._tip(self.model.rod_name(rod), event.x, event.factor, event.arrangement)
 
     def section(self, rod: str | None = None) -> float:
         """Abscissa of the section whose way tells most of the path.
@@ -224,13 +229,11 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     def position(self, X: float, rod: str | None = None) -> FloatArray:
         """Positions of a section at the k points of the path, shape (k, 3), m."""
         name = self.model.rod_name(rod)
-        return self._positions(name, X, self.factor, self.x)
+        return np.array([self._position(name, X, *point) for point in self._points]).reshape(-1, 3)
 
     def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
         """Position of a section at an event, shape (3,), m."""
-        name = self.model.rod_name(rod)
-        positions = self._positions(name, X, [event.factor], [event.x])
-        return np.asarray(positions[0])
+        return self._position(self.model.rod_name(rod), X, event.x, event.factor, event.arrangement)
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for.
@@ -262,37 +265,18 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
             stable=bool(stable[index]),
         )
 
-    def _tips(self, rod: str, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> SolvedPoses:
-        """Poses of a rod's tip at k equilibria.
+    @property
+    def _points(self) -> Iterable[tuple[FloatArray, float, int]]:
+        """Unknowns, factor and number of the arrangement of contacts of each point."""
+        return zip(self.x, self.factor.tolist(), itertools.repeat(0))
 
-        Args:
-            rod: name of the rod.
-            factors: factor of each equilibrium.
-            unknowns: unknowns of each, shape (model.size,).
-        """
-        tip = self.model.tip[rod]
-        positions = []
-        quaternions = []
-        rotations = []
-        for factor, x in zip(factors, unknowns, strict=True):
-            # The length and the base of a rod may be inputs.
-            inputs = self.inputs(factor)
-            position, quaternion, rotation = tip(x, inputs)
-            positions.append(position.full()[:, 0])
-            quaternions.append(quaternion.full()[:, 0])
-            rotations.append(rotation.full())
-        return SolvedPoses(
-            position=np.array(positions).reshape(-1, 3),
-            rotation=np.array(rotations).reshape(-1, 3, 3),
-            quaternion=np.array(quaternions).reshape(-1, 4),
-        )
+    def _tip(self, rod: str, x: FloatArray, factor: float, arrangement: int) -> SolvedPoses:
+        """Pose of a rod's tip."""
+        # The length and the base of a rod may be inputs.
+        position, quaternion, rotation = self.model.tip[rod](x, self.inputs(factor))
+        return SolvedPoses(position.full()[:, 0], rotation.full(), quaternion.full()[:, 0])
 
-    def _positions(self, rod: str, X: float, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> FloatArray:
-        """Positions of a section at k equilibria, shape (k, 3), m; arguments as in :meth:`_tips`."""
-        section_pose = self.model.shape[rod]
-        positions = []
-        for factor, x in zip(factors, unknowns, strict=True):
-            inputs = self.inputs(factor)
-            position, _ = section_pose(x, inputs, X)
-            positions.append(position.full()[:, 0])
-        return np.array(positions).reshape(-1, 3)
+    def _position(self, rod: str, X: float, x: FloatArray, factor: float, arrangement: int) -> FloatArray:
+        """Position of a section of a rod, shape (3,), m."""
+        position, _ = self.model.shape[rod](x, self.inputs(factor), X)
+        return np.asarray(position.full()[:, 0])
