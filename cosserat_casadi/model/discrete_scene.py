@@ -62,12 +62,10 @@ class CableOfLength:
 
     Attributes:
         tendon: as the scene has it.
-        routing: its line through the sections.
         softness: length, relative to the rod's, that a unit of tension takes from the cable in the unloaded rod.
     """
 
     tendon: scenes.Actuator
-    routing: Routing
     softness: float
 
     @property
@@ -271,14 +269,11 @@ class DiscreteScene:
     @cached_property
     def cables(self) -> list[CableOfLength]:
         """Tendons of given length."""
-        cables = []
-        for actuator in self.scene.actuators:
-            member = EFFECTS[actuator.kind]
-            if member.prescribes_conjugate(actuator):
-                rod = self.rods[actuator.rod]
-                routing = member.quantity(actuator, rod.grid)
-                cables.append(CableOfLength(actuator, routing, self._softness(actuator)))
-        return cables
+        return [
+            CableOfLength(actuator, self._softness(actuator))
+            for actuator in self.scene.actuators
+            if EFFECTS[actuator.kind].prescribes_conjugate(actuator)
+        ]
 
     def _softness(self, actuator: scenes.Actuator) -> float:
         """Softness of a rod to a cable, by the numbers that scale the equations."""
@@ -322,61 +317,28 @@ class DiscreteScene:
     @cached_property
     def unknowns(self) -> Unknowns:
         """The unknowns x in their order: strains, multipliers, poses, coordinates, tensions, stops, flows."""
-        blocks = [
-            *self._strain_blocks(),
-            *self._multiplier_blocks(),
-            *self._pose_blocks(),
-            *self._coordinate_blocks(),
-            *self._tension_blocks(),
-            *self._stop_blocks(),
-            *self._flow_blocks(),
-        ]
-        return Unknowns(tuple(blocks))
+        return Unknowns(tuple(self._blocks()))
 
-    def _strain_blocks(self) -> Iterator[UnknownBlock]:
+    def _blocks(self) -> Iterator[UnknownBlock]:
         for name, rod in self.rods.items():
-            yield UnknownBlock(
-                kind=BlockKind.STRAIN,
-                owner=name,
-                rod=name,
-                size=rod.size,
-                unit=rod.energy_unit,
-                step_weight=1.0,
-            )
-
-    def _multiplier_blocks(self) -> Iterator[UnknownBlock]:
+            yield UnknownBlock(BlockKind.STRAIN, name, name, rod.size, rod.energy_unit)
         for placed in self.constraints:
-            yield UnknownBlock(
-                kind=BlockKind.MULTIPLIER,
-                owner=placed.where,
-                rod=placed.rod,
-                size=placed.size,
-                unit=placed.constraint.unit,
-                step_weight=placed.step_weight,
-            )
-
-    def _pose_blocks(self) -> Iterator[UnknownBlock]:
-        for name, frame in self.frames.items():
-            # Several rods may meet in a frame, so that it is solved with none of them.
-            yield UnknownBlock(
-                kind=BlockKind.POSE,
-                owner=str(name),
-                rod=None,
-                size=FloatingFrame.SIZE,
-                unit=frame.unit,
-                step_weight=1.0,
-            )
-
-    def _coordinate_blocks(self) -> Iterator[UnknownBlock]:
+            unit, weight = placed.constraint.unit, placed.step_weight
+            yield UnknownBlock(BlockKind.MULTIPLIER, placed.where, placed.rod, placed.size, unit, weight)
+        # Several rods may meet in a frame, so that it is solved with none of them.
+        for frame_name, frame in self.frames.items():
+            yield UnknownBlock(BlockKind.POSE, str(frame_name), None, FloatingFrame.SIZE, frame.unit)
         for placed in self.free_coordinates:
-            yield UnknownBlock(
-                kind=BlockKind.COORDINATE,
-                owner=placed.where,
-                rod=None,
-                size=1,
-                unit=placed.constraint.unit,
-                step_weight=1.0,
-            )
+            yield UnknownBlock(BlockKind.COORDINATE, placed.where, None, 1, placed.constraint.unit)
+        for cable in self.cables:
+            tendon, unit = cable.tendon, self.rods[cable.tendon.rod].energy_unit
+            yield UnknownBlock(BlockKind.TENSION, tendon.name, tendon.rod, 1, unit, FORCE_WEIGHT)
+        for stop in self.stops:
+            yield UnknownBlock(BlockKind.STOP, stop.owner, None, 1, stop.placed.constraint.unit, FORCE_WEIGHT)
+        for name, rod in self.rods.items():
+            branches = len(rod.properties.branches)
+            if branches and self.moving:
+                yield UnknownBlock(BlockKind.FLOW, name, name, branches * rod.size, rod.energy_unit)
 
     @cached_property
     def free_coordinates(self) -> list[PlacedConstraint]:
@@ -393,18 +355,6 @@ class DiscreteScene:
         record = self.scene.joints[placed.joint]
         assert isinstance(record, AxisJoint), "joints with a coordinate have an axis"
         return record
-
-    def _tension_blocks(self) -> Iterator[UnknownBlock]:
-        for cable in self.cables:
-            tendon = cable.tendon
-            yield UnknownBlock(
-                kind=BlockKind.TENSION,
-                owner=tendon.name,
-                rod=tendon.rod,
-                size=1,
-                unit=self.rods[tendon.rod].energy_unit,
-                step_weight=FORCE_WEIGHT,
-            )
 
     @cached_property
     def stops(self) -> list[JointStop]:
@@ -426,30 +376,6 @@ class DiscreteScene:
         """Rows of pairs of which one is zero: of cables that may go slack, then of stops."""
         of_cables = [self.tension(cable).start for cable in self.cables if cable.may_go_slack]
         return [*of_cables, *(self.stop(stop).start for stop in self.stops)]
-
-    def _stop_blocks(self) -> Iterator[UnknownBlock]:
-        for stop in self.stops:
-            yield UnknownBlock(
-                kind=BlockKind.STOP,
-                owner=stop.owner,
-                rod=None,
-                size=1,
-                unit=stop.placed.constraint.unit,
-                step_weight=FORCE_WEIGHT,
-            )
-
-    def _flow_blocks(self) -> Iterator[UnknownBlock]:
-        for name, rod in self.rods.items():
-            branches = len(rod.properties.branches)
-            if branches and self.moving:
-                yield UnknownBlock(
-                    kind=BlockKind.FLOW,
-                    owner=name,
-                    rod=name,
-                    size=branches * rod.size,
-                    unit=rod.energy_unit,
-                    step_weight=1.0,
-                )
 
     @property
     def size(self) -> int:

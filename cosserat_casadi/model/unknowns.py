@@ -53,7 +53,7 @@ class UnknownBlock:
     rod: str | None
     size: int
     unit: float
-    step_weight: float
+    step_weight: float = 1.0
 
     @property
     def differential(self) -> bool:
