@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -78,11 +78,11 @@ class SceneError(CosseratError):
 
 
 @contextmanager
-def collect_problems(problems: list[Problem]) -> Iterator[None]:
+def collect_problems(problems: list[Problem], kind: type[SceneError | ExportError] = SceneError) -> Iterator[None]:
     """Keep the problems of a refusal, and let the checks go on: a user sees every fault of a command line at once."""
     try:
         yield
-    except SceneError as error:
+    except kind as error:
         problems.extend(error.problems)
 
 
@@ -104,3 +104,10 @@ class ExportError(CosseratError):
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
         super().__init__("\n".join(str(problem) for problem in problems))
+
+
+def refuse(problems: Iterable[Problem], kind: type[SceneError | ExportError] = SceneError) -> None:
+    """Raise an error with all problems, where there are some."""
+    found = tuple(problems)
+    if found:
+        raise kind(*found)

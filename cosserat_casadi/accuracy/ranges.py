@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
@@ -193,8 +193,7 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
             problems.extend(_faults_of_ends(where, name, pairs))
         for k, (low, high) in enumerate(np.broadcast_to(pairs, (size, 2)).tolist()):
             entries[span.start + k] = (low, high, origin)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     return entries
 
 

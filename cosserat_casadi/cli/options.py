@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from cosserat_casadi.errors import Problem, SceneError, collect_problems
+from cosserat_casadi.errors import Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.files import MESHES, are_one_file, check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import case_layout, ends_by_column, no_column, read_range
@@ -71,8 +71,7 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
     problems = [
         no_column(table.where, column, layout.columns) for column in table.columns if column not in layout.columns
     ]
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     cases = np.tile(layout.default, (len(table.values), 1))
     cases[:, [layout.columns[column] for column in table.columns]] = table.values
     return cases
@@ -199,8 +198,7 @@ def check_inputs_stay(
         for earlier_option, earlier in asked[:index]:
             if are_one_file(output, earlier):
                 problems.append(Problem(option, f"{output} is the file of {earlier_option} too", "name another file"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def check_plot(plot: Path | None, *, meshes: bool = False) -> None:

@@ -28,7 +28,7 @@ from cosserat_casadi.codegen.stability import check_stability, stability_sources
 from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_files
 from cosserat_casadi.codegen.turn_budget import ALWAYS, costs_of, fitting
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import with_discretisation
@@ -152,16 +152,11 @@ def check_export(directory: Path, name: str) -> set[str]:
     """
     problems: list[Problem] = []
     stale: set[str] = set()
-    try:
+    with collect_problems(problems, ExportError):
         library_names(name)
-    except ExportError as error:
-        problems.extend(error.problems)
-    try:
+    with collect_problems(problems, ExportError):
         stale = check_folder(directory)
-    except ExportError as error:
-        problems.extend(error.problems)
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
     return stale
 
 
@@ -240,8 +235,7 @@ def check_period(scene: Scene, period: float | None) -> None:
     if scene.touches_exactly:
         problem = "is not known for a scene in exact contact, whose turns try arrangements of contacts"
         problems.append(Problem("--period", problem, "leave it out, and give NAME_track a budget"))
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def check_batches(model: Model) -> None:

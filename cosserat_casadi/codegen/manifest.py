@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.input_values import listed_values
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
@@ -110,8 +110,7 @@ def check_folder(folder: Path, described: Mapping[str, Any], sizes: Mapping[str,
         elif int(defined.group(1)) != size:
             problem = f"says {name} {defined.group(1)}, where {MANIFEST} has {size}"
             problems.append(Problem(str(header), problem, EXPORT_ANEW))
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def input_count(described: Mapping[str, Any]) -> int:

@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import PARAMETERS
@@ -112,8 +112,7 @@ def check_motion(model: Model) -> None:
         if stop.stiffness is None:
             remedy = "give the joint a stop_stiffness that the steps resolve, or simulate in Python"
             problems.append(Problem(stop.owner, "is rigid, and a step of given length finds no impact on it", remedy))
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:

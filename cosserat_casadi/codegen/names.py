@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from cosserat_casadi.codegen.texts import files_in_c
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import FunctionSpec, Owner, table
 from cosserat_casadi.model.model_functions import ModelFunctions
@@ -161,8 +161,7 @@ def library_names(
         *_macro_problems(inputs),
         *_parameter_problems(parameters),
     ]
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
     return names
 
 

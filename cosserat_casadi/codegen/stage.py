@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_comp
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import identifier, library_names
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
@@ -115,9 +115,8 @@ def check_scalar(model: Model) -> None:
         ExportError: the rotation of a rod is integrated by the literal linear system, or rods touch rods.
     """
     literal = [rod for rod, chosen in model.discretisation.items() if chosen.transport == "permuted"]
-    if literal:
-        problem = "the literal linear system of the rotation is solved with pivoting, which has no scalar form"
-        raise ExportError(*[Problem(f"rods.{rod}", problem, "leave accuracy.rotation out") for rod in literal])
+    problem = "the literal linear system of the rotation is solved with pivoting, which has no scalar form"
+    refuse([Problem(f"rods.{rod}", problem, "leave accuracy.rotation out") for rod in literal], ExportError)
     if model.discrete.pairs:
         problem = "contact of rods is computed where they are near, which has no scalar form"
         raise ExportError(Problem("rod_contacts", problem, "leave it out"))
@@ -139,8 +138,7 @@ def _check_wanted(model: Model, sections: Mapping[str, Sequence[float]], actuato
     unknown = [actuator for actuator in actuators if actuator not in model.actuator]
     remedy = _one_of(model.actuator)
     problems += [Problem(f"actuators.{actuator}", "there is no such actuator", remedy) for actuator in unknown]
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def _one_of(names: Mapping[str, object]) -> str:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.contact.contact_state import given_entries
 from cosserat_casadi.equilibrium.solution import Equilibrium
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.input_bounds import narrowed
 from cosserat_casadi.model.system_functions import SystemFunctions
@@ -101,8 +101,7 @@ def _refuse_empty_ranges(model: SystemFunctions, lower: FloatArray, upper: Float
             least = float(lower[entries].max())
             problem = f"is below {least:g}, the least that {bound.input} can be"
             problems.append(Problem(f"bounds[{i}].upper", problem))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def _own_sizes(model: SystemFunctions, inputs: FloatArray) -> FloatArray:

@@ -17,7 +17,7 @@ import numpy as np
 from cosserat_casadi.control.soft_minimum import soft_minimum
 from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.equilibrium.stability import variations
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -79,8 +79,7 @@ def _refuse_slack(model: Model) -> None:
             problems.append(Problem(f"actuators[{i}].slack", reason, "give it slack = false"))
     stops = model.discrete.stops
     problems += [Problem(stop.owner, "a stop makes eigenvalues jump", "leave it out") for stop in stops]
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def _energy_units(model: Model) -> FloatArray:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.number_table import read_numbers
 from cosserat_casadi.scene.values import NORM_SLACK
@@ -49,9 +49,7 @@ def read_targets(path: Path, scene: scenes.Scene) -> TargetTable:
     """
     target = _only_target(scene)
     header, values, lines, problems = read_numbers(path)
-    problems = _column_problems(str(path), header, target) + problems
-    if problems:
-        raise SceneError(*problems)
+    refuse(_column_problems(str(path), header, target) + problems)
     columns = {name: values[:, index] for index, name in enumerate(header)}
     positions = np.stack([columns[name] for name in POSITION], axis=1)
     changes = [{"position": tuple(position)} for position in positions.tolist()]
@@ -96,5 +94,4 @@ def _refuse_norms(path: Path, norms: FloatArray, lines: list[int]) -> None:
     for norm, line in zip(norms, lines, strict=True):
         if abs(norm - 1.0) > NORM_SLACK:
             problems.append(Problem(f"{path}, line {line}", f"the quaternion must have norm 1, got norm {norm:.9g}"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)

@@ -26,7 +26,7 @@ from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
 from cosserat_casadi.codegen.plain import vector
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
@@ -297,8 +297,7 @@ def _acting_inputs(model: Model) -> DecisionVariables:
         if np.any((without_range >= entries.start) & (without_range < entries.stop)):
             problem = f"{entry.name} has no range between two bounds"
             problems.append(Problem("bounds", problem, "give lower and upper; what shall not act needs no bounds"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     moves = bounded.upper > bounded.lower
     return DecisionVariables(bounded.indices[moves], bounded.lower[moves], bounded.upper[moves])
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import Knowledge
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -59,8 +59,7 @@ def check_unknowns(scene: scenes.Scene) -> None:
     if scene.unknowns and not any(unknown.per_row for unknown in scene.unknowns):
         remedy = "give an input per_row = true, or find what all rows share with cosserat identify"
         problems.append(Problem("unknowns", "none differs from row to row", remedy))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def unknown_parameters(scene: scenes.Scene) -> tuple[str | tuple[str, ...], ...]:
@@ -106,8 +105,7 @@ def check_ranges(model: Model, layout: UnknownLayout) -> None:
             for problem in error.problems:
                 remedy = "narrow lower and upper of the unknowns" + (f": {problem.remedy}" if problem.remedy else "")
                 problems.setdefault(problem.where, Problem(problem.where, problem.problem, remedy))
-    if problems:
-        raise SceneError(*problems.values())
+    refuse(problems.values())
 
 
 def stacked_indices(entries: Sequence[UnknownEntry], inputs: int) -> list[int]:

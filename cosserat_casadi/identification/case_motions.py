@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.identification.case_equilibria import split
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -84,8 +84,7 @@ def check_motions(model: Model) -> None:
         problem = f"{pair.name!r} may go slack, or stop, in a motion, and the path is not smooth there"
         remedy = "give a tension over time in place of a length; leave stops out"
         problems.append(Problem("joints" if pair.side else "actuators", problem, remedy))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 @dataclass(frozen=True)

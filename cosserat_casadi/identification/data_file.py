@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import listing
 from cosserat_casadi.scene.number_table import finite_number, length_faults, read_rows, repeated
@@ -83,8 +83,7 @@ def read_table(path: Path) -> DataFile:
     problems = [Problem(str(path), f"has the column {column!r} twice") for column in repeated(header)]
     for line, row in rows:
         problems += length_faults(f"{path}, line {line}", header, row)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     columns = {name: [row[k] for _, row in rows] for k, name in enumerate(header)}
     return DataFile(str(path), columns, tuple(line for line, _ in rows))
 

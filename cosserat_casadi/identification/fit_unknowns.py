@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.parameters import Parameter
@@ -263,8 +263,7 @@ def unknown_layout(model: AnyModel) -> UnknownLayout:
         if entry.positive and np.any(upper <= 0):
             problem = f"upper must be > 0, as {entry.record.name} is, got {upper.min():g}"
             problems.append(Problem(f"unknowns: {entry.record.name}", problem))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     shared = tuple(entry for entry in entries if not entry.record.per_row)
     own = tuple(entry for entry in entries if entry.record.per_row)
     return UnknownLayout(shared, own, model.parameters.pack())
@@ -283,8 +282,7 @@ def refuse_row_parameters(scene: scenes.Scene) -> None:
         for i, unknown in enumerate(scene.unknowns)
         if unknown.per_row and unknown.parameter is not None
     ]
-    if refused:
-        raise SceneError(*refused)
+    refuse(refused)
 
 
 def _input_indices(model: AnyModel) -> dict[str, list[int]]:

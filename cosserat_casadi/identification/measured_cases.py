@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, collect_problems, refuse
 from cosserat_casadi.identification.data_file import DataFile, read_table, table_of
 from cosserat_casadi.identification.measured_quantities import QUANTITIES
 from cosserat_casadi.maths.typing import FloatArray
@@ -114,8 +114,7 @@ def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = Non
             reader = _Reader(number, measurement, tables[number], layout, duration)
             rows += reader.rows()
             problems += shortened(reader.problems, tables[number].source)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     return _joined(rows, layout, per_row)
 
 
@@ -130,10 +129,8 @@ def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, DataFile]
         name = measurement.title if measurement.title in given else measurement.file
         if name not in files:
             files[name] = None
-            try:
+            with collect_problems(problems):
                 files[name] = table_of(name, given[name]) if name in given else read_table(Path(name))
-            except SceneError as error:
-                problems += error.problems
         table = files[name]
         if table is not None:
             tables[number] = table
@@ -327,8 +324,7 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
     measured = [row for row in rows if row.datum is not None]
     keys = [_key(row, by_place[row.place], layout, per_row) for row in measured]
     by_case = joining.settled(measured, keys)
-    if joining.problems:
-        raise SceneError(*shortened(joining.problems, "measurements"))
+    refuse(shortened(joining.problems, "measurements"))
     cases: dict[Hashable, Case] = {}
     for row, key in zip(measured, keys, strict=True):
         case = cases.setdefault(key, Case(row.where, layout.pack(), row.moves))

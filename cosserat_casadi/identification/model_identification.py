@@ -12,7 +12,7 @@ from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error
 from cosserat_casadi.equilibrium.contact.contact_answer_error import estimated_in_contact
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.identification.case_motions import StartInputs, check_motions
 from cosserat_casadi.identification.fit_discretisation import with_discretisation
 from cosserat_casadi.identification.fit_problem import SEED, Progress, Task
@@ -172,8 +172,7 @@ def check_measured_in_contact(scene: scenes.Scene) -> None:
         if timed or isinstance(measurement, ModeMeasurement):
             problem = over_time if timed else vibrating
             problems.append(Problem(f"measurements[{i}]", problem, "give each obstacle a width, m"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:

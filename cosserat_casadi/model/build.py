@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import operations
 from cosserat_casadi.model.constraint_rank import check_constraints
@@ -246,8 +246,7 @@ def check_axes(nominal: DiscreteScene, parameters: ParameterLayout) -> None:
         if joint in decisive:
             problem = "is an axis that keeps planar rods in their plane, which decides what other joints hold"
             problems.append(Problem(name, problem, "build a scene for each value"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def build(

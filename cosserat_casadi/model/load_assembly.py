@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.loads.load import Site, UnloadedPoses
 from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import (
@@ -309,9 +309,7 @@ def check_loads(discrete: DiscreteScene) -> None:
     Raises:
         SceneError: with the faults of all loads.
     """
-    problems = list(_problems(discrete))
-    if problems:
-        raise SceneError(*problems)
+    refuse(_problems(discrete))
 
 
 def _problems(discrete: DiscreteScene) -> Iterator[Problem]:

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
@@ -155,8 +155,7 @@ def read_ranges(texts: Sequence[str], fault: Callable[[str, AskedRange], Problem
         if problem is not None:
             problems.append(problem)
         ranges.setdefault(asked.column, asked)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     return ranges
 
 

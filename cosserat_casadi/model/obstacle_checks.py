@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
@@ -29,9 +29,7 @@ def check_obstacles(discrete: DiscreteScene) -> None:
     Raises:
         SceneError: with the faults of all obstacles.
     """
-    problems = list(_problems(discrete.nominal))
-    if problems:
-        raise SceneError(*problems)
+    refuse(_problems(discrete.nominal))
 
 
 WIDTH = "give each a width, m, for a contact that is smooth; or solve the scene, or leave them out"
@@ -63,9 +61,7 @@ def refuse_held_by_contact(scene: scenes.Scene) -> None:
     Raises:
         SceneError: with all such rods.
     """
-    problems = list(held_by_contact(scene))
-    if problems:
-        raise SceneError(*problems)
+    refuse(held_by_contact(scene))
 
 
 def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.numbers import any_symbolic
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.element_ends import MovingEnds, moving_ends, places_on, unmovable
@@ -90,9 +90,7 @@ class ParameterLayout(StackedLayout[Parameter]):
             SceneError: a name is unknown, a value has another shape or is not finite, or places change their order.
         """
         p = super().pack(values)
-        problems = [problem for ends in self.moving for problem in ends.faults(p)]
-        if problems:
-            raise SceneError(*problems)
+        refuse([problem for ends in self.moving for problem in ends.faults(p)])
         return p
 
     @cached_property
@@ -151,8 +149,7 @@ def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
         for rod in scene.rods:
             if any_symbolic(places_on(written, rod.name)):
                 movers[rod.name] = (*movers.get(rod.name, ()), entry.name)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     moving = moving_ends(scene, layout.written(scene, layout.symbol), layout.symbol, movers)
     return replace(layout, moving=moving)
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -106,8 +106,7 @@ class StackedLayout(Generic[EntryType]):
             problems.extend(entry.faults(value))
             # Legendre coefficients are stacked degree after degree: column-major order.
             parts.append(value.ravel(order="F"))
-        if problems:
-            raise SceneError(*problems)
+        refuse(problems)
         return np.concatenate(parts)
 
     def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:

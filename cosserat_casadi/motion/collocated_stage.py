@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
@@ -302,6 +302,5 @@ def motion_stage(
     if not chosen.stiffly_accurate and not np.all(model.discrete.unknowns.differential):
         what = f"{chosen.name} does not converge for supports, joints, carried rods and cables of given length"
         problems.append(Problem("method", what, "take Radau IIA, radau(2)"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     return MotionStage(model if parameters else model.at(), duration, chosen)

@@ -11,7 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
@@ -611,8 +611,7 @@ def _check_start(
         what = f"{names}, which moves supports, joints or cables, has a speed at t = 0, where the scene is at rest"
         remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
         problems.append(Problem("motions", what, remedy))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def piece_length(pieces: Sequence[Piece], number: int) -> float:

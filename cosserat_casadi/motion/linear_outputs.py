@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -63,8 +63,7 @@ def outputs_of(solution: Solution, wanted: Sequence[str | Place] | None) -> Outp
             continue
         values.append(value)
         names += [name] if value.shape[0] == 1 else [f"{name}.{axis}" for axis in AXES]
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     stacked = ca.vertcat(*values)
     derivatives = ca.Function("outputs", [x, inputs], [ca.jacobian(stacked, x), ca.jacobian(stacked, inputs)])
     by_x, by_inputs = derivatives(solution.x, solution.inputs)

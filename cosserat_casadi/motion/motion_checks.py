@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_checks import untouchable
 from cosserat_casadi.scene.rod_records import Rod
@@ -25,8 +25,7 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         problems.append(Problem("simulation.integrator", what, "use 'radau'"))
     if simulation is not None and model.scene.touches_exactly:
         problems += list(untouchable(model, simulation))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def check_movable(model: Model) -> None:
@@ -35,9 +34,7 @@ def check_movable(model: Model) -> None:
     Raises:
         SceneError: with all that is wrong.
     """
-    problems = immovable(model)
-    if problems:
-        raise SceneError(*problems)
+    refuse(immovable(model))
 
 
 def immovable(model: Model) -> list[Problem]:

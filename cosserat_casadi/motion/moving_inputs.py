@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.splines import table_coefficients
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
@@ -200,9 +200,7 @@ def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None
     known = ", ".join(layout.names) or "none"
     unknown = [motion.input for motion in motions if motion.input not in layout.names]
     remedy = f"build scene.with_motion_inputs(); its inputs are {known}"
-    problems = [Problem(name, "is not an input of this model", remedy) for name in unknown]
-    if problems:
-        raise SceneError(*problems)
+    refuse([Problem(name, "is not an input of this model", remedy) for name in unknown])
 
 
 # Paths of one input

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of
 from cosserat_casadi.motion.simulate import Tell
@@ -83,8 +83,7 @@ def check_parts(output: Path | None, length: float) -> None:
     if output is None or output.suffix.lower() not in GOING_ON:
         remedy = "name a .npz or .json: each part goes to a file of its own"
         problems.append(Problem("--output", "parts are written to files that the motion goes on from", remedy))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def _whole(progress: Tell, duration: float) -> Tell:

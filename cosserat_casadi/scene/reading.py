@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.scene.disk_record import lead_through_disks
 from cosserat_casadi.scene.disks_in_contact import seat_disks
 from cosserat_casadi.scene.faults import Path as FaultPath
@@ -157,8 +157,7 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
         scene = Scene.model_validate(tables)
     except ValidationError as error:
         problems += problems_of(error, tables, applied)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     return scene
 
 

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import shown
 from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
@@ -77,8 +77,7 @@ def grid(tables: Mapping[str, Any], where: str, scratch: Scratch = MEMORY) -> tu
     # Counted before the rows are made: a grid too large would not fit into memory.
     combinations = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random))
     problems += too_many_rows(combinations * samples, where)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     seed = int(tables.get("seed", 0))
     return tuple(axes), _product(axes, samples, seed, scratch)
 
@@ -104,8 +103,7 @@ def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...]
     if samples < 2 and factors:
         problems.append(Problem(f"{where}, samples", "must be at least 2 for Sobol indices", "give some thousands"))
     problems += too_many_rows(samples * (len(factors) + 2), where)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     seed = int(tables.get("seed", 0))
     return tuple(axes), _pairs(axes, factors, samples, seed), factors
 

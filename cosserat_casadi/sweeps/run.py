@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.contact.rows import contact_row_library
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, row_library, row_results
-from cosserat_casadi.errors import ExportError, Problem, SceneError
+from cosserat_casadi.errors import ExportError, Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
@@ -183,11 +183,9 @@ def plan_sweep(
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     if device is not None:
         problems += device_problems(scene, device, stability=stability)
-    try:
+    with collect_problems(problems):
         refuse_held_by_contact(scene)
         plan = Plan(scene, table, variants_of(scene, table), output, samples, stability, estimate_errors, device)
-    except SceneError as error:
-        problems += error.problems
     problems += output_problems(output, plan)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -429,8 +427,7 @@ def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[
     if len(choices) > 1 and not others:
         remedy = "tune the scene first, and sweep that, so that modes and nodes are fixed"
         problems.append(Problem("--merge", "shards have chosen different discretisations", remedy))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def _ignore(doing: str, done: int, total: int) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError, collect_problems
+from cosserat_casadi.errors import Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import AskedRange, read_ranges
 from cosserat_casadi.scene.number_table import begun_rows, fill, repeated, shortened
@@ -71,8 +71,7 @@ def read_table(path: Path, *, sobol: bool = False, scratch: Scratch = MEMORY) ->
     problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
     # A column of lines in front.
     numbers = scratch.joined(_blocks(path, header, rows, problems), 1 + len(header))
-    if problems:
-        raise SceneError(*shortened(problems, str(path)))
+    refuse(shortened(problems, str(path)))
     return Table(tuple(header), numbers[:, 1:], str(path), numbers[:, 0], scratch=scratch)
 
 
@@ -144,8 +143,7 @@ def crossed(table: Table, ranges: Table) -> Table:
         problems.append(Problem("--range", "has several values; Sobol indices are of random columns", "leave it out"))
     rows = len(table.values) * len(ranges.values)
     problems += too_many_rows(rows, f"{table.where} and --range")
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     stays = len(ranges.values)
     own = len(table.columns)
     values = table.scratch.array((rows, own + len(ranges.columns)))
@@ -197,8 +195,7 @@ def table_of(columns: Mapping[str, npt.ArrayLike], scratch: Scratch = MEMORY) ->
     for name, array in arrays.items():
         if not np.all(np.isfinite(array)):
             problems.append(Problem(name, "holds what is not a finite number"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     count = max(lengths)
     full_columns = [np.broadcast_to(array, count) for array in arrays.values()]
     rows = scratch.array((count, len(arrays)))

@@ -8,7 +8,7 @@ make another scene for each set of values, which rows of equal values share.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.constraint_rank import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout
@@ -132,8 +132,7 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     entries = list(_entries(free, table, others, problems))
     if scene.tubes:
         problems += _refused_tubes(entries, inputs, table)
-    if problems:
-        raise SceneError(*shortened(problems, table.where))
+    refuse(shortened(problems, table.where))
     return Variants(free.baked(), tuple(entries), inputs, layout, parameters, arguments, p)
 
 
@@ -176,11 +175,11 @@ def _is_named_as_parameter(tables: Mapping[str, Any], name: str) -> bool:
     return False
 
 
-def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: FloatArray) -> Iterator[Problem]:
+def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: FloatArray) -> Iterable[Problem]:
     """Faults of the rows that are refused first, if any is, for these values of some columns."""
     tables = scene_tables(scene.baked())
     joints_move = any(_moves_joints(tables, name) for name in names)
-    known = set[str]()
+    found: dict[str, Problem] = {}
     for row in extreme_rows(values, table.scratch):
         try:
             changed = _overridden(tables, names, values[row])
@@ -188,9 +187,8 @@ def _refused_rows(scene: Scene, table: Table, names: Sequence[str], values: Floa
                 check_constraints(changed)
         except SceneError as error:
             for problem in error.problems:
-                if str(problem) not in known:
-                    known.add(str(problem))
-                    yield _of_table(problem, table, row)
+                found.setdefault(str(problem), _of_table(problem, table, row))
+    return found.values()
 
 
 def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
@@ -250,10 +248,8 @@ def _entries(
 ) -> Iterator[Variant]:
     """The variants of a table; faults go to the problems."""
     if not parameter_columns:
-        try:
+        with collect_problems(problems):
             check_constraints(scene)
-        except SceneError as error:
-            problems += error.problems
         yield Variant(scene, all_rows(table))
         return
     reserved = [table.columns[k] for k in parameter_columns if _is_reserved(table.columns[k])]
@@ -288,7 +284,7 @@ def _scenes(
     """A scene for each set of parameters; a fault is told once, with the first row that has it."""
     columns = [table.columns[k] for k in parameter_columns]
     joints_move = any(_moves_joints(tables, column) for column in columns)
-    known = set[str]()
+    found: dict[str, Problem] = {}
     for values, rows in _groups(table.values[:, list(parameter_columns)]):
         try:
             variant = Variant(_overridden(tables, columns, values), rows)
@@ -298,9 +294,8 @@ def _scenes(
             yield variant
         except SceneError as error:
             for problem in error.problems:
-                if str(problem) not in known:
-                    known.add(str(problem))
-                    problems.append(_of_table(problem, table, int(rows[0])))
+                found.setdefault(str(problem), _of_table(problem, table, int(rows[0])))
+    problems.extend(found.values())
 
 
 def _moves_joints(tables: Mapping[str, Any], column: str) -> bool:

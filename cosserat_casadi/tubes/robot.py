@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
@@ -151,9 +151,7 @@ class Robot(TubeNumbers[FloatArray]):
             inputs = np.array(values, dtype=float).ravel()
             # Refused where it has too few or too many numbers.
             self.layout.split(inputs)
-        problems = [*self._out_of_range(inputs)]
-        if problems:
-            raise SceneError(*problems)
+        refuse([*self._out_of_range(inputs)])
         return inputs
 
     def _named(self, values: Mapping[str, npt.ArrayLike]) -> FloatArray:
@@ -169,8 +167,7 @@ class Robot(TubeNumbers[FloatArray]):
                 problems.append(Problem(name, f"must be {wanted}, got the shape {numbers.shape}"))
             else:
                 inputs[spans[name]] = numbers.ravel()
-        if problems:
-            raise SceneError(*problems)
+        refuse(problems)
         return inputs
 
     def _out_of_range(self, inputs: FloatArray) -> list[Problem]:

@@ -12,7 +12,7 @@ from cosserat_casadi.cli.reports.format import print_plain, print_written, table
 from cosserat_casadi.cli.shipped import Example, shipped_folder
 from cosserat_casadi.cli.shipped import examples as shipped_examples
 from cosserat_casadi.cli.terminal import Console
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.files import write_atomically
 
 
@@ -33,8 +33,7 @@ def examples(
         for name in names or ()
         if name not in found
     ]
-    if unknown:
-        raise SceneError(*unknown)
+    refuse(unknown)
     chosen = [found[name] for name in names or found]
     if output is None:
         _print_list(chosen)
@@ -61,9 +60,8 @@ def _copy(chosen: list[Example], folder: Path) -> None:
     sources = [source for example in chosen for source in (example.file, *example.needs)]
     targets = {folder / source.relative_to(root): source.read_bytes() for source in sources}
     changed = [file for file, content in targets.items() if file.exists() and file.read_bytes() != content]
-    if changed:
-        remedy = "nothing is overwritten: remove it, or name another folder"
-        raise SceneError(*[Problem("--output", f"{file} is there already, and differs", remedy) for file in changed])
+    remedy = "nothing is overwritten: remove it, or name another folder"
+    refuse(Problem("--output", f"{file} is there already, and differs", remedy) for file in changed)
     for file, content in targets.items():
         file.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(file, content)

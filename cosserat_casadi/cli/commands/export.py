@@ -33,7 +33,7 @@ from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.export import LINKS, check_mjcf, mjcf_of
@@ -126,8 +126,7 @@ class Targets:
         if self.output is None:
             remedy = "name a folder for them with --output, or leave it out"
             lost = [option for option, asked in sources.asked.items() if asked]
-            if lost:
-                raise ExportError(*(Problem(option, "is for the sources in C", remedy) for option in lost))
+            refuse([Problem(option, "is for the sources in C", remedy) for option in lost], ExportError)
         else:
             check_export(self.output, name)
         checks: dict[str, Callable[[Path], None]] = {

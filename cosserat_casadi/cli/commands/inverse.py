@@ -16,7 +16,7 @@ from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_i
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import read_targets
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.inverse_table import MET, row_outcome, table_text
 from cosserat_casadi.results.presentation import write_all
@@ -50,8 +50,7 @@ def inverse(
     problems: list[Problem] = []
     suffix = ".json" if table is None else ".csv"
     check_files({"--output": output, "--plot": plot}, scene, settings, problems, table, output_suffix=suffix)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     if table is not None:
         _check_table(output, plot)
         _inverse_of_table(scene, settings, table, output, stable, unstable)
@@ -76,8 +75,7 @@ def _check_table(output: Path | None, plot: Path | None) -> None:
         problems.append(Problem("--output", "missing", "name the CSV file for what is found for the table"))
     if plot is not None:
         problems.append(Problem("--plot", "stands beside --table", "draw one row: leave out --table"))
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
 
 
 def _inverse_of_table(

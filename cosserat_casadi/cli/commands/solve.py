@@ -13,7 +13,7 @@ from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.cli.terminal import Console, binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
-from cosserat_casadi.errors import Problem, SceneError, collect_problems
+from cosserat_casadi.errors import Problem, collect_problems, refuse
 from cosserat_casadi.files import MESHES, write_whole
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.results.presentation import write_all
@@ -63,8 +63,7 @@ def solve(
             problems.append(Problem("--exact-contact", "is for rods, which touch obstacles", "leave it out"))
         elif exact:
             read = with_exact_contact(read)
-    if problems:
-        raise SceneError(*problems)
+    refuse(problems)
     if every:
         # Imported here, because no scene of rods needs the modules of tubes.
         from cosserat_casadi.tubes.tube_equilibria import all_equilibria

@@ -19,7 +19,7 @@ from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in, with_contacts, without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.inputs import InputLayout, input_layout
@@ -199,8 +199,7 @@ def _refuse_split_lines(states: Sequence[ContactState]) -> None:
         )
         for rod, obstacle, X in sorted(split)
     ]
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def _refuse_lines_from_the_base(states: Sequence[ContactState]) -> None:
@@ -218,8 +217,7 @@ def _refuse_lines_from_the_base(states: Sequence[ContactState]) -> None:
         )
         for rod, obstacle in sorted(lines)
     ]
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:

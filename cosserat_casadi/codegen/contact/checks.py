@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import held_by_contact
@@ -46,8 +46,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
             problem = "exact contact with an obstacle on a body, or of a disk, is not found in C"
             problems.append(Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m"))
     problems += held_by_contact(scene)
-    if problems:
-        raise ExportError(*problems)
+    refuse(problems, ExportError)
 
 
 def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:

@@ -31,7 +31,7 @@ from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.scene.writing import scene_text
@@ -74,9 +74,7 @@ def check_tubes(asked: Mapping[str, bool]) -> None:
         ExportError: with every option.
     """
     problem = "is for rods, and the scene has concentric tubes"
-    problems = [Problem(option, problem, "leave it out") for option, wanted in asked.items() if wanted]
-    if problems:
-        raise ExportError(*problems)
+    refuse([Problem(option, problem, "leave it out") for option, wanted in asked.items() if wanted], ExportError)
 
 
 def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) -> dict[str, str]:
