@@ -48,6 +48,7 @@ from cosserat_casadi.motion.simulate import (
     ended_early,
     factor_for,
     hangs_on_rounding,
+    impacts_of,
     is_struck,
     judged,
     left_by,
@@ -109,6 +110,12 @@ MOST_RUNGS = 3
 ORDER_OF_WAVES = 2.3
 """Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
+MOST_IMPACTS = 1000
+"""Impacts, foreseen on as many modes as meet the tolerance, from which on these are not tried: that takes minutes."""
+
+FASTEST_GROWTH = 3.0
+"""Largest power of the modes with which the number of impacts is taken to grow."""
+
 MOST_WITHOUT_START = 4
 """Sets of modes without a start in contact before none is told."""
 
@@ -129,6 +136,15 @@ UNDAMPED = (
     "damping.retardation_time, the obstacle a width, or a larger tolerance."
 )
 """Sentence for a motion that more modes do not bring near to a limit."""
+
+
+CHATTERS = (
+    "It strikes over and over: on {fewer} and {more} modes there are {before} and {after} impacts, and the paths are "
+    "{distance:.2g} of the length apart; on as many modes as the tolerance asks for there would be some "
+    "{foreseen:.0f}. Give the obstacle a width, the rod more damping, or a larger tolerance. Modes that "
+    "accuracy.modes fixes are kept."
+)
+"""Sentence for a motion whose impacts become too many before its modes are enough."""
 
 
 @dataclass(frozen=True)
@@ -256,6 +272,33 @@ class _Search:
         if self.is_damped or not is_struck(self.last.history) or len(self.levels) < 2:
             return False
         return self.foreseen(self.ladder[-1], ORDER_OF_WAVES) > self.tolerance
+
+    @property
+    def foreseen_impacts(self) -> float:
+        """Number of impacts on as many modes as meet the tolerance, by those of the last two levels.
+
+        Sections of a rod that lies down strike one by one, over and over, and more modes have more sections.
+        """
+        if len(self.levels) < 2:
+            return 0.0
+        before, after = (impacts_of(level.history) for level in self.levels[-2:])
+        finer = self.last.modes / self.levels[-2].modes
+        growth = float(np.clip(np.log(max(after, 1) / max(before, 1)) / np.log(finer), 0.0, FASTEST_GROWTH))
+        wanted = max(self.space_error / (SPACE_SHARE * self.tolerance), 1.0) ** (1.0 / self.order)
+        return float(after * min(wanted, self.ladder[-1] / self.last.modes) ** growth)
+
+    @property
+    def told(self) -> dict[str, float]:
+        """Numbers of the last two levels that a sentence has: their modes and impacts, and their distance."""
+        fewer, last = self.levels[-2:]
+        before, after = impacts_of(fewer.history), impacts_of(last.history)
+        return {
+            "fewer": fewer.modes,
+            "more": last.modes,
+            "before": before,
+            "after": after,
+            "distance": last.distance,
+        }
 
 
 def simulate(
@@ -386,13 +429,15 @@ def _with_tolerance(search: _Search) -> Motion:
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         search.levels.append(ResolvedMotion(simulator, history, found, rung, modes, distance, unseen))
         if search.hopeless:
-            return _given_up(search)
+            return _given_up(search, UNDAMPED.format(**search.told, most=search.ladder[-1]))
         # Motions on two sets of modes that are near each other do not hang on rounding.
         if len(search.levels) == 2 and distance > FAR_APART * search.tolerance and _is_erratic(search):
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
+        if search.foreseen_impacts > MOST_IMPACTS:
+            return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
     timed = timed or _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
@@ -436,12 +481,10 @@ def _erratic(search: _Search) -> Motion:
     return replace(motion, message=f"{motion.message} {ERRATIC}")
 
 
-def _given_up(search: _Search) -> Motion:
-    """The motion of the last level, where those on more modes would come near to it too slowly."""
+def _given_up(search: _Search, why: str) -> Motion:
+    """The motion of the last level, where those on more modes would come near to it too slowly, or take too long."""
     motion = _judged(search, search.last, search.space_error + TIME_SHARE * search.tolerance, [])
-    fewer, last = search.levels[-2:]
-    told = UNDAMPED.format(fewer=fewer.modes, more=last.modes, distance=last.distance, most=search.ladder[-1])
-    return replace(motion, message=f"{motion.message} {told}")
+    return replace(motion, message=f"{motion.message} {why}")
 
 
 def _ladder(scene: Scene) -> tuple[int, ...]:

@@ -268,7 +268,11 @@ class Simulator:
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
-            timed = self.finer(timed, factor)
+            finer = self.finer(timed, factor)
+            if finer.history.outcome not in (StepOutcome.COMPLETED, StepOutcome.INTERRUPTED) and timed.companion:
+                # The error of the last whole motion is known.
+                break
+            timed = finer
             distance = timed.distance
             if timed.error <= tolerance or hangs_on_rounding(timed.history, distance, before, tolerance):
                 break
@@ -383,7 +387,12 @@ def hangs_on_rounding(history: History, distance: float, before: float, toleranc
 
 def is_struck(history: History) -> bool:
     """Whether a motion has impacts."""
-    return any(event.kind == "impact" for event in history.events)
+    return impacts_of(history) > 0
+
+
+def impacts_of(history: History) -> int:
+    """Number of impacts of a motion."""
+    return sum(event.kind == "impact" for event in history.events)
 
 
 def left_by(factor: float, finer: History, *coarser: History) -> float:

@@ -13,21 +13,23 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import scene_from_dict, simulate
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
 from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, lacking, out_of_phase, told_by_modes
-from cosserat_casadi.motion.motion_refinement import FASTEST, SLOWEST, ResolvedMotion, _Search
+from cosserat_casadi.motion.motion_refinement import FASTEST, SLOWEST, SPACE_SHARE, ResolvedMotion, _Search
 from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.scene.simulation import Simulation
 from tests.motion import transients
 from tests.motion.stepping import moving_model
+from tests.motion.test_error_of_steps import SOFT, dropped
 
 
 def search(modes: tuple[int, ...], order: float, tolerance: float = 1e-3, lost: float = 0.0) -> _Search:
     """A search whose errors are modes^−order, and whose impacts took an energy, J."""
     anything: Any = None
-    history: Any = SimpleNamespace(lost=lost, events=())
     found = _Search(anything, Simulation(duration=1.0), None, None, None, (), tolerance, VERIFIED_MODES)
     before = float("inf")
     for number in modes:
         error = float(number) ** -order
+        history: Any = SimpleNamespace(lost=lost, events=())
         found.levels.append(ResolvedMotion(anything, history, anything, 0, number, before - error))
         before = error
     return found
@@ -60,6 +62,28 @@ def test_waves_that_modes_do_not_see_yet_end_no_search() -> None:
     stagnant.levels[-1] = replace(stagnant.last, rung=rung)
     assert stagnant.climb() == rung + 3
     assert replace(stagnant, tolerance=1e-4).climb() is None
+
+
+def test_impacts_are_foreseen_on_the_modes_that_the_tolerance_asks_for() -> None:
+    """Errors go as modes^−1.7 and impacts as their square: on 18 modes there are four times those on 9."""
+    tolerance = SAFETY * 18.0**-UNKNOWN_ORDER / SPACE_SHARE
+    found = search((6, 9), UNKNOWN_ORDER, tolerance)
+    for level in found.levels:
+        level.history.events = [SimpleNamespace(kind="impact")] * level.modes**2
+    assert_allclose(found.foreseen_impacts, 18**2, rtol=1e-9, atol=0)
+    assert_allclose(replace(found, tolerance=1.0).foreseen_impacts, 9**2, rtol=1e-9, atol=0)
+
+
+@pytest.mark.slow
+def test_a_rod_that_strikes_over_and_over_is_given_up_with_its_error() -> None:
+    tables = dropped(SOFT, 1e-3, 0.2, 0.04, 0.2)
+    del tables["accuracy"]
+    tables["simulation"]["tolerance"] = 1e-2
+    motion = simulate(scene_from_dict(tables))
+    assert motion.outcome is MotionOutcome.UNRESOLVED
+    assert "strikes over and over" in motion.message
+    assert max(motion.model.discretisation["rod"].modes) <= 12
+    assert 1e-2 < motion.error_estimate < 0.2
 
 
 def test_modes_whose_last_coefficients_do_not_tell_are_enough_and_their_error_is_told() -> None:

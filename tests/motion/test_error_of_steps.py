@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.motion import motion_refinement
@@ -16,6 +18,7 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion
 from cosserat_casadi.motion.simulate import LEAST_SLOPE, LEAST_TIGHTENING, TIGHTER, Simulator, TimedHistory, started
 from cosserat_casadi.motion.tip_paths import path_distance
+from cosserat_casadi.numerics.integration import StepOutcome
 from tests.families import mostly_slow
 from tests.motion import transients
 
@@ -133,6 +136,28 @@ def test_a_motion_that_does_not_end_ends_the_search(
 ) -> None:
     monkeypatch.setattr(type(coarse), "completed", False)
     assert np.isnan(simulator.tightened(coarse, STEP_TOLERANCE, 1.0).error)
+
+
+def test_where_more_exact_steps_end_early_the_last_whole_motion_and_its_error_are_kept(
+    simulator: Simulator, coarse: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A steel rod that bounced with half of its speed took ever shorter steps in the third motion."""
+    told = simulator.tightened(coarse, STEP_TOLERANCE, np.inf)
+    plain = Simulator.controlled
+
+    def ends_early(of: Simulator, tolerance: float) -> History:
+        history = plain(of, tolerance)
+        if tolerance >= told.tolerance:
+            return history
+        last = history.legs[-1]
+        integration = replace(last.integration, outcome=StepOutcome.STEP_TOO_SMALL)
+        return replace(history, legs=(*history.legs[:-1], replace(last, integration=integration)))
+
+    monkeypatch.setattr(Simulator, "controlled", ends_early)
+    found = simulator.tightened(coarse, STEP_TOLERANCE, told.error / 2.0)
+    assert found.history.completed
+    assert found.tolerance == told.tolerance
+    assert_allclose(found.error, told.error, rtol=1e-12, atol=0)
 
 
 def test_steps_are_made_more_exact_until_their_error_is_allowed(simulator: Simulator, coarse: History) -> None:
