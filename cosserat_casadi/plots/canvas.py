@@ -50,6 +50,9 @@ MARGIN, SMALL_MARGIN = 0.25, 0.2
 FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
 
+NUMBER_DISTANCE, SMALL_NUMBER_DISTANCE = 12.0, 8.0
+"""Between the vertical axis and its numbers, points, and in a small panel; 8 of them are matplotlib's own."""
+
 CORNER = 0.12
 """Distance from the front corner of the box, relative to its longest side, in which one axis alone has a number."""
 
@@ -210,6 +213,9 @@ class Canvas:
             most = FEW_TICKS if self.small else TICKS
             self.axes.locator_params(axis=name, nbins=max(1 if self.small else 2, round(most * width / widths.max())))
         self._clear_corner(limits, CORNER * widths.max())
+        # matplotlib measures this distance in the horizontal sides: beside a tall box numbers would stand on its edge.
+        distance = SMALL_NUMBER_DISTANCE if self.small else NUMBER_DISTANCE
+        self.axes.tick_params(axis="z", pad=distance * widths.max() / widths[:2].mean() - 8.0)
         self.axes.view_init(elev=np.degrees(ELEVATION), azim=np.degrees(AZIMUTH))
         # Beside the axis its name would stand on the ticks of a tall box, and outside of a small panel.
         right, back, top = limits[:, 1]

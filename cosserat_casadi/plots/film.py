@@ -142,7 +142,8 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
         yield _tube(rod.name, _colour(rod_colour(index)), outline, centre_lines[rod.name])
     for index, row in enumerate(scene.disks):
         poses = section_poses(model, row.rod, np.array(row.places), x, inputs)
-        yield _disks(row.name or "disks", disk_colour(index), row.radius, row.thickness, poses)
+        colour = _colour(disk_colour(index), 0.5)
+        yield _disks(row.name or "disks", colour, row.radius, row.thickness, poses)
     for index, actuator in enumerate(scene.actuators):
         if hasattr(actuator, "offset"):
             X = drawn_places(actuator, SECTIONS)
@@ -152,7 +153,11 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
             yield _tube(actuator.name, _colour(actuator_colour(index)), outline, poses)
     bodies = {body.name: body_poses(model, body.name, x, inputs) for body in scene.bodies}
     for body in scene.listed_bodies:
-        yield _body(body.name, body_corners(scene, body), body.radius, 3 * THIN * size, _single(bodies[body.name]))
+        poses = _single(bodies[body.name])
+        if body.radius is not None and body.thickness is not None:
+            yield _disks(body.name, _colour(BODIES), body.radius, body.thickness, poses)
+        else:
+            yield _body(body.name, body_corners(scene, body), body.radius, 3 * THIN * size, poses)
     for obstacle in scene.obstacles:
         near = points.mean(axis=0)
         poses = Poses(np.zeros((len(x), 1, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (len(x), 1, 1)))
@@ -212,15 +217,17 @@ def _tube(name: str, colour: tuple[float, float, float, float], outline: FloatAr
     return FilmPart(name, colour, points, np.repeat(np.arange(count), sides), _rings(count, sides), poses)
 
 
-def _disks(name: str, colour: str, radius: float, thickness: float, poses: Poses) -> FilmPart:
-    """Cylinders about the frames of a row of disks."""
+def _disks(
+    name: str, colour: tuple[float, float, float, float], radius: float, thickness: float, poses: Poses
+) -> FilmPart:
+    """Cylinders about the frames of a row of disks, or of a body that is one."""
     count = poses.position.shape[1]
     ring = _ring(radius)
     heights = np.repeat([-thickness / 2, thickness / 2], SIDES)
     disk = np.column_stack([np.tile(ring, (2, 1)), heights])
     faces = np.concatenate([_rings(2, SIDES, 2 * SIDES * number) for number in range(count)])
     frame = np.repeat(np.arange(count), 2 * SIDES)
-    return FilmPart(name, _colour(colour, 0.5), np.tile(disk, (count, 1)), frame, faces, poses)
+    return FilmPart(name, colour, np.tile(disk, (count, 1)), frame, faces, poses)
 
 
 def _body(name: str, corners: FloatArray, radius: float | None, least: float, poses: Poses) -> FilmPart:

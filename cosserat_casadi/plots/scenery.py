@@ -163,7 +163,9 @@ def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     scene = solution.model.scene
     outline = in_world(pose, body_outline(scene, body))
     if body.thickness is not None:
-        canvas.line(outline, color=BODIES, linewidth=1.6)
+        # Disks of a row that are bodies for its contacts are drawn with their row.
+        if body.listed:
+            canvas.line(outline, color=BODIES, linewidth=1.6, label=body.name)
         return
     joints = [(joint, place.position) for joint in scene.joints for place in joint.places if place.body == body.name]
     points = in_world(pose, np.array([position for _, position in joints]))

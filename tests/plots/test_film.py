@@ -145,6 +145,14 @@ def test_a_shape_has_the_sizes_of_the_scene() -> None:
     assert_allclose(read.points("floor", 0)[:, 2], -0.1, rtol=0, atol=1e-7)
 
 
+def test_a_body_with_a_thickness_is_a_disk() -> None:
+    solution = solve(build(parse_scene(SCENE.replace("radius = 5e-3", "radius = 5e-3\nthickness = 3e-3"))))
+    pose = solution.body("tip")
+    along = (Read(glb(film_of(solution))).points("tip", 0) - pose.position) @ pose.rotation
+    assert_allclose(np.linalg.norm(along[:, :2], axis=1), 5e-3, rtol=0, atol=1e-7)
+    assert_allclose(np.abs(along[:, 2]), 1.5e-3, rtol=0, atol=1e-7)
+
+
 def test_triangles_look_outwards() -> None:
     """A closed mesh has its volume with the right sign: that of the cylinder, less what the flat sides leave out."""
     (finger, disks, *_) = film_of(solve(build(parse_scene(SCENE.replace("tension = 3.0", "tension = 0.0"))))).parts

@@ -19,12 +19,13 @@ from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
 from cosserat_casadi.plots.arrows import MOST_LINE_ARROWS
-from cosserat_casadi.plots.canvas import CORNER
+from cosserat_casadi.plots.canvas import CORNER, Canvas
 from cosserat_casadi.plots.colours import AXES
 from cosserat_casadi.plots.figure import PlotUnavailableError, add_title, check_plot_path, figure_class
 from cosserat_casadi.plots.material_plot import plot_materials, stress_curves
 from cosserat_casadi.plots.modes_plot import mode_words, plot_modes
 from cosserat_casadi.plots.scene_plot import plot_solution
+from cosserat_casadi.plots.scenery import RIM
 from cosserat_casadi.plots.solved_shapes import SAMPLES
 from cosserat_casadi.plots.sweep_plot import plot_sweep
 from cosserat_casadi.plots.tubes_plot import _between, plot_tubes
@@ -152,6 +153,22 @@ def test_axes_of_space_have_one_number_at_their_corner(spatial: Solution) -> Non
     at_front = [tick for tick in scenery.get_yticks() if front <= tick < front + room]
     assert len(scenery.get_yticks()) >= 2
     assert not (at_right and at_front)
+
+
+@pytest.mark.parametrize("small", [False, True])
+def test_numbers_of_a_tall_box_stand_beside_its_edge(small: bool) -> None:
+    figure = figure_class()(figsize=(4.0, 6.0))
+    axes = figure.add_subplot(projection="3d")
+    canvas = Canvas(axes, None, 1.0, small=small)
+    canvas.label_axes()
+    canvas.equalise(np.array([[0.0, 0.0, 0.0], [0.02, 0.01, 1.0]]))
+    figure.draw_without_rendering()
+    edge = axes.transData.transform(np.transpose(axes.zaxis.line.get_data()))[:, 0].max()
+    low, high = axes.get_zlim()
+    numbers = [tick.label1 for tick in axes.zaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+    assert len(numbers) >= 2
+    for number in numbers:
+        assert 2.0 < number.get_window_extent().x0 - edge < 30.0
 
 
 def boxes(figure: Any) -> tuple[list[Any], list[Any]]:
@@ -459,6 +476,21 @@ def test_a_long_title_fits_into_a_narrow_figure() -> None:
     extent = figure._suptitle.get_window_extent()
     assert extent.x0 >= 0.0
     assert extent.x1 <= figure.bbox.width
+
+
+def test_the_legend_names_a_body_that_is_a_disk_and_a_row_once() -> None:
+    """On a plane without a width the disks of a row are bodies too."""
+    puck = {"name": "puck", "mass": 0.001, "radius": 12e-3, "thickness": 3e-3}
+    disks = {"name": "spacers", "rod": "rod", "count": 2, "radius": 8e-3, "thickness": 2e-3}
+    wall = {"name": "wall", "kind": "plane", "point": [5.0, 0, 0], "normal": [-1, 0, 0], "disks": ["spacers"]}
+    joint = {"body": "puck", "rod": "rod", "at": 0.5, "kind": "fixed"}
+    given = scene(
+        push(force=[0.1, 0, 0]), strain="planar", bodies=[puck], joints=[joint], disks=[disks], obstacles=[wall]
+    )
+    axes = plot_solution(solve(build(given))).axes[0]
+    rims = [line for line in axes.get_lines() if line.get_xdata().shape == (2 * RIM,)]
+    assert len(rims) == 3
+    assert [line.get_label() for line in rims if not line.get_label().startswith("_")] == ["puck", "spacers"]
 
 
 def test_axes_hold_the_bodies_of_a_loop() -> None:
