@@ -6,7 +6,25 @@ from importlib import import_module
 from typing import Any
 
 
-class Result:
+class Shown:
+    """Base of scenes, models and all results: a few lines for a terminal and a notebook."""
+
+    def __repr__(self) -> str:
+        """The facts that matter, in at most ten lines."""
+        text: str = _presentation().text_of(self)
+        return text
+
+    def __str__(self) -> str:
+        """As ``repr``: pydantic would print every field of a scene."""
+        return repr(self)
+
+    def _repr_html_(self) -> str:
+        """The lines of ``repr`` as a table, below them the figure of a result: what a notebook shows."""
+        page: str = _presentation().html_of(self)
+        return page
+
+
+class Result(Shown):
     """Base of solutions, paths, motions, modes, sweeps, fits and all other results.
 
     How a kind of result is written, drawn and described is in :mod:`cosserat_casadi.results.presentation`. That module
@@ -92,16 +110,6 @@ class Result:
             WriteError: the file cannot be written, as on a full disk.
         """
         return _presentation().animate(self, path, **options)
-
-    def __repr__(self) -> str:
-        """The result in at most ten lines."""
-        text: str = _presentation().text_of(self)
-        return text
-
-    def _repr_html_(self) -> str:
-        """The lines of ``repr`` as a table, below them the figure: what a notebook shows."""
-        page: str = _presentation().html_of(self)
-        return page
 
 
 def _presentation() -> Any:

@@ -22,6 +22,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout
+from cosserat_casadi.result import Shown
 
 LOG = logging.getLogger(__name__)
 
@@ -36,8 +37,8 @@ SAMPLES_IN_CONTACT = 2
 neither the ends of each range alone are tried, nor does the worst point climb."""
 
 
-@dataclass(frozen=True)
-class Choice:
+@dataclass(frozen=True, repr=False)
+class Choice(Shown):
     """A discretisation for ranges of inputs and parameters, or for load cases.
 
     Attributes:

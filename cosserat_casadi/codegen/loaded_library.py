@@ -34,7 +34,7 @@ class LoadedLibrary(ABC):
     """
 
     library: Path
-    manifest: dict[str, Any]
+    manifest: dict[str, Any] = field(repr=False)
     scene: str = field(default="", repr=False)
 
     @staticmethod

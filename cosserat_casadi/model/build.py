@@ -29,11 +29,12 @@ from cosserat_casadi.model.scene_actuators import actuators_have_potential
 from cosserat_casadi.model.scene_constraints import decisive_axes
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.result import Shown
 from cosserat_casadi.rod.discretisation import Discretisation
 
 
-@dataclass(frozen=True)
-class Model(ModelFunctions, MotionFunctions, WithParameters):
+@dataclass(frozen=True, repr=False)
+class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and

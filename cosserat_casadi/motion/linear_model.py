@@ -28,6 +28,7 @@ from cosserat_casadi.motion.linear_outputs import Outputs, Place, outputs_of
 from cosserat_casadi.motion.relaxing_rows import integrated
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
 from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
+from cosserat_casadi.result import Shown
 
 QUICK = 1e-10
 """Share of the square of a frequency, to that of the slowest motions, from which on it has no modal coordinate."""
@@ -61,8 +62,8 @@ class DescriptorModel:
     outputs: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class LinearModel:
+@dataclass(frozen=True, repr=False)
+class LinearModel(Shown):
     """ẋ = A x + B u, y = C x + D u in modal coordinates.
 
     Attributes:

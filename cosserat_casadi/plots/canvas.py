@@ -51,7 +51,7 @@ FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
 
 NUMBER_DISTANCE, SMALL_NUMBER_DISTANCE = 12.0, 8.0
-"""Between the vertical axis and its numbers, points, and in a small panel; 8 of them are matplotlib's own."""
+"""Between the vertical axis and its numbers, points, and in a small panel; matplotlib adds 8 points to its pad."""
 
 CORNER = 0.12
 """Distance from the front corner of the box, relative to its longest side, in which one axis alone has a number."""

@@ -1,4 +1,4 @@
-"""Facts of each kind of result for terminals and notebooks: a title, and pairs of a label and its words."""
+"""Facts of results, models and scenes for terminals and notebooks: a title, and pairs of a label and its words."""
 
 from __future__ import annotations
 
@@ -11,17 +11,22 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.results.presentation import facts_of
 
 if TYPE_CHECKING:
+    from cosserat_casadi.accuracy.choose import Choice
     from cosserat_casadi.control.inverse_result import Inverse
     from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
     from cosserat_casadi.estimation import Estimate
     from cosserat_casadi.identification import Identification
+    from cosserat_casadi.model.build import Model
+    from cosserat_casadi.motion.linear_model import LinearModel
     from cosserat_casadi.motion.trajectory import Motion
     from cosserat_casadi.motion.vibration_modes import Modes
     from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
     from cosserat_casadi.paths.tube_path import TubePath
+    from cosserat_casadi.scene import Scene
     from cosserat_casadi.sweeps.outcome_table import Sweep
     from cosserat_casadi.sweeps.sobol import SobolIndices
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+    from cosserat_casadi.tubes.tube_functions import TubeFunctions
     from cosserat_casadi.tubes.tube_solution import TubeSolution
 
 Facts = list[tuple[str, str]]
@@ -33,6 +38,9 @@ Titled = tuple[str | None, Facts]
 MOST_OF_A_KIND = 4
 """Tips, modes, unknowns or events that are listed; the rest is counted."""
 
+NOTHING = "none"
+"""Words for an empty list."""
+
 ROUNDING = 1e-14
 """Share of the largest entry of a vector below which an entry is shown as zero."""
 
@@ -41,6 +49,65 @@ UNSOLVED = 1e-12
 
 SMALLEST = 1e-300
 """Keeps the scale of a vector of zeros away from zero."""
+
+
+def scene_facts(scene: Scene) -> Titled:
+    """Rods or tubes, what acts on them, and the inputs."""
+    parts: dict[str, Iterable[Any]] = {
+        "rods": scene.rods,
+        "tubes": scene.tubes,
+        "bodies": scene.listed_bodies,
+        "joints": scene.joints,
+        "disks": scene.disks,
+        "loads": scene.loads,
+        "actuators": scene.actuators,
+        "obstacles": scene.obstacles,
+    }
+    facts = [(part, _listed(entry.name or "without name" for entry in entries)) for part, entries in parts.items()]
+    facts = [(part, words) for part, words in facts if words != NOTHING]
+    return scene.title, [*facts, ("inputs", _listed(scene.input_names()))]
+
+
+def model_facts(model: Model) -> Titled:
+    """Unknowns, modes of each rod, inputs and parameters of a model."""
+    facts = [("unknowns", str(model.size))]
+    rods = [
+        (f"rod {name}", f"modes {', '.join(map(str, chosen.modes))}, {chosen.nodes} intervals")
+        for name, chosen in model.discretisation.items()
+    ]
+    facts += _first("rods", rods)
+    return model.scene.title, [*facts, *_arguments(model)]
+
+
+def tube_model_facts(model: TubeFunctions) -> Titled:
+    """Tubes, steps, inputs and parameters of a model of concentric tubes."""
+    facts = [("tubes", _listed(tube.name for tube in model.robot.scene.tubes)), ("steps", str(model.steps))]
+    return model.robot.scene.title, [*facts, *_arguments(model)]
+
+
+def _arguments(model: Model | TubeFunctions) -> Facts:
+    """Names of inputs, and of parameters where the scene names some."""
+    facts = [("inputs", _listed(model.inputs.names))]
+    return [*facts, ("parameters", _listed(model.parameters.names))] if model.parameters.size else facts
+
+
+def linear_model_facts(model: LinearModel) -> Titled:
+    """Sizes, and the slowest eigenvalue, of a linear model."""
+    facts = [
+        ("states", f"{len(model.states)}, of {model.modes} modes"),
+        ("inputs", _listed(model.inputs)),
+        ("outputs", _listed(model.outputs)),
+    ]
+    return None, facts
+
+
+def choice_facts(choice: Choice) -> Titled:
+    """Modes that were chosen, and how good they are."""
+    title, facts = model_facts(choice.model)
+    facts = [fact for fact in facts if fact[0] != "inputs"]
+    facts.append(("ranges", _listed(line.partition("=")[0] for line in choice.ranges.described)))
+    facts.append(("solved", f"{choice.solves}, {len(choice.without_equilibrium)} without an equilibrium"))
+    return title, [*facts, ("largest error", _error(choice.error_estimate, choice.scene.accuracy.tolerance))]
 
 
 def solution_facts(solution: Solution) -> Titled:
@@ -269,7 +336,7 @@ def _listed(words: Iterable[str]) -> str:
     """Words in a row; the rest of a long list is counted."""
     every = list(words)
     left_out = len(every) - MOST_OF_A_KIND
-    shown = ", ".join(every[:MOST_OF_A_KIND]) or "none"
+    shown = ", ".join(every[:MOST_OF_A_KIND]) or NOTHING
     return f"{shown} and {left_out} more" if left_out > 0 else shown
 
 

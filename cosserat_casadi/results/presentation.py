@@ -18,6 +18,7 @@ from typing import Any
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import MESHES, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.result import Result
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, json_text, plain
 
 PICTURES = (".png", ".pdf", ".svg")
@@ -164,6 +165,15 @@ PRESENTATIONS = {
 }
 """Presentations by the class of the result; a class without an entry is presented as its base."""
 
+SHOWN = {
+    "Scene": "results.facts:scene_facts",
+    "Model": "results.facts:model_facts",
+    "TubeFunctions": "results.facts:tube_model_facts",
+    "LinearModel": "results.facts:linear_model_facts",
+    "Choice": "results.facts:choice_facts",
+}
+"""Facts of scenes and models by their class: functions as of :attr:`Presentation.facts`."""
+
 
 def presentation_of(result: Any) -> Presentation:
     """The presentation of a result.
@@ -252,9 +262,13 @@ def animate(result: Any, path: str | Path, **options: Any) -> Path:
     return Path(path)
 
 
-def facts_of(result: Any) -> tuple[str | None, list[tuple[str, str]]]:
-    """Title of the scene of a result, None where it has none, and what matters: labels and words."""
-    title, facts = _function(presentation_of(result).facts)(result)
+def facts_of(shown: Any) -> tuple[str | None, list[tuple[str, str]]]:
+    """Title of the scene of a result or a model, None where it has none, and what matters: labels and words."""
+    if isinstance(shown, Result):
+        place = presentation_of(shown).facts
+    else:
+        place = next(SHOWN[kind.__name__] for kind in type(shown).__mro__ if kind.__name__ in SHOWN)
+    title, facts = _function(place)(shown)
     return title, facts
 
 
@@ -293,9 +307,9 @@ def write_all(result: Any, output: Path | None, *others: Path | None) -> list[Pa
     return [file for file in (output, *others) if file is not None]
 
 
-def text_of(result: Any) -> str:
+def text_of(shown: Any) -> str:
     """Lines for a terminal: the class with the title, and below them what matters; at most MOST_LINES."""
-    heading, facts = _facts(result)
+    heading, facts = _facts(shown)
     width = max(len(label) for label, _ in facts)
     lines = [heading, *(f"  {label:<{width}}  {words}" for label, words in facts)]
     if len(lines) > MOST_LINES:
@@ -304,11 +318,12 @@ def text_of(result: Any) -> str:
     return "\n".join(lines)
 
 
-def html_of(result: Any) -> str:
-    """HTML for a notebook: a table of the facts and the figure, or the reason why there is none."""
-    heading, facts = _facts(result)
+def html_of(shown: Any) -> str:
+    """HTML for a notebook: a table of the facts, and of a result the figure, or the reason why there is none."""
+    heading, facts = _facts(shown)
     rows = [f"<tr><th>{escape(label)}</th><td>{escape(words)}</td></tr>" for label, words in facts]
-    return f"<table><caption>{escape(heading)}</caption>{''.join(rows)}</table>{_picture(result)}"
+    picture = _picture(shown) if isinstance(shown, Result) else ""
+    return f"<table><caption>{escape(heading)}</caption>{''.join(rows)}</table>{picture}"
 
 
 def _picture(result: Any) -> str:
@@ -321,10 +336,10 @@ def _picture(result: Any) -> str:
     return f'<img alt="figure" src="data:image/png;base64,{encoded}"/>'
 
 
-def _facts(result: Any) -> tuple[str, list[tuple[str, str]]]:
+def _facts(shown: Any) -> tuple[str, list[tuple[str, str]]]:
     """The class with the title of the scene where it has one; labels and words."""
-    title, facts = facts_of(result)
-    kind = type(result).__name__
+    title, facts = facts_of(shown)
+    kind = type(shown).__name__
     heading = f"{kind}: {title}" if title else kind
     return heading, facts
 

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
+from cosserat_casadi.result import Shown
 from cosserat_casadi.scene.accuracy import Accuracy
 from cosserat_casadi.scene.actuator_records import Actuator
 from cosserat_casadi.scene.constraint_records import Body, Joint, Support
@@ -64,7 +65,7 @@ class FreeInput:
         return f"{self.owner}.{self.field}"
 
 
-class Scene(Record):
+class Scene(Shown, Record):
     """Rods, and what acts on them. SI units, right-handed world axes."""
 
     example: ClassVar[str] = """\

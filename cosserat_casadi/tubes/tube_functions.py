@@ -24,6 +24,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
+from cosserat_casadi.result import Shown
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.changes import Directions, changing_step, with_changes
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
@@ -43,7 +44,7 @@ RESOLVED = 64.0
 Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
 
 
-class TubeFunctions(WithParameters):
+class TubeFunctions(WithParameters, Shown):
     """A robot of concentric tubes with a number of steps.
 
     Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the

@@ -28,10 +28,12 @@ from cosserat_casadi import (
     Outcome,
     Sweep,
     build,
+    choose,
     discretise,
     follow,
     identify,
     inverse,
+    linearise,
     modes_of,
     read_scene,
     solve,
@@ -248,6 +250,29 @@ def test_a_result_says_what_matters_in_a_few_lines(name: str) -> None:
     assert "<" not in repr(result).replace("<rod>", "")
     # The error stands beside its tolerance; indices of a sweep have intervals instead.
     assert any("error" in line for line in lines) or name == "SobolIndices"
+
+
+def test_scenes_and_models_say_what_they_are_in_a_few_lines() -> None:
+    given = scene(push(force=[0.3, 0, 0]))
+    model = build(given)
+    linear = linearise(solve(model))
+    tubes = read_scene(ROOT / "examples" / "concentric_tubes.toml")
+    shown = {
+        "Scene": (given, "loads   push"),
+        "Model": (model, f"unknowns  {model.size}"),
+        "Choice": (choose(given, samples=1), "tolerance 1e-06"),
+        "LinearModel": (linear, f"states   {len(linear.A)}, of {linear.modes} modes"),
+        "TubeModel": (build(tubes, 4), "tubes   outer, inner"),
+    }
+    for name, (one, words) in shown.items():
+        lines = repr(one).splitlines()
+        assert lines[0].split(": ")[0] == name
+        assert len(lines) <= MOST_LINES
+        assert all(len(line) <= 120 for line in lines)
+        assert words in str(one)
+        page = one._repr_html_()
+        assert page.startswith(f"<table><caption>{lines[0]}")
+        assert "<img" not in page
 
 
 @pytest.mark.parametrize("name", mostly_slow(MAKERS, quick=["Solution", "TubePath"]))
