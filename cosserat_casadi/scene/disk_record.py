@@ -22,6 +22,9 @@ from cosserat_casadi.scene.values import (
     numbers_of,
 )
 
+MOST_DISKS = 1000
+"""Disks of a row of which an element each can be computed with."""
+
 
 def lead_through_disks(tables: dict[str, Any]) -> None:
     """Write the holes of tendons that run through disks: places of the disks of their rods within their spans."""
@@ -64,7 +67,7 @@ thickness = 0.002
 
     name: Name | None = Field(None, description="name of the row, a letter, then letters, digits and underscores")
     rod: str = Field(description="name of the rod that carries the disks")
-    count: Annotated[Whole, Field(ge=1)] | None = Field(
+    count: Annotated[Whole, Field(ge=1, le=MOST_DISKS)] | None = Field(
         None, description="number of disks, evenly along the rod, the last at its tip; or at"
     )
     at: Annotated[tuple[Section, ...], NotEmpty()] | None = Field(

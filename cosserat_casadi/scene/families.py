@@ -17,6 +17,7 @@ from pydantic_core import CoreSchema, core_schema
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.records import Record, refusal, restated
+from cosserat_casadi.spelling import close_matches
 
 Member = TypeVar("Member", bound=Record)
 
@@ -95,7 +96,9 @@ class Family(Generic[Member]):
         if isinstance(word, str) and word in self.records:
             return word
         choices = ", ".join(repr(known) for known in self.records)
-        fault = Fault((self.key,), f"must be one of {choices}, got {shown(word)}")
+        close = close_matches(word, self.records) if isinstance(word, str) else []
+        remedy = f"did you mean '{close[0]}'?" if close else ""
+        fault = Fault((self.key,), f"must be one of {choices}, got {shown(word)}", remedy)
         if word is None:
             fault = Fault((self.key,), "missing", f"one of {choices}")
         raise refusal([fault])

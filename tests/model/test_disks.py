@@ -149,3 +149,8 @@ def test_refusals(changes: dict[str, Any], where: str, problem: str) -> None:
     with pytest.raises(SceneError) as refused:
         scene({**ROW, **changes})
     assert [(one.where, one.problem) for one in refused.value.problems] == [(where, problem)]
+
+
+def test_a_row_of_absurdly_many_disks_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"disks\[0\]\.count: must be <= 1000, got 1000000"):
+        scene(_counted(1000000))

@@ -388,6 +388,7 @@ def test_five_faults_are_told_at_once_in_the_order_of_the_file():
         (scene("[[load]]\nname = 'a'"), "did you mean 'loads'?"),
         (scene("[colour]\nred = 1"), "known: schema, title, inputs"),
         (scene(rods=rod(strain='"kirchof"')), "did you mean 'kirchhoff'?"),
+        (scene(rods=rod('section = { shape = "circl", radius = 1e-3 }')), "did you mean 'circle'?"),
         (scene(rods=rod().replace("length = 0.2", "")), "undeformed length, m"),
         (load("kind = 'tip_wrench'\nrod = 'toe'\nforce = [1, 0, 0]"), "rods: finger"),
         (scene(PUSH, before="inputs = ['pull.force']"), "names: push, finger"),
