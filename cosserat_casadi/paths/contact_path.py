@@ -72,8 +72,15 @@ class ContactPath(EquilibriumPath):
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
-        arrangement = self.arrangements[self.arrangement[index]]
-        found = arrangement.equilibrium_at(self.x[index], float(self.factor[index]))
+        return self._judged(self.arrangement[index], self.x[index], self.factor[index])
+
+    def event_solution(self, event: PathEvent) -> Solution:
+        """The equilibrium at an event with its contacts, judged likewise."""
+        return self._judged(event.arrangement, event.x, event.factor)
+
+    def _judged(self, arrangement: int, x: FloatArray, factor: float) -> Solution:
+        """The equilibrium with some unknowns of an arrangement at a factor."""
+        found = self.arrangements[arrangement].equilibrium_at(x, float(factor))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
 
     @property

@@ -99,8 +99,8 @@ class InputPath(Result, Generic[ModelType, EventType]):
         factor: share of the way at each of k points in the order of travel, shape (k,).
         x: unknowns, shape (k, model.size).
         events: limit points and bifurcations in the order of travel.
-        error_estimate: estimated error of where the events lie, relative, and of the tips there and at the end,
-            relative to the lengths; None if not estimated.
+        error_estimate: estimated error of where the events lie, relative, and of the poses and lengths of cables there
+            and at both ends, as that of an equilibrium; None if not estimated.
     """
 
     model: ModelType
@@ -241,8 +241,22 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
         It is unresolved as a solve would be: where the nodes are too few, or rods deeper in each other, or in smooth
         obstacles, than their width.
         """
-        x = self.x[index]
-        inputs = self.all_inputs[index]
+        solution = self._solution(self.x[index], self.all_inputs[index])
+        stable = self.stable
+        if not solution.converged or stable is None or self.smallest_eigenvalue is None:
+            return solution
+        return replace(
+            solution,
+            smallest_eigenvalue=float(self.smallest_eigenvalue[index]),
+            stable=bool(stable[index]),
+        )
+
+    def event_solution(self, event: PathEvent) -> Solution:
+        """The equilibrium at an event, as that at a point, without its stability."""
+        return self._solution(event.x, self.inputs(event.factor))
+
+    def _solution(self, x: FloatArray, inputs: FloatArray) -> Solution:
+        """The equilibrium with some unknowns at some inputs."""
         residual = column(self.model.residual(x, inputs))
         is_resolved = float(self.model.resolution_index(x, inputs)) <= 1.0
         outcome = Outcome.CONVERGED if is_resolved else Outcome.UNRESOLVED
@@ -255,15 +269,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
             residual_norm=relative_norm(residual, x),
             iterations=0,
         )
-        solution = with_smooth_contacts(solution)
-        stable = self.stable
-        if not is_resolved or stable is None or self.smallest_eigenvalue is None:
-            return solution
-        return replace(
-            solution,
-            smallest_eigenvalue=float(self.smallest_eigenvalue[index]),
-            stable=bool(stable[index]),
-        )
+        return with_smooth_contacts(solution)
 
     @property
     def _points(self) -> Iterable[tuple[FloatArray, float, int]]:

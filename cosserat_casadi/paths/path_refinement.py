@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes
-from cosserat_casadi.equilibrium.metrics import ROUNDING, largest_turn
+from cosserat_casadi.equilibrium.metrics import ROUNDING, cable_distance, largest_turn, pose_distance
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
@@ -94,8 +95,8 @@ def follow(
 
     A model keeps its modes and nodes, or its steps. A scene is followed on modes and nodes, or steps, that meet its
     tolerance. Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path
-    is followed with more and more modes until the factors of its events, relative, and the tips there and at the end,
-    relative to the lengths, change by less than the tolerance; the last change is ``error_estimate``.
+    is followed with more and more modes until the factors of its events, relative, and the poses and lengths of cables
+    there and at both ends change by less than the tolerance; the last change is ``error_estimate``.
 
     An input begins at its value in ``values``; without one, of rods at zero, of concentric tubes at the scene's value.
 
@@ -190,9 +191,10 @@ def _follow_refined(
 
 
 def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
-    """Largest difference of two paths of a scene: event factors (relative), tips there and at factor 1 (over length).
+    """Largest difference of two paths of a scene: of the factors of events, relative, and of what the tolerance bounds.
 
-    Infinite where they end otherwise or have other events.
+    Poses and lengths of cables are compared at the first point, at the events and at factor 1. Infinite where they end
+    otherwise or have other events.
     """
     coarse_kinds = [event.kind for event in coarse.events]
     fine_kinds = [event.kind for event in fine.events]
@@ -203,29 +205,22 @@ def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
         difference = abs(coarse_event.factor - fine_event.factor)
         scale = max(abs(fine_event.factor), SMALLEST_FACTOR)
         differences.append(difference / scale)
-    for rod in coarse.model.discrete.rods:
-        differences += _tip_differences(coarse, fine, rod)
+    for coarse_solution, fine_solution in zip(_compared(coarse), _compared(fine), strict=True):
+        differences.append(pose_distance(coarse_solution, fine_solution))
+        differences.append(cable_distance(coarse_solution, fine_solution))
     return max(differences)
 
 
-def _tip_differences(coarse: EquilibriumPath, fine: EquilibriumPath, rod: str) -> list[float]:
-    """Distances of a rod's tips at events and at factor 1, over the length."""
-    pairs = []
-    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
-        coarse_tip = coarse.event_tip(coarse_event, rod)
-        fine_tip = fine.event_tip(fine_event, rod)
-        pairs.append((coarse_tip.position, fine_tip.position))
+def _compared(path: EquilibriumPath) -> list[Solution]:
+    """Equilibria at which paths are compared: the first one, those of the events, and that at factor 1 if there is."""
+    if not len(path.factor):
+        return []
+    solutions = [path.solution(0)]
+    solutions += [path.event_solution(event) for event in path.events]
     # A path that ends short of factor 1 has no end to compare.
-    if coarse.converged:
-        coarse_tip = coarse.tip(rod)
-        fine_tip = fine.tip(rod)
-        pairs.append((coarse_tip.position[-1], fine_tip.position[-1]))
-    length = coarse.model.discrete.rods[rod].properties.length
-    differences = []
-    for coarse_position, fine_position in pairs:
-        distance = np.linalg.norm(coarse_position - fine_position)
-        differences.append(float(distance) / length)
-    return differences
+    if path.converged:
+        solutions.append(path.solution(len(path.factor) - 1))
+    return solutions
 
 
 def _largest_turn(path: EquilibriumPath) -> float:

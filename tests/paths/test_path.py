@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
-from cosserat_casadi import Model, Outcome, SceneError, build, discretise, follow, solve
+from cosserat_casadi import EquilibriumPath, Model, Outcome, Scene, SceneError, build, discretise, follow, solve
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.trace import PathOutcome
 from tests.catalogue.cases import column_tip
@@ -229,6 +229,37 @@ def test_modes_are_chosen_until_events_and_end_stay() -> None:
     x, _, z = path.tip().position[-1]
     error = max(distance_between([abs(x), z], column_tip(3.0)), abs(3 * path.events[0].factor - 1.0))
     assert error <= path.error_estimate <= free.accuracy.tolerance
+
+
+def test_a_path_of_a_held_rod_is_known_between_its_ends() -> None:
+    """Its tip is where it is held on any modes, which therefore says nothing of the path."""
+    arch = rod("planar", length=1.0, stiffness={"bending_y": 1.0}, intrinsic={"curvature": [0, 3.0, 0]})
+    held = {"rod": "rod", "kind": "clamped", "position": [(1 - np.cos(3)) / 3, 0, np.sin(3) / 3]}
+    held["quaternion"] = [np.cos(1.5), 0, np.sin(1.5), 0]
+    force = [35.0, 0.0, -55.0]
+    push_crown = {"name": "push", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0, 0, 0]}
+    clamped = scene(push_crown, rods=[arch], supports=[held], accuracy={"tolerance": 1e-6})
+    path = follow(clamped, "push.force", force)
+    _assert_known(path, clamped, {"push.force": force}, index=-1, sections=[0.25, 0.5, 0.75])
+
+
+def test_a_path_that_ends_unloaded_is_known_where_it_begins() -> None:
+    bent = scene(push(force=[0, 0, 0]), rods=[rod("planar", length=1.0, stiffness={"bending_y": 1.0})])
+    start = {"push.force": [30.0, 0.0, -12.0]}
+    path = follow(bent, "push.force", [0, 0, 0], start)
+    _assert_known(path, bent, start, index=0, sections=[1.0])
+
+
+def _assert_known(
+    path: EquilibriumPath, subject: Scene, values: dict[str, list[float]], *, index: int, sections: list[float]
+) -> None:
+    """Sections at a point of a path are as near as told to those on far more modes, and within the tolerance."""
+    truth = solve(build(subject, discretise(subject, 24, 48, "magnus8")), values).pose(sections)
+    found = path.solution(index % len(path.factor)).pose(sections)
+    distance = np.linalg.norm(found.position - truth.position, axis=1).max()
+    assert path.converged
+    assert path.error_estimate is not None
+    assert 1e-12 < distance <= path.error_estimate <= subject.accuracy.tolerance
 
 
 def test_fixed_modes_are_used_as_they_are() -> None:
