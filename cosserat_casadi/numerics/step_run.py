@@ -145,7 +145,7 @@ class StepRun:
         """Solve the equations of a step of the present size; else say how the motion ends if no other is tried.
 
         Args:
-            near: a step from the same state of about that size; None where there is none.
+            near: a step from the same state of about that size; absent, the step is predicted from earlier ones.
         """
         guess = self.guess() if near is None else near.unknowns
         solution = self._solve_with_jacobian(guess)
