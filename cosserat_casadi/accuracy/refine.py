@@ -297,7 +297,7 @@ def _refined(
         if isinstance(verdict, NoEquilibrium):
             failures.append(solution)
             # Too few modes may have no equilibrium where the rod has one: some more levels are tried.
-            if len(failures) > MOST_FAILURES:
+            if len(failures) > MOST_FAILURES or solver.taut:
                 return solution
         else:
             if coarser is not None and has_more_modes(solution, coarser):

@@ -19,6 +19,7 @@ from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.relax import can_relax
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve, stabilised
+from cosserat_casadi.equilibrium.taut_rods import held_taut
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -55,6 +56,7 @@ class SceneSolver:
         report: told what is being tried.
         relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
         vain_descents: number of discretisations on which descent was tried in vain.
+        taut: whether the last solve ended early at rods that cannot extend, held straight: no modes help there.
         iterations: Newton steps so far, on all discretisations.
     """
 
@@ -65,6 +67,7 @@ class SceneSolver:
     report: Report | None
     relaxed: bool = False
     vain_descents: int = 0
+    taut: bool = False
     iterations: int = 0
 
     @property
@@ -129,7 +132,8 @@ class SceneSolver:
         solution = self._counted(solve(model, self.values, progress=self.progress, estimate_error=False))
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:
-            return self.relax(solution)
+            self.taut = held_taut(model, solution.inputs)
+            return solution if self.taut else self.relax(solution)
         return solution
 
     def _counted(self, solution: Solution) -> Solution:

@@ -21,6 +21,7 @@ from cosserat_casadi.equilibrium.stability import (
     variations,
 )
 from cosserat_casadi.equilibrium.strain_limits import within_limits
+from cosserat_casadi.equilibrium.taut_rods import TAUT, held_taut
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
@@ -66,6 +67,8 @@ def judge(
         message += f" Load factor reached: {load_factor:.6g}."
     if outcome is not Outcome.CONVERGED:
         message += gap_left(model, inputs, x)
+    if outcome is Outcome.LOAD_STALLED and held_taut(model, inputs):
+        message += TAUT
     solution = Solution(
         model,
         inputs,

@@ -1,0 +1,41 @@
+"""Rods without extension that supports hold straight: loads across them have no equilibrium."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+
+CLOSED = 1e-9
+"""Residual of constraints, relative to the length of the rods, below which they are closed."""
+
+DEPENDENT = 1e-9
+"""Share of the largest singular value below which one counts as zero."""
+
+TAUT = (
+    " The supports hold a rod that cannot extend as far apart as it is long: it stays straight, and loads across it "
+    'have no equilibrium. Admit its extension (strain = "reissner"), or hold its ends nearer to each other.'
+)
+"""Sentence in the message of a solve that this stopped."""
+
+
+def held_taut(model: Model, inputs: FloatArray) -> bool:
+    """Whether the unloaded rods meet their supports, and no small change of shape moves them in a direction held there.
+
+    Args:
+        model: of a scene with supports; one with bodies or without supports has no such rod.
+        inputs: stacked inputs, shape (model.inputs.size,).
+    """
+    discrete = model.discrete
+    if not discrete.constraints or model.scene.bodies:
+        return False
+    held = np.r_[tuple(entries for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER))]
+    unloaded = model.unloaded()
+    if np.abs(column(model.path_residual(unloaded, inputs, 1.0))[held]).max() > CLOSED:
+        return False
+    changes = model.path_jacobian(unloaded, inputs, 1.0).full()[np.ix_(held, model.shape_unknowns)]
+    singular = np.linalg.svd(changes, compute_uv=False)
+    return bool(len(singular) < len(changes) or singular[-1] <= DEPENDENT * singular[0])

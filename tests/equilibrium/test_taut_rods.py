@@ -1,0 +1,46 @@
+"""A rod that cannot extend, held straight at both ends, bears no load across it, and the solve says so at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from cosserat_casadi import Outcome, Solution, build, discretise, solve
+from cosserat_casadi.equilibrium.taut_rods import TAUT, held_taut
+from tests.scenes import rod, scene
+
+LENGTH = 0.8
+
+
+def held(kind: str, distance: float, strain: str, **more: Any) -> Any:
+    support = {"rod": "rod", "kind": kind, "position": [0.0, 0.0, distance]}
+    side = {"name": "side", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0.02, 0.0, 0.0]}
+    base = {"position": [0, 0, 0], "tangent": [0, 0, 1]}
+    return scene(side, rods=[rod(strain, base=base)], supports=[support | more])
+
+
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize(("kind", "more"), [("clamped", {"tangent": [0, 0, 1]}), ("pinned", {})])
+def test_a_rod_held_straight_is_told_at_once(kind: str, more: dict[str, Any], strain: str) -> None:
+    solution = solve(held(kind, LENGTH, strain, **more))
+    assert isinstance(solution, Solution)
+    assert solution.outcome is Outcome.LOAD_STALLED
+    assert solution.message.endswith(TAUT)
+    # One path on one set of modes: others would end like it.
+    assert solution.iterations < 100
+
+
+def test_a_rod_that_may_extend_sags() -> None:
+    solution = solve(held("clamped", LENGTH, "reissner", tangent=[0, 0, 1]))
+    assert solution.converged
+    assert solution.pose(0.5).position[0] > 0
+
+
+def test_a_rod_held_nearer_is_not_taut() -> None:
+    given = held("pinned", 0.9 * LENGTH, "planar")
+    model = build(given, discretise(given, 4, 10))
+    assert not held_taut(model, model.inputs.pack())
+    solution = solve(given)
+    assert solution.converged
+    assert TAUT not in solution.message
