@@ -44,6 +44,19 @@ static real largest_change(const real *before, const real *after) {
   return largest;
 }
 
+/* What every estimate is at least. In float Newton's method leaves a residual, and rounding another one, that move poses by
+   more than modes often do: by up to 2.3 tolerances of the residual in 1200 random answers. */
+static real least_error(const real *x) {
+#ifdef SOLVER_SINGLE
+  real sum = 0;
+  for (int i = 0; i < N; i++) sum += IS_SHAPE[i] ? x[i] * x[i] : 0;
+  return 3 * TOLERANCE * (1 + SQUARE_ROOT(sum));
+#else
+  (void)x;
+  return ERROR_FLOOR;
+#endif
+}
+
 static real norm_of_missing(const real *missing) {
   real sum = 0;
   for (int i = 0; i < MISSING; i++) sum += missing[i] * missing[i];
@@ -165,10 +178,10 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
     if (!isfinite(change)) break;
     const int settled = !is_first && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
     if (settled) {
-      return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + ERROR_FLOOR;
+      return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x);
     }
     /* A look that leaves the answer within its tolerance need not be repeated. */
-    if (change <= ERROR_ENOUGH && (!is_first || contracts(step, next))) return ERROR_SAFETY * change + ERROR_FLOOR;
+    if (change <= ERROR_ENOUGH && (!is_first || contracts(step, next))) return ERROR_SAFETY * change + least_error(x);
     change_before = change;
     step_before = step;
   }

@@ -81,20 +81,33 @@ def test_float_vs_double(library: Library, name: str) -> None:
 def test_float_program_of_random_loads_vs_double(library: Library) -> None:
     made = library("planar")
     cases = made.loads(200, 21, 2.0)
-    statuses, q = batch(made.program("batch.c", *QUICK, "-DPLANAR_SINGLE"), cases)
+    statuses, _, q = batch(made.program("batch.c", *QUICK, "-DPLANAR_SINGLE"), cases)
     assert np.count_nonzero(statuses == 0) >= 190
     for inputs, unknowns in zip(cases[statuses == 0], q[statuses == 0], strict=True):
         wanted = made.tips(made.compiled.solve(inputs).x, inputs)
         assert_allclose(made.tips(unknowns, inputs), wanted, rtol=0, atol=1e-4 * made.length)
 
 
-def batch(program: Path, cases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Statuses and unknowns from a program of ``batch.c``."""
+def test_estimates_in_float_count_rounding(export_recipe: ExportRecipe) -> None:
+    """Of modes that leave less than float does: no answer is farther from that in double than it says."""
+    made = export_recipe("fine", Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar"), 7, 8))
+    cases = made.loads(200, 24, 1.0)
+    statuses, errors, q = batch(made.program("batch.c", *QUICK, "-DFINE_SINGLE"), cases)
+    converged = statuses == 0
+    assert np.count_nonzero(converged) >= 190
+    assert np.median(errors[converged]) < 2e-4
+    for inputs, error, unknowns in zip(cases[converged], errors[converged], q[converged], strict=True):
+        off = made.tips(unknowns, inputs) - made.tips(made.compiled.solve(inputs).x, inputs)
+        assert np.linalg.norm(off) <= error * made.length, inputs
+
+
+def batch(program: Path, cases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Statuses, estimated errors and unknowns from a program of ``batch.c``."""
     text = f"{len(cases)}\n" + "\n".join(" ".join(map(repr, row)) for row in cases.tolist())
     done = subprocess.run([str(program)], input=text, capture_output=True, text=True, check=True, timeout=100)
     rows = np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
     assert int(done.stderr) == np.count_nonzero(rows[:, 0] == 0)
-    return rows[:, 0].astype(int), rows[:, 1:]
+    return rows[:, 0].astype(int), rows[:, 1], rows[:, 2:]
 
 
 def test_openmp_batch_vs_single_solves(library: Library) -> None:
@@ -102,8 +115,8 @@ def test_openmp_batch_vs_single_solves(library: Library) -> None:
     made = library("planar")
     cases = made.loads(300, 22, 2.0)
     cases[[5, 64, 130]] = 1e200
-    statuses, q = batch(made.program("batch.c", *QUICK, "-fopenmp"), cases)
-    serial, expected = batch(made.program("batch.c", *QUICK), cases)
+    statuses, _, q = batch(made.program("batch.c", *QUICK, "-fopenmp"), cases)
+    serial, _, expected = batch(made.program("batch.c", *QUICK), cases)
     assert_allclose(statuses, serial, rtol=0, atol=0)
     assert list(np.flatnonzero(statuses)) == [5, 64, 130]
     assert_allclose(q, expected, rtol=0, atol=1e-9)
@@ -146,7 +159,7 @@ def test_cmake_build_install_and_find_package(library: Library, options: str, tm
     run("cmake", "-S", source, "-B", source / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
     run("cmake", "--build", source / "build")
     cases = made.loads(150, 23)
-    statuses, q = batch(source / "build" / "consumer", cases)
+    statuses, _, q = batch(source / "build" / "consumer", cases)
     assert not np.any(statuses)
     single = "-DTINY_SINGLE=ON" in options
     expected = np.array([made.compiled.solve(inputs).x for inputs in cases])

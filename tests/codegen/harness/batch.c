@@ -1,4 +1,5 @@
-/* Reads a count and that many load cases, solves them as a batch, and prints status and unknowns of each. */
+/* Reads a count and that many load cases, solves them as a batch, and prints status, estimated error and
+   unknowns of each. */
 #include <@{name}.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,7 +23,7 @@ int main(void) {
   }
   fprintf(stderr, "%d\n", @{name}_solve_batch(count, inputs, q, workspaces, THREADS, info));
   for (k = 0; k < count; k++) {
-    printf("%d", (int)info[k].status);
+    printf("%d %.17g", (int)info[k].status, (double)info[k].error_estimate);
     for (i = 0; i < N; i++) printf(" %.17g", (double)q[k * N + i]);
     printf("\n");
   }
