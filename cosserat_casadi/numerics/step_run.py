@@ -141,18 +141,13 @@ class StepRun:
         self.linearisation = None
         self.matrices = None
 
-    def solve(self, near: TimeStep | None = None) -> StageSolution | StepOutcome:
-        """Solve the equations of a step of the present size; else say how the motion ends if no other is tried.
-
-        Args:
-            near: a step from the same state of about that size; absent, the step is predicted from earlier ones.
-        """
-        guess = self.guess() if near is None else near.unknowns
-        solution = self._solve_with_jacobian(guess)
+    def solve(self) -> StageSolution | StepOutcome:
+        """Solve the equations of a step of the present size; else say how the motion ends if no other is tried."""
+        solution = self._solve_with_jacobian()
         if isinstance(solution, StepOutcome) and not self.fresh:
             # The Jacobian may be too old: the same step gets one of its own.
             self.renew_jacobian()
-            solution = self._solve_with_jacobian(guess)
+            solution = self._solve_with_jacobian()
         if isinstance(solution, StepOutcome):
             # A shorter step has its middle elsewhere.
             self.renew_jacobian()
@@ -171,8 +166,9 @@ class StepRun:
         self.factorisations += solution.iterations
         return solution if solution.outcome is StageOutcome.CONVERGED else None
 
-    def _solve_with_jacobian(self, guess: FloatArray) -> StageSolution | StepOutcome:
-        """Solve from a guess with the Jacobian in use, or a new one where there is none."""
+    def _solve_with_jacobian(self) -> StageSolution | StepOutcome:
+        """Solve with the Jacobian in use, or a new one where there is none."""
+        guess = self.guess()
         linearisation = self.linearisation
         if linearisation is None:
             self.linearised_at = self._middle(guess)
@@ -306,10 +302,9 @@ class StepRun:
         assert self.guards is not None
         time = cut.end.time
         stands = cut
-        step = cut
         for _ in range(MOST_LENGTHS):
             self.size = time - cut.start.time
-            solution = self.solve(step)
+            solution = self.solve()
             if isinstance(solution, StepOutcome):
                 break
             self.accept(solution, time, cut.error, self.size)
