@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,7 @@ from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.parts import simulate_in_parts
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.motion.simulate import Tell
 from cosserat_casadi.motion.step_kernels import (
     MATRICES,
@@ -88,6 +88,11 @@ class MotionCompiler:
     always: bool = False
     last: StepStatistics | None = None
     asked: dict[str, tuple[Model, RepeatedCall | None]] = field(default_factory=dict)
+
+    @cached_property
+    def _compiler(self) -> str:
+        """Command of the C compiler; an ExportError is raised where there is none."""
+        return find_compiler()
 
     def learn(self, statistics: StepStatistics) -> None:
         """Take note of the work of the motion for which kernels were asked last."""
@@ -141,9 +146,9 @@ class MotionCompiler:
         of_model, found = self.asked.get(name, (None, None))
         try:
             if of_model is not model:
-                found = _in_machine_code(model, name, write=self.always)
+                found = _in_machine_code(model, name, self._compiler, write=self.always)
             if found is None and self._pays(model, name):
-                found = _in_machine_code(model, name, write=True)
+                found = _in_machine_code(model, name, self._compiler, write=True)
         except ExportError:
             if self.always:
                 raise
@@ -203,18 +208,18 @@ def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
     return calls * instructions * INSTRUCTION
 
 
-def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | None:
+def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> RepeatedCall | None:
     """A function of a model in machine code.
 
     Args:
         model: the model.
         name: RESIDUAL or JACOBIANS.
+        compiler: its command.
         write: whether to write and compile it where the cache has none; else the answer is None then.
 
     Raises:
-        ExportError: there is no compiler, or it fails.
+        ExportError: the compiler fails.
     """
-    compiler = find_compiler()
     results, _ = WRITTEN[name]
     # Every motion of a model asks for them: the files of the cache are looked at once.
     loaded: dict[tuple[str, str, Path], Path] = kept_with(model, "_machine_code", dict)
@@ -224,11 +229,11 @@ def _in_machine_code(model: Model, name: str, *, write: bool) -> RepeatedCall | 
         if library is None:
             return None
         loaded[place] = library
-    return RepeatedCall(ca.external(name, os.fspath(loaded[place])), results, loaded[place])
+    return RepeatedCall(external(name, os.fspath(loaded[place])), results, loaded[place])
 
 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
-    """The shared object with a function; arguments as of :func:`_in_machine_code`, and the command of the compiler."""
+    """The shared object with a function; arguments as of :func:`_in_machine_code`."""
     key = key_of(name, *_equations(model))
     kept = None if key is None else compiled_from(name, key, compiler)
     if kept is not None or not write:

@@ -19,7 +19,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -101,7 +101,7 @@ class Closing:
     def _gaps(self) -> RepeatedCall:
         """(x, inputs) ↦ the rows of the constraints: the rest of the equations takes several times as long."""
         if self.library is not None:
-            return RepeatedCall(ca.external(GAPS, self.library))
+            return RepeatedCall(external(GAPS, self.library))
         return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
 
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:

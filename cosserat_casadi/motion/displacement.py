@@ -9,6 +9,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.statics import Statics
@@ -44,7 +45,7 @@ def function_of_displacements(model: Model) -> ca.Function:
 
 
 def _displacements(model: Model, library: str | None) -> FloatArray:
-    sizes = _computed(model) if library is None else ca.external(FUNCTION, library)()["displacements"].full()[:, 0]
+    sizes = _computed(model) if library is None else external(FUNCTION, library)()["displacements"].full()[:, 0]
     # Several motions have it.
     sizes.setflags(write=False)
     return sizes

@@ -9,6 +9,7 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -20,6 +21,9 @@ from cosserat_casadi.maths.typing import FloatArray
 
 Program = tuple[npt.NDArray[np.intc], FloatArray, int]
 """Lines of numbers, initial values of slots, and the number of arguments among them."""
+
+MOST_LOADED = 256
+"""Functions of shared objects that a process keeps loaded."""
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,12 @@ INTERPRETED = Libraries()
 """No shared objects."""
 
 
+@lru_cache(maxsize=MOST_LOADED)
+def external(name: str, library: str) -> ca.Function:
+    """A function of a shared object, whose name is of its contents: it is loaded once in a process."""
+    return ca.external(name, library)
+
+
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
     """A function: that of its name in a shared object, or, without one, in CasADi's virtual machine.
 
@@ -144,5 +154,5 @@ def repeated(function: ca.Function, library: str | None, results: int = 1, *, as
         as_scalars: whether the virtual machine runs it as scalars, which takes a tenth to two thirds of the time.
     """
     if library is not None:
-        return RepeatedCall(ca.external(function.name(), library), results, library)
+        return RepeatedCall(external(function.name(), library), results, library)
     return RepeatedCall(function.expand() if as_scalars and not chooses(function) else function, results)

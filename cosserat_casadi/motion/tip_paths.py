@@ -22,6 +22,7 @@ from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.pose_series import Frames, evaluated, frames_of
+from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.scene.constraint_records import Body
 
 TIP = "motion_tip_"
@@ -77,8 +78,8 @@ def paths(history: History, times: FloatArray, library: str | None = None) -> Pa
     tips: Mapping[str, ca.Function] = model.tip
     between = _between(model)
     if library is not None:
-        tips = {name: ca.external(f"{TIP}{number}", library) for number, name in enumerate(model.discrete.rods)}
-        between = {name: ca.external(function.name(), library) for name, function in between.items()}
+        tips = {name: external(f"{TIP}{number}", library) for number, name in enumerate(model.discrete.rods)}
+        between = {name: external(function.name(), library) for name, function in between.items()}
     x, inputs = history.rough_positions(times)
     points = []
     section_axes = []
