@@ -27,13 +27,14 @@ from cosserat_casadi.scene.profiles import Notation, RefusedProfile, read_profil
 from cosserat_casadi.scene.records import keys_of, sound
 from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.toml import TOO_DEEP, file_text, parsed
+from cosserat_casadi.scene.unlikely_units import note_unlikely_units
 
 SCENE_KEYS = tuple(keys_of(Scene))
 """Tables and plain keys of a scene."""
 
 
 def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from a TOML file.
+    """Read a scene from a TOML file. Numbers that are likely in another unit are warned of through ``logging``.
 
     Args:
         path: the file.
@@ -48,7 +49,9 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     """
     file = Path(path)
     tables = parsed(file_text(file))
-    return _scene(tables, overrides, file.parent)
+    scene = _scene(tables, overrides, file.parent)
+    note_unlikely_units(scene)
+    return scene
 
 
 def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:

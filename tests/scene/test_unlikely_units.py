@@ -1,0 +1,36 @@
+"""Numbers in another unit than the format's are taken as they are, and warned of when the file is read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cosserat_casadi import read_scene
+from tests.conftest import ROOT
+
+WIRE = ROOT / "examples" / "nitinol_wire.toml"
+
+
+@pytest.mark.parametrize(
+    ("override", "note"),
+    [
+        ("wire.material.youngs_modulus=60", "rods[0].material.youngs_modulus: 60 Pa is softer than any rod"),
+        ("wire.material.density=6.45", "rods[0].material.density: 6.45 kg/m³ is lighter than foam"),
+        ("wire.section.radius=0.5", "rods[0].section.radius: 0.5 m is more than the length of 0.2 m"),
+        ("wire.length=0.3", ""),
+    ],
+)
+def test_a_number_in_another_unit_is_noted(override: str, note: str, caplog: pytest.LogCaptureFixture) -> None:
+    scene = read_scene(WIRE, [override])
+    assert scene.rods[0].name == "wire"
+    notes = [record.getMessage() for record in caplog.records]
+    assert [text.partition(" (")[0] for text in notes] == [note] * bool(note)
+
+
+def test_no_example_is_warned_of(caplog: pytest.LogCaptureFixture) -> None:
+    examples: list[Path] = sorted((ROOT / "examples").glob("*.toml"))
+    assert len(examples) > 30
+    for example in examples:
+        read_scene(example)
+    assert not caplog.records
