@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
@@ -31,6 +32,9 @@ STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
 
 VERDICTS: dict[bool | None, str] = {True: "stable", False: "unstable", None: "loads without energy"}
 """Words for these."""
+
+NANOMETRES = 9
+"""Digits of a distance in metres."""
 
 DRAWN = 12
 """Points that are drawn from one station to the next."""
@@ -149,7 +153,11 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
             colour = rod_colour(index)
             label = name
         style = {**category_style(index), "color": colour, "linestyle": STROKES[solution.stable], "markevery": 0.15}
-        panel.plot(shape.distance[here], shape.angles[here, index] - first, label=label, **style)
+        # The steps are few: corners that no tube has would show between them. Some have no length but for rounding.
+        distance, rows = np.unique(np.round(shape.distance[here], NANOMETRES), return_index=True)
+        along = np.linspace(distance[0], distance[-1], DRAWN * len(distance))
+        curve = PchipInterpolator(distance, shape.angles[here, index][rows] - first)
+        panel.plot(along, curve(along), label=label, **style)
 
 
 def plot_tube_path(path: TubePath) -> Any:

@@ -343,6 +343,17 @@ def test_each_tube_has_one_colour_in_space_and_beside() -> None:
     assert {name: in_space[name] for name in ("outer", "inner")} == {name: beside[name] for name in ("outer", "inner")}
 
 
+def test_angles_of_tubes_are_curves_through_their_stations() -> None:
+    solution = solve(Pendulum(1.0).scene(1.0, tolerance=1e-4))
+    panel = plot_tubes(solution).axes[1]
+    for index, name in enumerate(solution.robot.names):
+        distance, angles = next(line.get_data() for line in panel.get_lines() if line.get_label() == name)
+        here = solution.shape.distance <= distance[-1]
+        at_stations = np.interp(solution.shape.distance[here], distance, angles)
+        assert_allclose(at_stations, solution.shape.angles[here, index] - solution.inputs[0], rtol=0, atol=1e-3)
+        assert len(distance) > 5 * len(np.unique(solution.shape.distance[here]))
+
+
 # The workspace figure: its panels, its points, the same bytes twice.
 
 
