@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
@@ -95,8 +95,14 @@ def equations_of(
     return MotionEquations(unknowns.differential, residual, jacobians, kinks=piece.kinks, eliminated=eliminated)
 
 
-Stops = Callable[[Piece, Instant], Guards | None]
-"""(piece, begin) ↦ values, positive from the begin on, at whose zeros a motion stops; None for none."""
+class Stops(Protocol):
+    """Numbered values at whose zeros a motion stops."""
+
+    def guards(self, piece: Piece, begin: Instant) -> Guards | None:
+        """The values, positive from the begin on; None for none."""
+
+    def jumped(self, before: Piece, piece: Piece, at: Instant) -> int | None:
+        """Number of a value that jumps through zero with the inputs, between two pieces; None for none."""
 
 
 @dataclass(frozen=True)
@@ -478,6 +484,9 @@ def _switched(
     for number, piece in enumerate(pieces, start=1):
         if piece.end <= at.time:
             continue
+        jumped = None if stops is None or not legs else stops.jumped(legs[-1].piece, piece, flight.to_model(at))
+        if jumped is not None:
+            return History(model, tuple(legs), method, asked, flight, jumped)
         if resume is not None and not legs:
             settings = replace(settings, first=min(resume.first, piece.end - piece.start))
         plain = equations_of(model, piece, p, kernels)
@@ -506,7 +515,7 @@ def _switched(
                 legs.append(Leg(piece, restart, stalled_at(begin), plain))
                 return History(model, tuple(legs), method, asked, flight)
             begin_in_model = flight.to_model(begin)
-            ends = None if stops is None else stops(piece, begin_in_model)
+            ends = None if stops is None else stops.guards(piece, begin_in_model)
             guards, changes = _joined(guards, ends, begin_in_model)
             equations, guards = flight.in_steps(equations, guards)
             own = _with_forces(settings, equations.size, acting)

@@ -75,13 +75,29 @@ class EventWatch:
         if not numbers:
             return None
 
-        def values(instant: Instant) -> FloatArray:
-            return self.values(instant.x[: self.model.size], piece.at(instant.time).value)[numbers]
+        first = self._stopping_values(piece, begin)
+        ahead = self._stopping_values(piece, Instant(begin.time + AHEAD, begin.x + AHEAD * begin.v, begin.v, begin.a))
+        sides = np.where(np.where(np.abs(first) > THROUGH, first, ahead) < 0.0, -1.0, 1.0)
+        return lambda instant: sides * self._stopping_values(piece, instant)
 
-        first = values(begin)
-        ahead = Instant(begin.time + AHEAD, begin.x + AHEAD * begin.v, begin.v, begin.a)
-        sides = np.where(np.where(np.abs(first) > THROUGH, first, values(ahead)) < 0.0, -1.0, 1.0)
-        return lambda instant: sides * values(instant)
+    def jumped(self, before: Piece, piece: Piece, at: Instant) -> int | None:
+        """Number of an event that stops a motion and jumps through zero with the inputs; None where none does.
+
+        Args:
+            before: of the inputs, up to the jump.
+            piece: of the inputs from there on.
+            at: the instant of the jump, in the unknowns of the model.
+        """
+        if not self._stopping:
+            return None
+        ends = [self._stopping_values(one, at) for one in (before, piece)]
+        lowest, highest = np.min(ends, axis=0), np.max(ends, axis=0)
+        through = np.flatnonzero((lowest < -THROUGH) & (highest > THROUGH))
+        return int(through[0]) if len(through) else None
+
+    def _stopping_values(self, piece: Piece, instant: Instant) -> FloatArray:
+        """Values of the events that stop a motion."""
+        return self.values(instant.x[: self.model.size], piece.at(instant.time).value)[self._stopping]
 
     def crossings(self, history: History) -> tuple[ContactEvent, ...]:
         """All zeros of all events in a motion, and what stopped it, in their order."""
@@ -92,6 +108,8 @@ class EventWatch:
         times = np.append(times, steps[-1].end.time)
         x, inputs = history.rough_positions(times)
         rows = np.array([self.values(*place) for place in zip(x, inputs, strict=True)])
+        # What begins at zero, to rounding, does not cross it there.
+        rows[0] = np.where(np.abs(rows[0]) > THROUGH, rows[0], rows[1])
         found = []
         stopped = None if history.stopped is None else self._stopping[history.stopped]
         if stopped is not None:

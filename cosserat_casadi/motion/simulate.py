@@ -352,7 +352,7 @@ class Simulator:
             kernels=kernels,
             resume=self.start.resume,
             flight=self._flights[libraries],
-            stops=self.watch.guards,
+            stops=self.watch,
         )
         if self.source is not None:
             self.source.learn(history.statistics)

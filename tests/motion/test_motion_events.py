@@ -64,6 +64,36 @@ def test_an_input_rises_and_falls() -> None:
     assert_allclose([event.time for event in motion.events], [0.0625, 0.3125], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("least", [0.1, -0.1])
+def test_an_input_that_jumps_through_zero_stops_the_motion(least: float) -> None:
+    """The push jumps at 0.125 s from zero to twice the value that stops, and back at 0.25 s."""
+    tables = swing(0.5, step=0.0625, accuracy={"modes": 1, "nodes": 4, "tolerance": 1e-1})
+    pushes = [[0.0, 0.0, 0.0], [0.0, 0.0, 2 * least], [0.0, 0.0, 0.0]]
+    tables["motions"] = [
+        {"input": "push.force", "times": [0.0, 0.125, 0.25], "values": pushes, "interpolation": "step"}
+    ]
+
+    def value(model: Model, x: ca.MX, inputs: ca.MX) -> ca.MX:
+        return inputs[model.inputs.slices["push.force"]][2] - least
+
+    model = moving_model(tables)
+    stopped = simulate(model, events=[MotionEvent("half", value, stop=True)], compiled=False)
+    kind, back = ("rises", "falls") if least > 0.0 else ("falls", "rises")
+    assert [(event.kind, event.time) for event in stopped.events] == [(kind, 0.125)]
+    assert stopped.converged
+    assert stopped.times[-1] == 0.125
+    # Gone on with, it stops where the push jumps back.
+    last = simulate(model, start=stopped, events=[MotionEvent("half", value, stop=True)], compiled=False)
+    assert [(event.kind, event.time) for event in last.events] == [(back, 0.25)]
+
+
+def test_what_begins_at_zero_does_not_cross_it_there() -> None:
+    """A tip that falls from the height of an event, and one that its rounding puts on the other side."""
+    off = 2e-17
+    motion = simulate(falling(), events=[height(-0.0), height(off), height(-off)], compiled=False)
+    assert motion.events == ()
+
+
 def test_a_value_that_is_no_number_is_refused() -> None:
     event = MotionEvent("place", lambda model, x, inputs: model.tip["arm"](x, inputs)[0])
     with pytest.raises(SceneError, match="'place' has shape"):
