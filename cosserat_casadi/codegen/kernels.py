@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Sequence
 from contextlib import suppress
 
 import casadi as ca
@@ -17,7 +19,8 @@ from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, with_calls_in_fours
+from cosserat_casadi.codegen.shared_values import GIVEN, with_shared_kernels
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
@@ -45,8 +48,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     of_parameters = _parameter_kernels(model, names, parts)
     if parts is None:
         most = MOST_IN_COLUMNS if motion is None else MOST_BESIDE_STEPS
-        of_solver = [_written(model, entry, most) for entry in wanted]
-        return [*of_solver, *of_parameters, *of_motion]
+        return [*_of_one_rod(model, names, wanted, most), *of_parameters, *of_motion]
     every: list[Kernel] = [*parts.kernels, *of_parameters, *of_motion]
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
@@ -93,8 +95,26 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     return [in_one(parameter_rate(model.path_residual, name), parts.blocks.owners, name)]
 
 
+def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most_in_columns: int) -> list[Kernel]:
+    """The functions of a scene that has no parts, a Jacobian of at most so many statements by columns.
+
+    Those in straight-line code call kernels of what they compute alike from unknowns and inputs.
+    """
+    written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
+    straight: dict[int, list[ca.Function]] = defaultdict(list)
+    for one in written.values():
+        if isinstance(one, ca.Function) and one.is_a("SXFunction") and one.name_in()[:GIVEN] == ["x", "inputs"]:
+            # To the solver parameters are further inputs.
+            straight[one.size1_in(1)].append(one)
+    for number, functions in enumerate(straight.values()):
+        with suppress(UnknownOperationError):
+            for shared in with_shared_kernels(functions, names.kernel(f"shared_{number}")):
+                written[shared.name()] = shared
+    return list(written.values())
+
+
 def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
-    """One function of a scene that has no parts; in fours where it can be, a Jacobian of so many statements at most."""
+    """One function of a scene that has no parts: by columns, in straight-line code, or in loops."""
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
@@ -104,13 +124,11 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
         return kernel(model, entry.function, entry.kernel)
     longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
     straight = None if _literal(model) else scalar(entry.function, entry.kernel, longest)
-    if straight is None:
+    if straight is None or (
+        straight.n_instructions() > STRAIGHT and isinstance(with_calls_in_fours(straight), ca.Function)
+    ):
         return dense(entry.function, entry.kernel)
-    # Without calls of intervals there is nothing to make together.
-    if straight.find_functions(0):
-        with suppress(UnknownOperationError):
-            return scalars_in_c(straight, dense(entry.function, entry.kernel))
-    return straight if straight.n_instructions() <= STRAIGHT else dense(entry.function, entry.kernel)
+    return straight
 
 
 def by_columns(

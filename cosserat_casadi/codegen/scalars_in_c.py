@@ -8,7 +8,7 @@ and is the same to the last digit as CasADi computes it.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -46,18 +46,24 @@ from cosserat_casadi.codegen.statements import (
 )
 
 
-def scalars_in_c(function: ca.Function, signature: ca.Function, arithmetic: Arithmetic = SINGLE) -> PrintedKernel:
+def scalars_in_c(
+    function: ca.Function,
+    signature: ca.Function,
+    arithmetic: Arithmetic = SINGLE,
+    kernels: Mapping[int, PrintedKernel] | None = None,
+) -> PrintedKernel:
     """A function of scalars as C.
 
     Args:
         function: the function.
         signature: a function with the name, arguments and first result that it has in C.
         arithmetic: of the numbers that it computes.
+        kernels: kernels that it calls by the hash of their functions (shared_values.py).
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    return _Writing(Listing(function), signature, None, arithmetic).result()
+    return _Writing(Listing(function), signature, None, arithmetic, kernels or {}).result()
 
 
 def with_calls_in_fours(kernel: ca.Function) -> Kernel:
@@ -80,7 +86,7 @@ def columns_in_fours(form: ColumnForm, signature: ca.Function) -> PrintedKernel:
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    return _Writing(Listing(form.function), signature, form, SINGLE).result()
+    return _Writing(Listing(form.function), signature, form, SINGLE, {}).result()
 
 
 @dataclass(frozen=True)
@@ -123,7 +129,12 @@ class _Writing:
     """
 
     def __init__(
-        self, listing: Listing, signature: ca.Function, form: ColumnForm | None, arithmetic: Arithmetic
+        self,
+        listing: Listing,
+        signature: ca.Function,
+        form: ColumnForm | None,
+        arithmetic: Arithmetic,
+        kernels: Mapping[int, PrintedKernel],
     ) -> None:
         self.arithmetic = arithmetic
         self.listing = listing
@@ -133,10 +144,12 @@ class _Writing:
         self.reals = 0
         self.place: dict[int, int] = {}
         self.callee_names = listing.names_of_callees("")
+        self.kernels = {hash(call.function): kernels.get(hash(call.function)) for call in listing.calls}
         self.in_column = self._in_column()
         self.batch_of = self._batches()
         # What is given to calls is read before the next ones are given anything.
-        most_given = (batch.width * batch.turns * batch.operands for batch in self.batch_of.values())
+        batches = [batch for batch in self.batch_of.values() if self._kernel(batch.calls) is None]
+        most_given = (batch.width * batch.turns * batch.operands for batch in batches)
         self.given = self._room(max(most_given, default=0))
         self.given_to_columns = self._given_to_columns()
         for value in self.given_to_columns:
@@ -171,6 +184,7 @@ class _Writing:
             self.reals,
             self.statements,
             columns=self.column_functions,
+            kernels=tuple(kernel for kernel in self.kernels.values() if kernel is not None),
         )
 
     def _write_main(self) -> None:
@@ -228,8 +242,8 @@ class _Writing:
             groups[hash(call.function), depth[call.results[0]]].append(number)
         batches: dict[int, _Batch] = {}
         for calls in groups.values():
-            width = LANES if self._are_made_together(len(calls)) else 1
             call = self.listing.calls[calls[0]]
+            width = LANES if self._are_made_together(len(calls)) and self._kernel(calls) is None else 1
             batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
             self._room(width * batch.turns * batch.results)
             batches |= dict.fromkeys(calls, batch)
@@ -287,7 +301,12 @@ class _Writing:
         value = self.listing.values[number]
         if not isinstance(value, Called):
             return self.listing.operands(number)
-        return [operand for call in self.batch_of[value.call].calls for operand in self.listing.calls[call].operands]
+        batch = self.batch_of[value.call]
+        if self._kernel(batch.calls) is not None:
+            # It reads arguments where they are.
+            operands = self.listing.calls[value.call].operands
+            return [operand for operand in operands if isinstance(self.listing.values[operand], Called)]
+        return [operand for call in batch.calls for operand in self.listing.calls[call].operands]
 
     def _append(self, number: int) -> None:
         """Append the statements of a value whose operands are there."""
@@ -305,7 +324,34 @@ class _Writing:
         if number in self.place:
             self.main.statements.append(Statement(f"w[{self.place[number]}] = {{0}};", [number]))
 
+    def _kernel(self, calls: Sequence[int]) -> PrintedKernel | None:
+        """The kernel that calls of one function are of, if any."""
+        return self.kernels[hash(self.listing.calls[calls[0]].function)]
+
+    def _append_call_of_kernel(self, batch: _Batch, kernel: PrintedKernel) -> None:
+        """Append a call that is given whole arguments, and all that kernels before have handed over."""
+        call = self.listing.calls[batch.calls[0]]
+        given = []
+        first = 0
+        for i in range(call.function.n_in()):
+            begin = self.listing.values[call.operands[first]] if call.function.nnz_in(i) else None
+            first += call.function.nnz_in(i)
+            if isinstance(begin, Called):
+                given.append(f"w + {self.batch_of[begin.call].made}")
+            else:
+                given.append(f"arg[{begin.argument}]" if isinstance(begin, Read) else "w")
+        lines = [
+            f"{{{{ const casadi_real *given[] = {{{{{', '.join(given)}}}}};",
+            f"casadi_real *made[] = {{{{w + {batch.made}}}}};",
+            f"MADE({kernel.name()})(given, made, w + {self._room(kernel.reals)}); }}}}",
+        ]
+        self.main.statements.append(Statement("\n    ".join(lines), []))
+
     def _append_calls(self, batch: _Batch) -> None:
+        kernel = self._kernel(batch.calls)
+        if kernel is not None:
+            self._append_call_of_kernel(batch, kernel)
+            return
         for k in range(batch.width * batch.turns):
             turn, lane = divmod(k, batch.width)
             # Lanes that are left over compute what the last call does.
@@ -354,6 +400,8 @@ class _Writing:
     def _write_callees(self) -> None:
         wanted = {}
         for batch in self.batch_of.values():
+            if self._kernel(batch.calls) is not None:
+                continue
             function = self.listing.calls[batch.calls[0]].function
             wanted[self._callee_name(function, batch.width)] = (function, batch.width)
         for name, (function, width) in wanted.items():

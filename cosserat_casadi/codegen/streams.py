@@ -221,7 +221,7 @@ def _replay(stream: Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]
         else:
             given = [next(next_constant) if value == CONSTANT else values[value] for value in operands]
             if code == ca.OP_CALL:
-                values += _call(next(next_called), given)
+                values += call_of_entries(next(next_called), given)
             else:
                 apply = ca.SX.unary if len(given) == 1 else ca.SX.binary
                 values.append(apply(code, *given))
@@ -232,7 +232,7 @@ def _entries(vector: ca.SX) -> list[ca.SX]:
     return ca.vertsplit(vector) if vector.numel() else []
 
 
-def _call(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
+def call_of_entries(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
     """Entries of all results of a function that is called with these entries."""
     shaped = list[ca.SX]()
     start = 0
