@@ -263,7 +263,7 @@ def _tables_in_c(name_of: Mapping[ConstantTable, str], stem: str) -> str:
 
 def _array(kind: str, name: str, numbers: Sequence[str]) -> str:
     """A constant array in C."""
-    lines = textwrap.fill(", ".join(numbers), 119, initial_indent="  ", subsequent_indent="  ")
+    lines = textwrap.fill(", ".join(numbers), 119, initial_indent=" ", subsequent_indent=" ").replace(", ", ",")
     return f"static const {kind} {name}[{len(numbers)}] = {{\n{lines}}};\n"
 
 

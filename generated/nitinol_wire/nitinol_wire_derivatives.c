@@ -11949,26 +11949,25 @@ static int MADE(fwd1_adj1_nitinol_wire_f_shape)(const casadi_real **arg, casadi_
 #endif
 #undef MADE
 
-#define KERNEL_ONCE(kernel, given) kernel##_once given
-#define KERNEL(kernel, chosen)                                                                                     \
+#define KERNEL(kernel)                                                                                             \
   CASADI_SYMBOL_EXPORT int kernel(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w,      \
                                   int mem) {                                                                       \
     (void)iw;                                                                                                      \
     (void)mem;                                                                                                     \
-    return chosen(kernel, (arg, res, w));                                                                          \
+    return kernel##_once(arg, res, w);                                                                             \
   }
-KERNEL(nitinol_wire_f_residual, KERNEL_ONCE)
-KERNEL(fwd1_nitinol_wire_f_residual, KERNEL_ONCE)
-KERNEL(adj1_nitinol_wire_f_residual, KERNEL_ONCE)
-KERNEL(fwd1_adj1_nitinol_wire_f_residual, KERNEL_ONCE)
-KERNEL(nitinol_wire_f_tip, KERNEL_ONCE)
-KERNEL(fwd1_nitinol_wire_f_tip, KERNEL_ONCE)
-KERNEL(adj1_nitinol_wire_f_tip, KERNEL_ONCE)
-KERNEL(fwd1_adj1_nitinol_wire_f_tip, KERNEL_ONCE)
-KERNEL(nitinol_wire_f_shape, KERNEL_ONCE)
-KERNEL(fwd1_nitinol_wire_f_shape, KERNEL_ONCE)
-KERNEL(adj1_nitinol_wire_f_shape, KERNEL_ONCE)
-KERNEL(fwd1_adj1_nitinol_wire_f_shape, KERNEL_ONCE)
+KERNEL(nitinol_wire_f_residual)
+KERNEL(fwd1_nitinol_wire_f_residual)
+KERNEL(adj1_nitinol_wire_f_residual)
+KERNEL(fwd1_adj1_nitinol_wire_f_residual)
+KERNEL(nitinol_wire_f_tip)
+KERNEL(fwd1_nitinol_wire_f_tip)
+KERNEL(adj1_nitinol_wire_f_tip)
+KERNEL(fwd1_adj1_nitinol_wire_f_tip)
+KERNEL(nitinol_wire_f_shape)
+KERNEL(fwd1_nitinol_wire_f_shape)
+KERNEL(adj1_nitinol_wire_f_shape)
+KERNEL(fwd1_adj1_nitinol_wire_f_shape)
 
 /* ---- What casadi.external asks of nitinol_wire_f_residual ---- */
 

@@ -11,7 +11,7 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 572
+#define tendon_robot_k_residual_SZ_W 709
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
@@ -21,7 +21,7 @@ int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* 
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 852
+#define tendon_robot_k_rate_SZ_W 927
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -31,7 +31,7 @@ int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define tendon_robot_k_resolution_index_SZ_ARG 2
 #define tendon_robot_k_resolution_index_SZ_RES 1
 #define tendon_robot_k_resolution_index_SZ_IW 0
-#define tendon_robot_k_resolution_index_SZ_W 0
+#define tendon_robot_k_resolution_index_SZ_W 48
 int tendon_robot_k_strain_margins(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_strain_margins_SZ_ARG 2
 #define tendon_robot_k_strain_margins_SZ_RES 1
@@ -51,7 +51,7 @@ int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_in
 #define tendon_robot_k_watched_SZ_ARG 2
 #define tendon_robot_k_watched_SZ_RES 1
 #define tendon_robot_k_watched_SZ_IW 0
-#define tendon_robot_k_watched_SZ_W 177
+#define tendon_robot_k_watched_SZ_W 353
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
@@ -61,17 +61,17 @@ int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define tendon_robot_k_tip_SZ_ARG 2
 #define tendon_robot_k_tip_SZ_RES 2
 #define tendon_robot_k_tip_SZ_IW 0
-#define tendon_robot_k_tip_SZ_W 138
+#define tendon_robot_k_tip_SZ_W 338
 int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 815
+#define tendon_robot_k_tip_jacobian_SZ_W 974
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2
 #define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 196
+#define tendon_robot_k_shape_SZ_W 357
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3
@@ -86,12 +86,12 @@ int tendon_robot_k_actuator_upper_west(const casadi_real** arg, casadi_real** re
 #define tendon_robot_k_actuator_upper_west_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_west_SZ_RES 3
 #define tendon_robot_k_actuator_upper_west_SZ_IW 0
-#define tendon_robot_k_actuator_upper_west_SZ_W 0
+#define tendon_robot_k_actuator_upper_west_SZ_W 12
 int tendon_robot_k_actuator_upper_south(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_upper_south_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_south_SZ_RES 3
 #define tendon_robot_k_actuator_upper_south_SZ_IW 0
-#define tendon_robot_k_actuator_upper_south_SZ_W 0
+#define tendon_robot_k_actuator_upper_south_SZ_W 12
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -238,6 +238,18 @@ def test_tables_of_places_are_short_where_turns_move_on_by_equal_steps() -> None
     assert " ".join(tables.by_name["t1"].numbers) == "4 1 5 3 9 8"
 
 
+def test_products_of_sparse_matrices() -> None:
+    """Of a band, whose products move on by equal steps, and of any pattern."""
+    rng = np.random.default_rng(2)
+    anywhere = ca.sparsify(ca.DM(rng.uniform(-1, 1, (30, 8)) * (rng.uniform(size=(30, 8)) < 0.3))).sparsity()
+    band = ca.Sparsity.band(30, 1) + ca.Sparsity.diag(30)
+    x, y, z = ca.MX.sym("x", band), ca.MX.sym("y", band), ca.MX.sym("z", anywhere)
+    function = ca.Function("sparse", [x, y, z], [ca.mtimes(x, y), ca.mtimes(x, z)])
+    texts, compiled = in_c(function, "sparse_in_c")
+    assert texts["sparse_in_c.c"].count("  program_sparse(") == 2
+    assert_same(compiled, function, 1e-14)
+
+
 def test_what_has_no_form_is_left_to_casadi() -> None:
     """A linear system that is solved with pivoting."""
     a, b = ca.MX.sym("a", 12, 12), ca.MX.sym("b", 12)
