@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, TypeGuard
 
 from cosserat_casadi.scene.scene import Scene
 
@@ -38,6 +38,6 @@ def _notes(scene: Scene) -> Iterator[str]:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {rod.length:g} m (are both in m?)"
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: Any) -> TypeGuard[float]:
     """Whether a value is one number: no list, expression or nothing."""
     return isinstance(value, float | int)
