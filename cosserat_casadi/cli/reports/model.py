@@ -62,7 +62,7 @@ def print_check(
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
     if closing:
         print_plain(console, "Ties: " + "; ".join(closing))
-    for note in chain(_notes_on_orientations(model), _notes_on_planes(model)):
+    for note in chain(_notes_on_orientations(model), notes_on_planes(model)):
         print_plain(console, f"Note: {note}")
     _print_price(console, model, cost)
     if scene.accuracy.chosen_for:
@@ -92,7 +92,7 @@ def _notes_on_orientations(model: Model) -> Iterator[str]:
             )
 
 
-def _notes_on_planes(model: Model) -> Iterator[str]:
+def notes_on_planes(model: Model) -> Iterator[str]:
     """Sentences on joints that close a loop, and hold it in a plane alone."""
     joints = {f"joints[{i}]": joint for i, joint in enumerate(model.scene.joints)}
     for placed in model.discrete.constraints:

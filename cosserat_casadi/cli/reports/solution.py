@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
+from cosserat_casadi.cli.reports.model import notes_on_planes
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
@@ -47,6 +48,8 @@ def _print_equilibrium(console: Console, solution: Solution, work: str, written:
     if solution.model.scene.has_contact:
         console.print(_contact_table(solution))
     print_plain(console, _merit_sentence(solution, work))
+    for note in notes_on_planes(solution.model):
+        print_plain(console, f"Note: {note}")
     print_written(console, written)
 
 
