@@ -33,7 +33,7 @@ from tests.codegen.contact_libraries import (
     over_bar,
     pulled_over_bar,
 )
-from tests.codegen.libraries import C99, QUICK, compile_quickly, gcc
+from tests.codegen.libraries import C99, QUICK, attempt, compile_quickly, gcc
 from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
@@ -558,6 +558,12 @@ def test_a_folder_says_for_which_ranges_it_was_verified(bar: ContactLibrary, tmp
     for file in ("verified.h", "README.md"):
         assert verified.sentence in " ".join((folder / file).read_text().split())
     assert "was not estimated" in " ".join((bar.folder / "bar.h").read_text().split())
+
+
+def test_float_is_refused(bar: ContactLibrary) -> None:
+    done = attempt("gcc", "-fsyntax-only", "-DBAR_SINGLE", bar.folder / "bar.c")
+    assert done.returncode != 0
+    assert "in double alone" in done.stderr
 
 
 def test_bytes_of_a_library(bar: ContactLibrary) -> None:

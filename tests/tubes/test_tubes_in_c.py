@@ -32,6 +32,7 @@ from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.tubes.tube_functions import RESOLVED
 from cosserat_casadi.tubes.tube_solution import tip_error
 from cosserat_casadi.tubes.tube_solve import model_of, solution_near, solve_at
+from tests.codegen.libraries import attempt
 from tests.commands import cosserat
 from tests.families import mostly_slow
 
@@ -443,3 +444,10 @@ def test_on_the_command_line(tmp_path: Path) -> None:
     assert described["tubes"] == ["outer", "inner"]
     assert sorted(path.name for path in folder.iterdir()) == described["files"]
     assert parse_scene((folder / "scene.toml").read_text(encoding="utf-8")).tubes
+
+
+def test_float_is_refused(robot: Robot) -> None:
+    """Kernels in float beside tables in double made a converged status of garbage."""
+    done = attempt("gcc", "-fsyntax-only", "-DROBOT_SINGLE", robot.folder / "robot.c")
+    assert done.returncode != 0
+    assert "in double alone" in done.stderr
