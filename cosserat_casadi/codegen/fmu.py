@@ -138,13 +138,16 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         kernel(model, outputs.jacobian, names.kernel("motion_outputs_jacobian")),
     ]
     moves = list[int]()
-    for entry, _ in model.inputs:
+    quaternions = [0] * model.inputs.size
+    for entry, span in model.inputs:
         moves += [int(entry.declared.moves)] * entry.size
+        quaternions[span.start] = int(entry.field == "base.quaternion")
     words = {
         "name": names.name,
         "MACRO": names.macro,
         "outputs": len(outputs.entries),
         "moves": numbers(moves) or "0",
+        "quaternions": numbers(quaternions) or "0",
         **_parameter_words(model, names),
         "budget": f"{STEP_TOLERANCE!r}, {STEP_ITERATIONS}, {STEP_PARTS}",
         "step": repr(step),

@@ -22,14 +22,32 @@ typedef struct {
   double acceleration[INPUT_ROOM];
 } moving_inputs;
 
+/* The given inputs, with each quaternion on the side of the one before, and the signs that this takes: q and -q are one
+   orientation, and between them there is none. */
+static void on_one_side(const snapshot *held, double *to, double *sign) {
+  for (int i = 0; i < FMU_INPUTS; i++) {
+    sign[i] = 1;
+    to[i] = held->given[i];
+  }
+  for (int first = 0; first < FMU_INPUTS; first++) {
+    double cosine = 0;
+    if (!BEGINS_QUATERNION[first]) continue;
+    for (int i = first; i < first + 4; i++) cosine += held->now.inputs[i] * to[i];
+    for (int i = first; i < first + 4 && cosine < 0; i++) {
+      sign[i] = -1;
+      to[i] = -to[i];
+    }
+  }
+}
+
 /* Share of the change of the mean rate that the rate at the end of a step is beyond its mean rate. */
 static double lead_of_rate(const snapshot *held, double duration) {
   return held->last_step > 0 ? duration / (duration + held->last_step) : 1;
 }
 
-static double rate_at_end(const snapshot *held, int input, double duration) {
+static double rate_at_end(const snapshot *held, int input, double given, double duration) {
   const double now = held->now.inputs[input];
-  const double mean = (held->given[input] - now) / duration;
+  const double mean = (given - now) / duration;
   const double mean_before = held->last_step > 0 ? (now - held->before.inputs[input]) / held->last_step : 0;
   return mean + lead_of_rate(held, duration) * (mean - mean_before);
 }

@@ -66,9 +66,10 @@ static const char *read_direction(const snapshot *held, const fmi3ValueReference
   for (size_t k = 0; k < count; k++) {
     if (is_between(knowns[k], FIRST_INPUT, FIRST_OUTPUT)) {
       const int input = (int)knowns[k] - FIRST_INPUT;
-      along->inputs[input] += seed[k];
+      const double change = stepped ? held->sign[input] * seed[k] : seed[k];
+      along->inputs[input] += change;
       /* The rate at the end is the mean rate, and the lead of what that changes by. */
-      if (stepped && MOVES[input]) along->inputs_rate[input] += seed[k] * (1 + held->lead) / held->last_step;
+      if (stepped && MOVES[input]) along->inputs_rate[input] += change * (1 + held->lead) / held->last_step;
     } else if (is_between(knowns[k], FIRST_PARAMETER, VARIABLES)) {
       if (stepped) return "after the first step derivatives are with respect to inputs alone";
       along->parameters[knowns[k] - FIRST_PARAMETER] += seed[k];

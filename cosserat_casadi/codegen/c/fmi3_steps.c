@@ -64,8 +64,11 @@ FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 start, fmi3Fl
   self->kept = held->now;
   moment *now = &held->now;
   double end_rate[INPUT_ROOM] = {0};
-  for (int i = 0; i < FMU_INPUTS; i++) end_rate[i] = MOVES[i] ? rate_at_end(held, i, duration) : 0;
-  const course way = {self->kept.inputs, self->kept.inputs_rate, held->given, end_rate, duration};
+  double to[INPUT_ROOM] = {0};
+  double sign[INPUT_ROOM] = {0};
+  on_one_side(held, to, sign);
+  for (int i = 0; i < FMU_INPUTS; i++) end_rate[i] = MOVES[i] ? rate_at_end(held, i, to[i], duration) : 0;
+  const course way = {self->kept.inputs, self->kept.inputs_rate, to, end_rate, duration};
   const int count = count_steps(held, duration);
   for (int k = 0; k < count; k++) {
     moving_inputs at;
@@ -77,7 +80,8 @@ FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 start, fmi3Fl
       return say(self, fmi3Discard, fmu_motion_status_text(status));
     }
   }
-  memcpy(now->inputs, held->given, sizeof now->inputs);
+  memcpy(now->inputs, to, sizeof now->inputs);
+  memcpy(held->sign, sign, sizeof held->sign);
   memcpy(now->inputs_rate, end_rate, sizeof now->inputs_rate);
   now->time = start + duration;
   held->before = self->kept;
