@@ -18,7 +18,6 @@ from cosserat_casadi.codegen.compiled_results import (
     CompiledSolution,
     CompiledStability,
     Sensitivity,
-    StabilityInfo,
     judged_words,
 )
 from cosserat_casadi.codegen.input_values import ArgumentValues
@@ -74,10 +73,8 @@ class Compiled(CompiledMotion):
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
         """Unknowns and parameters by their macros."""
-        sizes = {"UNKNOWNS": sum(entry["count"] for entry in described["unknowns"])}
-        if described.get("parameters"):
-            sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
-        return sizes
+        unknowns = sum(entry["count"] for entry in described["unknowns"])
+        return {"UNKNOWNS": unknowns, **CompiledMotion.sizes(described)}
 
     @cached_property
     def _names(self) -> Names:
@@ -158,13 +155,9 @@ class Compiled(CompiledMotion):
         Raises:
             AttributeError: the folder was exported without the estimate.
         """
-        given = self.inputs.stacked(inputs)
-        p = self.parameters.passed(parameters)
-        unknowns = vector(x, self.size, "x")
+        arguments = *self._given(inputs, parameters), pointer(vector(x, self.size, "x"))
         estimate = ctypes.c_double()
-        status = self._function("error_estimate")(
-            pointer(given), *p, pointer(unknowns), ctypes.byref(estimate), self._workspace()
-        )
+        status = self._function("error_estimate")(*arguments, ctypes.byref(estimate), self._workspace())
         return estimate.value if self.outcomes[status] is Outcome.CONVERGED else None
 
     def follow(
@@ -239,14 +232,7 @@ class Compiled(CompiledMotion):
         """
         if stability_files(self._names.name)[0] not in self.manifest["files"]:
             raise AttributeError("export the folder with stability: export(..., stability=True)")
-        given = self.inputs.stacked(inputs)
-        unknowns = vector(x, self.size, "x")
-        room = (ctypes.c_char * self._function("stability_workspace_size")())()
-        info = StabilityInfo()
-        p = self.parameters.passed(parameters)
-        judge = self._function("stability")
-        status = judge(pointer(given), *p, pointer(unknowns), self._workspace(), room, ctypes.byref(info))
-        return None if status != 0 else info.judged
+        return self._judged(*self._given(inputs, parameters), pointer(vector(x, self.size, "x")))
 
     def parameter_sensitivity(
         self, inputs: ArgumentValues, x: npt.ArrayLike, *, parameters: ArgumentValues = None
@@ -259,16 +245,14 @@ class Compiled(CompiledMotion):
         self, inputs: ArgumentValues, x: npt.ArrayLike, parameters: ArgumentValues
     ) -> tuple[Sensitivity, Sensitivity] | None:
         """Derivatives with inputs and with parameters, which have no column where there are none."""
-        given = self.inputs.stacked(inputs)
-        unknowns = vector(x, self.size, "x")
-        p = self.parameters.passed(parameters)
+        given = *self._given(inputs, parameters), pointer(vector(x, self.size, "x"))
         rods, bodies = self._names.rods, self._names.bodies
-        d_x = [np.zeros((count, self.size)) for count in (len(given), self.parameters.size)]
+        d_x = [np.zeros((count, self.size)) for count in (self.inputs.size, self.parameters.size)]
         d_poses = [np.zeros((len(rods) + len(bodies), len(columns), 7)) for columns in d_x]
         # A scene without parameters has no derivative with them to be passed.
-        kinds = 2 if p else 1
+        kinds = 2 if self.parameters.size else 1
         results = [*map(pointer, d_x[:kinds]), *map(pointer, d_poses[:kinds])]
-        status = self._function("solve_sensitivity")(pointer(given), *p, pointer(unknowns), *results, self._workspace())
+        status = self._function("solve_sensitivity")(*given, *results, self._workspace())
         if status != 0:
             return None
         by_inputs, by_parameters = (

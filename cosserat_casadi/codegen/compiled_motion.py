@@ -231,11 +231,10 @@ class CompiledMotion(LoadedLibrary):
             x: unknowns, such as of an equilibrium; the unloaded scene by default.
             parameters: by name or stacked.
         """
-        given = self.inputs.stacked(inputs)
+        given = self._given(inputs, parameters)
         start = vector(np.zeros(self.size) if x is None else x, self.size, "x")
         state = np.zeros(3 * self.size)
-        p = self.parameters.passed(parameters)
-        status = self._motion_function("rest")(pointer(given), *p, pointer(start), pointer(state), self._workspace())
+        status = self._motion_function("rest")(*given, pointer(start), pointer(state), self._workspace())
         return self._unpacked(state) if MOTION_STATUSES[status] is MotionStatus.DONE else None
 
     def step(
@@ -357,13 +356,8 @@ class CompiledMotion(LoadedLibrary):
     ) -> FloatArray:
         """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
         residual = np.zeros(self.size)
-        p = self.parameters.passed(parameters)
-        given = [
-            pointer(self.inputs.stacked(inputs)),
-            *p,
-            self._changing(inputs_rate),
-            self._changing(inputs_acceleration, "inputs_acceleration"),
-        ]
+        rates = self._changing(inputs_rate), self._changing(inputs_acceleration, "inputs_acceleration")
+        given = *self._given(inputs, parameters), *rates
         # A slice of a table is no vector in memory: C reads what lies side by side.
         named = {"x": state.x, "v": state.v, "a": state.a}
         arguments = [pointer(vector(value, self.size, name)) for name, value in named.items()]
@@ -382,13 +376,8 @@ class CompiledMotion(LoadedLibrary):
         stiffness, damping, mass = (np.zeros((self.size, self.size)) for _ in range(3))
         derivatives, columns = self._input_derivatives(self.size)
         results = [stiffness, damping, mass, *columns]
-        p = self.parameters.passed(parameters)
-        arguments = [
-            pointer(self._packed(state)),
-            pointer(self.inputs.stacked(inputs)),
-            *p,
-            self._changing(inputs_rate),
-        ]
+        given = self._given(inputs, parameters)
+        arguments = [pointer(self._packed(state)), *given, self._changing(inputs_rate)]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
         return LinearMotion(stiffness.T, damping.T, mass.T, **derivatives)
 

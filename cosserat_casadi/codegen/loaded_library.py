@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.compiled_results import CompiledStability, StabilityInfo
 from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs, listed_values
 from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
 from cosserat_casadi.codegen.plain import pointer
@@ -47,9 +48,10 @@ class LoadedLibrary(ABC):
         """
 
     @staticmethod
-    @abstractmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
         """Sizes beside that of the inputs by their macros in the header, as a sound manifest has them."""
+        parameters = described.get("parameters")
+        return {"PARAMETERS": sum(len(entry["value"]) for entry in parameters)} if parameters else {}
 
     def __getstate__(self) -> dict[str, Any]:
         """What pickle and copy take along: where the shared object lies, not the object that this process opened."""
@@ -113,6 +115,17 @@ class LoadedLibrary(ABC):
         given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
         p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
         return given, [pointer(p)] if self.parameters.size else []
+
+    def _given(self, inputs: ArgumentValues, parameters: ArgumentValues) -> list[Any]:
+        """Inputs and parameters as functions in C take them."""
+        return [pointer(self.inputs.stacked(inputs)), *self.parameters.passed(parameters)]
+
+    def _judged(self, *arguments: Any) -> CompiledStability | None:
+        """Whether an equilibrium that the arguments say is stable; None where it is none."""
+        info = StabilityInfo()
+        own_room = room(self._function("stability_workspace_size")())
+        status = self._function("stability")(*arguments, self._workspace(), own_room, ctypes.byref(info))
+        return None if status != 0 else info.judged
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:

@@ -18,7 +18,6 @@ from cosserat_casadi.codegen.compiled_results import (
     AnswerInfo,
     CompiledAnswer,
     CompiledStability,
-    StabilityInfo,
     judged_words,
 )
 from cosserat_casadi.codegen.input_values import ArgumentValues
@@ -128,10 +127,7 @@ class CompiledContact(LoadedLibrary):
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
         """Numbers of the arrangements and of the parameters by their macros."""
-        sizes = {"ARRANGEMENTS": len(described[ARRANGEMENTS])}
-        if described.get("parameters"):
-            sizes["PARAMETERS"] = sum(len(entry["value"]) for entry in described["parameters"])
-        return sizes
+        return {"ARRANGEMENTS": len(described[ARRANGEMENTS]), **LoadedLibrary.sizes(described)}
 
     @property
     def rods(self) -> list[str]:
@@ -204,11 +200,10 @@ class CompiledContact(LoadedLibrary):
                 way from it does not lead to the inputs.
             parameters: by name or stacked; the scene's own by default.
         """
-        given = self.inputs.stacked(inputs)
-        p = self.parameters.passed(parameters)
+        given = self._given(inputs, parameters)
         state = self._room() if start is None else self._state(start)
         info = ContactInfo()
-        status = self._function("solve")(pointer(given), *p, state, self._workspace(), ctypes.byref(info))
+        status = self._function("solve")(*given, state, self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
         return self._answer(state, info, solved=outcome in SOLVED)
 
@@ -258,15 +253,14 @@ class CompiledContact(LoadedLibrary):
         Raises:
             ValueError: one budget is given without the other.
         """
-        given = self.inputs.stacked(inputs)
+        given = self._given(inputs, parameters)
         options = budget(ContactOptions, max_iterations, max_parts)
         state = self._state(start)
         info = ContactInfo()
-        p = self.parameters.passed(parameters)
         columns = np.zeros((self._posed, self.inputs.size, POSE_SIZE))
-        further = [None] if p else []
+        further = [None] if self.parameters.size else []
         room_of_call = (options, pointer(columns), *further, self._workspace(), ctypes.byref(info))
-        status = self._function("track")(pointer(given), *p, state, None, *room_of_call)
+        status = self._function("track")(*given, state, None, *room_of_call)
         outcome = CONTACT_OUTCOMES[status]
         # After any other end the state is that of the turn before, for its inputs.
         solved = outcome is Outcome.CONVERGED
@@ -302,11 +296,7 @@ class CompiledContact(LoadedLibrary):
         Raises:
             AttributeError: the folder was exported without stability.
         """
-        size = self._function("stability_workspace_size")()
-        info = StabilityInfo()
-        judge = self._function("stability")
-        status = judge(self._state(solution), self._workspace(), room(size), ctypes.byref(info))
-        return None if status != 0 else info.judged
+        return self._judged(self._state(solution))
 
     def error_estimate(self, solution: CompiledContactSolution) -> float | None:
         """Estimated error of a solution, such as one of a turn; None where it is none.

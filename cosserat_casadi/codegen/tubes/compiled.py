@@ -48,7 +48,7 @@ class CompiledTubes(Compiled):
     ) -> dict[str, FloatArray]:
         """Position and quaternion of the tip of each tube, shape (7,)."""
         poses = np.zeros((len(self.tubes), POSE_SIZE))
-        given = pointer(self.inputs.stacked(inputs)), *self.parameters.passed(parameters)
+        given = self._given(inputs, parameters)
         self._function("poses")(pointer(vector(x, self.size, "x")), *given, pointer(poses), self._workspace())
         return dict(zip(self.tubes, poses, strict=True))
 
