@@ -29,7 +29,7 @@ from cosserat_casadi.accuracy.levels import SPARE_NODES  # noqa: E402
 from cosserat_casadi.codegen.motion_compiler import MotionCompiler  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
 from cosserat_casadi.model.discretise import discretise, nodes_for  # noqa: E402
-from cosserat_casadi.motion.pose_series import tip_poses  # noqa: E402
+from cosserat_casadi.motion.pose_series import poses_of  # noqa: E402
 from cosserat_casadi.motion.simulate import Simulator, started  # noqa: E402
 from cosserat_casadi.motion.tip_paths import Paths, path_distance  # noqa: E402
 from cosserat_casadi.motion.trajectory import MotionProgress  # noqa: E402
@@ -335,7 +335,7 @@ def kicked_rows() -> Iterator[str]:
         seconds = time.process_time() - began
         x, inputs = history.rough_positions(np.array(expected["times"]))
         (rod,) = scene.rods
-        tip = tip_poses(model, rod.name, x, inputs).position
+        tip = poses_of(model.tip[rod.name], x, inputs).position
         distance = float(np.linalg.norm(tip - np.array(expected["tip"]), axis=1).max()) / rod.length
         computed[elements, modes] = Kicked(distance, simulator.paths(history), history.statistics.steps, seconds)
     finest = list(computed.values())[-1]

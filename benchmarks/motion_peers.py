@@ -27,7 +27,7 @@ from rich.progress import Progress
 from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate
 from cosserat_casadi.codegen.cache import VARIABLE
 from cosserat_casadi.codegen.motion_compiler import MotionCompiler
-from cosserat_casadi.motion.pose_series import tip_poses
+from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.figure import figure_class, write_figure
@@ -108,7 +108,7 @@ def again(motion: Motion, tolerance: float) -> Run:
     def run() -> Paths:
         history = simulator.controlled(tolerance)
         x, inputs = history.rough_positions(TIMES)
-        return np.asarray(tip_poses(motion.model, "rod", x, inputs).position)
+        return np.asarray(poses_of(motion.model.tip["rod"], x, inputs).position)
 
     return run
 
@@ -135,7 +135,7 @@ def in_c(model: Model, step: float) -> Run:
                 state = taken.state
             unknowns.append(state.x)
         x = np.array(unknowns)
-        return np.asarray(tip_poses(model, "rod", x, np.tile(inputs, (len(x), 1))).position)
+        return np.asarray(poses_of(model.tip["rod"], x, np.tile(inputs, (len(x), 1))).position)
 
     return run
 

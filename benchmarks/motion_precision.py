@@ -22,7 +22,7 @@ from rich.progress import Progress
 from cosserat_casadi import Model, build, discretise, scene_from_dict
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History, integrated
-from cosserat_casadi.motion.pose_series import tip_poses
+from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.integration import StepSettings
@@ -145,7 +145,7 @@ def tip_of(history: History) -> Vector:
     """Position of the tip at the end, shape (3,)."""
     end = history.end
     state = history.at(end.time)
-    return np.asarray(tip_poses(history.model, "rod", state.x[None], state.inputs[None]).position[0])
+    return np.asarray(poses_of(history.model.tip["rod"], state.x[None], state.inputs[None]).position[0])
 
 
 def measured(model: Model, duration: float, true_tip: Vector) -> Iterator[Measured]:

@@ -302,9 +302,7 @@ class Solution(Equilibrium[Model]):
         function = self.model.actuator[name]
         values = function(self.x, self.inputs)
         # The third output, the rate of the conjugate with the unknowns, is for control.
-        effort = float(values[0])
-        conjugate = float(values[1])
-        return {function.name_out(0): effort, function.name_out(1): conjugate}
+        return {function.name_out(i): float(values[i]) for i in range(2)}
 
     def joint(self, name: str) -> dict[str, float]:
         """Moment (N m) or force (N) along a joint on its section, and its angle (rad) or displacement (m).

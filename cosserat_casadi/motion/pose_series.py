@@ -48,30 +48,23 @@ class ActuatorStates(NamedTuple):
     conjugate: FloatArray
 
 
-def tip_poses(model: Model, rod: str, x: FloatArray, inputs: FloatArray) -> Poses:
-    """Poses of a rod's tip.
+def poses_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Poses:
+    """Poses of a tip or a body from its function of the model.
 
     Args:
-        model: the model.
-        rod: name of the rod.
+        function: (x, inputs) ↦ position, quaternion and rotation.
         x: unknowns at T times, shape (T, model.size).
         inputs: stacked inputs there, shape (T, model.inputs.size).
 
     Returns:
         shapes (T, 3) and (T, 4).
     """
-    position, quaternion, _ = evaluated(model.tip[rod], x, inputs)
-    return Poses(position[:, :, 0], quaternion[:, :, 0])
-
-
-def body_poses(model: Model, body: str, x: FloatArray, inputs: FloatArray) -> Poses:
-    """Poses of a rigid body, shapes (T, 3) and (T, 4); arguments as in :func:`tip_poses`."""
-    position, quaternion, _ = evaluated(model.body[body], x, inputs)
+    position, quaternion, _ = evaluated(function, x, inputs)
     return Poses(position[:, :, 0], quaternion[:, :, 0])
 
 
 def frames_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Frames:
-    """Frames of a tip or a body from its function of the model; arguments as in :func:`tip_poses`."""
+    """Frames of a tip or a body; arguments as in :func:`poses_of`."""
     position, _, rotation = evaluated(function, x, inputs)
     return Frames(position[:, :, 0], rotation)
 
@@ -100,7 +93,7 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
 
 
 def states_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> ActuatorStates:
-    """Effort and conjugate of an actuator or a joint from its function; arguments as in :func:`tip_poses`."""
+    """Effort and conjugate of an actuator or a joint from its function; arguments as in :func:`poses_of`."""
     # The third output of an actuator, the rate of the conjugate with the unknowns, is for control.
     effort, conjugate, *_ = evaluated(function, x, inputs)
     return ActuatorStates(effort[:, 0, 0], conjugate[:, 0, 0])

@@ -29,7 +29,7 @@ from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.pose_series import tip_poses
+from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import warnings
@@ -632,7 +632,7 @@ def _tips(history: History, time: float) -> dict[str, list[float]]:
     """Positions of the tips at a time, by rod, m."""
     model = history.model
     x, inputs = history.rough_positions(np.array([time]))
-    return {name: tip_poses(model, name, x, inputs).position[0].tolist() for name in model.discrete.rods}
+    return {name: poses_of(model.tip[name], x, inputs).position[0].tolist() for name in model.discrete.rods}
 
 
 def _stacked(rows: list[FloatArray], size: int) -> FloatArray:

@@ -19,10 +19,9 @@ from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import (
     ActuatorStates,
     Poses,
-    body_poses,
+    poses_of,
     section_poses,
     states_of,
-    tip_poses,
 )
 from cosserat_casadi.result import Result
 
@@ -230,8 +229,7 @@ class Motion(Result):
         Raises:
             KeyError: there is no such rod, or there are several to choose from.
         """
-        name = self.model.rod_name(rod)
-        return tip_poses(self.model, name, self.x, self.inputs)
+        return poses_of(self.model.tip[self.model.rod_name(rod)], self.x, self.inputs)
 
     def section(self, rod: str | None, X: npt.ArrayLike) -> Poses:
         """Poses of a rod's sections at abscissae X in [0, 1], shapes (T, k, 3) and (T, k, 4), or (T, 3) and (T, 4).
@@ -254,7 +252,7 @@ class Motion(Result):
         """
         if name not in self.model.body:
             raise KeyError(_unknown(name, "a body", "bodies", list(self.model.body)))
-        return body_poses(self.model, name, self.x, self.inputs)
+        return poses_of(self.model.body[name], self.x, self.inputs)
 
     def actuator(self, name: str) -> ActuatorStates:
         """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber, each of shape (T,).

@@ -22,7 +22,7 @@ from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import MESHES, write_atomically, write_errors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.pose_series import body_poses, section_poses
+from cosserat_casadi.motion.pose_series import poses_of, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, OBSTACLES, PLAIN_TEXT, actuator_colour, rod_colour, rod_style
@@ -383,7 +383,7 @@ class _Film:
         for obstacle in frames.model.scene.obstacles:
             if obstacle.body is None:
                 continue
-            poses = body_poses(frames.model, obstacle.body, frames.x, frames.inputs)
+            poses = poses_of(frames.model.body[obstacle.body], frames.x, frames.inputs)
             world_R_body = rotations(poses.quaternion)
             first = SolvedPoses(poses.position[0], world_R_body[0], poses.quaternion[0])
             label: str | None = obstacle.name

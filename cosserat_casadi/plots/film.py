@@ -22,7 +22,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.sections import half_widths_along
-from cosserat_casadi.motion.pose_series import Poses, body_poses, section_poses
+from cosserat_casadi.motion.pose_series import Poses, poses_of, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.obstacles.capsule import capsule_net
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -151,7 +151,7 @@ def _parts(model: Model, x: FloatArray, inputs: FloatArray) -> Iterator[FilmPart
             outline = _ring(THIN * size / 2)[None] + offset[:, None, :]
             poses = section_poses(model, actuator.rod, X, x, inputs)
             yield _tube(actuator.name, _colour(actuator_colour(index)), outline, poses)
-    bodies = {body.name: body_poses(model, body.name, x, inputs) for body in scene.bodies}
+    bodies = {body.name: poses_of(model.body[body.name], x, inputs) for body in scene.bodies}
     for body in scene.listed_bodies:
         poses = _single(bodies[body.name])
         if body.radius is not None and body.thickness is not None:

@@ -12,7 +12,7 @@ from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.pose_series import body_poses, section_poses
+from cosserat_casadi.motion.pose_series import poses_of, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.colours import BODIES, disk_colour
 from cosserat_casadi.plots.scene_view import View, view_of
@@ -94,7 +94,7 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
     unloaded = model.discrete.unloaded
     # A rod that nothing holds has no mark.
     marks = [(base_style(unloaded, rod.name), rods[rod.name][:, :1]) for rod in model.scene.rods if not rod.base.free]
-    bodies = {body.name: body_poses(model, body.name, x, inputs) for body in model.scene.bodies}
+    bodies = {body.name: poses_of(model.body[body.name], x, inputs) for body in model.scene.bodies}
     disks = {body.name for body in model.scene.bodies if body.thickness is not None}
     for joint in model.scene.joints:
         for place in joint.places:
