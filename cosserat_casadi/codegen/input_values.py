@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.plain import vector
-from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.stacked import StackedLayout
 
@@ -36,13 +35,6 @@ class ListedValue:
     default: FloatArray
     lower: FloatArray
     upper: FloatArray
-
-    def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """What is wrong with a value but for its range, which the scene judges."""
-        if value.size != self.default.size:
-            yield Problem(self.name, f"must have {self.default.size} numbers, got {value.size}")
-        elif not np.all(np.isfinite(value)):
-            yield Problem(self.name, f"must be finite, got {value.tolist()}")
 
 
 class ListedValues(StackedLayout[ListedValue]):

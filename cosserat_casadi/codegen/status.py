@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import Enum
 
 from cosserat_casadi.codegen.names import Names
@@ -63,25 +63,23 @@ def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOL
         outcomes: the statuses.
         prefix: what sources that are alike in all folders call them by.
     """
-    symbols = {status: f"{names.macro}_{status.name}" for status in outcomes}
+    return _words(names.macro, prefix, outcomes)
+
+
+def motion_status_words(names: Names) -> dict[str, str]:
+    """What the templates say of the statuses of motions."""
+    words = _words(f"{names.macro}_MOTION", "SOLVER_MOTION", MOTION_STATUSES)
+    return {f"motion_{key}": text for key, text in words.items()}
+
+
+def _words(macro: str, prefix: str, statuses: Sequence[Outcome | MotionStatus]) -> dict[str, str]:
+    symbols = {status: f"{macro}_{status.name}" for status in statuses}
     defined = [f"#define {prefix}_{status.name} {symbol}" for status, symbol in symbols.items()]
     return {
         "status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
         "status_names": "\n".join(defined),
         "text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
         "label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
-    }
-
-
-def motion_status_words(names: Names) -> dict[str, str]:
-    """What the templates say of the statuses of motions."""
-    symbols = {status: f"{names.macro}_MOTION_{status.name}" for status in MOTION_STATUSES}
-    defined = [f"#define SOLVER_MOTION_{status.name} {symbol}" for status, symbol in symbols.items()]
-    return {
-        "motion_status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
-        "motion_status_names": "\n".join(defined),
-        "motion_text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
-        "motion_label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
     }
 
 

@@ -138,7 +138,7 @@ def _points_and_weights(N: int) -> tuple[FloatArray, FloatArray]:
     return nodes(N), barycentric_weights(N)
 
 
-def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> FloatArray:
+def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
     """The matrix from values at the points to values of the interpolant elsewhere, exact at the points.
 
     The second barycentric formula (J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501), which is (B.4)
@@ -147,7 +147,6 @@ def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> Float
     Args:
         N: number of intervals, at least 1.
         X: (n,) abscissae in [0, 1].
-        beyond: how far outside they may lie all the same.
 
     Returns:
         (n, N + 1).
@@ -156,8 +155,7 @@ def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> Float
         ValueError: an abscissa outside [0, 1], where interpolation would be extrapolation.
     """
     abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-    margin = beyond + _ROUNDING
-    inside = (abscissae >= -margin) & (abscissae <= 1 + margin)
+    inside = (abscissae >= -_ROUNDING) & (abscissae <= 1 + _ROUNDING)
     if not np.all(inside):
         raise ValueError(f"abscissae lie between 0 and 1, but these are {abscissae.tolist()}")
     points, weights = _points_and_weights(N)

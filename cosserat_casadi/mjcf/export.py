@@ -523,12 +523,6 @@ class _Robot:
             self._leave_out(name, f"its drive is a servo of {stiffness:.3g} {unit}, not rigid")
         return [("joint", attributes)]
 
-    def _length(self, rod: str) -> float:
-        return self.unloaded.rods[rod].properties.length
-
-    def _bending(self, rod: str) -> float:
-        return self.unloaded.rods[rod].properties.bending_stiffness
-
     def _link(self, rod: str, at: float) -> _Carrier:
         """The link nearest to a section of a rod, which is there."""
         nearest = min(self.rods[rod], key=lambda link: abs(link.at - at))
@@ -670,7 +664,8 @@ class _Robot:
             stiffness = 1 / softness
         else:
             arm = max(float(np.abs(self._offsets(tendon, np.linspace(*tendon.span, 9))).max()), 1e-3 * length)
-            stiffness = STIFF * self._bending(tendon.rod) / (arm**2 * self._length(tendon.rod))
+            properties = self.unloaded.rods[tendon.rod].properties
+            stiffness = STIFF * properties.bending_stiffness / (arm**2 * properties.length)
             self._leave_out(tendon.name, f"the cable of given length is one of {stiffness:.3g} N/m, not rigid")
         pulls_only = {"forcerange": "-1e9 0"} if tendon.slack else {}
         wanted = tendon.length - tendon.pretension / stiffness

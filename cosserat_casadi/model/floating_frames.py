@@ -26,6 +26,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.orientations import quaternion_about
 
 MOST_CORRECTIONS = 20
 """Corrections of a body's pose before its joints count as ones that no pose closes."""
@@ -348,7 +349,7 @@ class UnloadedScene:
             derivatives = np.vstack([derivatives for _, derivatives, _ in gaps])
             change, *_ = np.linalg.lstsq(derivatives, -rows, rcond=FLAT)
             position = pose.position + length * change[3:]
-            pose = NumericPose(position, quaternion_product(_quaternion(change[:3]), pose.quaternion))
+            pose = NumericPose(position, quaternion_product(quaternion_about(change[:3]), pose.quaternion))
         return None
 
     def _gap(self, seat: _Seat, pose: NumericPose, length: float) -> tuple[FloatArray, FloatArray, bool]:
@@ -423,12 +424,6 @@ def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted
 def _axial(matrix: FloatArray) -> FloatArray:
     """The vector of which an antisymmetric matrix is the cross product, shape (3,)."""
     return np.array([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
-
-
-def _quaternion(turn: FloatArray) -> FloatArray:
-    """Quaternion of a rotation vector, rad."""
-    angle = float(np.linalg.norm(turn))
-    return np.concatenate([[np.cos(angle / 2.0)], np.sinc(angle / (2.0 * np.pi)) / 2.0 * turn])
 
 
 def _nearest_rotation(matrix: FloatArray) -> FloatArray:

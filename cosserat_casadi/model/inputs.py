@@ -88,17 +88,6 @@ class Input:
             return -np.inf
         return self.declared.lower
 
-    def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """Problems of a value."""
-        if value.size != self.size:
-            yield Problem(self.name, f"must have {self.size} numbers, got {value.size}")
-        elif not np.all(np.isfinite(value)):
-            yield Problem(self.name, f"must be finite, got {value.tolist()}")
-        elif self.declared.positive and not np.all(value > 0.0):
-            yield Problem(self.name, f"must be > 0, got {value.item()}")
-        elif self.declared.nonzero and not np.any(value):
-            yield Problem(self.name, "must not be zero", "w, x, y, z; its norm does not matter")
-
 
 @dataclass(frozen=True)
 class InputLayout(StackedLayout[Input]):
@@ -106,6 +95,15 @@ class InputLayout(StackedLayout[Input]):
 
     what = "an input"
     several = "inputs"
+
+    def _faults(self, entry: Input, value: FloatArray) -> Iterator[Problem]:
+        """Problems of a value."""
+        faults = list(super()._faults(entry, value))
+        yield from faults
+        if not faults and entry.declared.positive and not np.all(value > 0.0):
+            yield Problem(entry.name, f"must be > 0, got {value.item()}")
+        elif not faults and entry.declared.nonzero and not np.any(value):
+            yield Problem(entry.name, "must not be zero", "w, x, y, z; its norm does not matter")
 
     def of_load(self, name: str, field: str) -> slice | None:
         """Slice of a field of a load or an actuator in the stacked vector; None where the scene fixes it."""

@@ -8,13 +8,12 @@ that only scales the equations, such as EI/ℓ, is of the scene's own numbers, s
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
 
 import casadi as ca
-import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
@@ -61,13 +60,6 @@ class Parameter:
         """Components, and values along the rod: of base and tip, or coefficients."""
         components, places = self.default.shape
         return components, places
-
-    def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """Problems of a value but for its range, which the scene judges."""
-        if value.size != self.size:
-            yield Problem(self.name, f"must have {self.size} numbers, got {value.size}")
-        elif not np.all(np.isfinite(value)):
-            yield Problem(self.name, f"must be finite, got {value.tolist()}")
 
 
 @dataclass(frozen=True)

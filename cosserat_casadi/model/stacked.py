@@ -29,9 +29,6 @@ class StackedEntry(Protocol):
     def default(self) -> FloatArray:
         """The scene's value, shape (components, k)."""
 
-    def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """Problems of a value."""
-
 
 EntryType = TypeVar("EntryType", bound=StackedEntry)
 
@@ -103,11 +100,18 @@ class StackedLayout(Generic[EntryType]):
         parts = [np.zeros(0)]
         for entry in self.entries:
             value = np.asarray(given.get(entry.name, entry.default), dtype=float)
-            problems.extend(entry.faults(value))
+            problems.extend(self._faults(entry, value))
             # Legendre coefficients are stacked degree after degree: column-major order.
             parts.append(value.ravel(order="F"))
         refuse(problems)
         return np.concatenate(parts)
+
+    def _faults(self, entry: EntryType, value: FloatArray) -> Iterator[Problem]:
+        """Problems of a value but for its range."""
+        if value.size != entry.default.size:
+            yield Problem(entry.name, f"must have {entry.default.size} numbers, got {value.size}")
+        elif not np.all(np.isfinite(value)):
+            yield Problem(entry.name, f"must be finite, got {value.tolist()}")
 
     def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:
         """A problem for every name that is none of them."""

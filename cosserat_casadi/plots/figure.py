@@ -13,6 +13,7 @@ from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
 
 FORMATS = (".png", ".pdf", ".svg")
 """Suffixes that a figure may have."""
@@ -86,6 +87,11 @@ def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:
     with mpl.rc_context({"svg.hashsalt": "cosserat"}):
         figure.savefig(content, format=suffix, dpi=dpi, metadata=_METADATA[suffix])
     write_atomically(path, content.getvalue())
+
+
+def add_subtitle(axes: Any, words: str, *, good: bool) -> None:
+    """Write how good a result is over its axes, or in red how the solve ended instead."""
+    axes.set_title(words, fontsize=10, color=PLAIN_TEXT if good else FAILURE, wrap=True)
 
 
 def add_title(figure: Any, title: str | None) -> None:

@@ -17,8 +17,8 @@ from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.colours import CATEGORIES, FAILURE, rod_style
+from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
 from cosserat_casadi.plots.scenery import draw_supports
@@ -86,7 +86,7 @@ def plot_motion(motion: Motion) -> Any:
     canvas.label_axes()
     canvas.axes.locator_params(nbins=TICKS)
     canvas.equalise(shapes.points)
-    _draw_subtitle(canvas.axes, motion)
+    add_subtitle(canvas.axes, _subtitle(motion), good=motion.converged)
     # Below the axes, where it covers no shape.
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=9)
 
@@ -229,16 +229,13 @@ def _time_colours() -> Any:
     return ListedColormap(colormaps[TIME_MAP](np.linspace(LIGHTEST, 1.0, 256)))
 
 
-def _draw_subtitle(axes: Any, motion: Motion) -> None:
-    """How good the motion is, or in red how the simulation ended instead."""
-    style = {"fontsize": 10, "wrap": True}
+def _subtitle(motion: Motion) -> str:
     if not motion.converged:
-        axes.set_title(motion.message, color=FAILURE, **style)
-        return
+        return motion.message
     parts = [f"{motion.statistics.steps:,} steps"]
     if np.isfinite(motion.error_estimate):
         parts.append(f"estimated error of the tip's path {motion.error_estimate:.0e} ℓ")
-    axes.set_title("; ".join(parts), color=PLAIN_TEXT, **style)
+    return "; ".join(parts)
 
 
 def _moving_inputs(motion: Motion) -> dict[str, dict[str, FloatArray]]:

@@ -20,7 +20,7 @@ from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPat
 from cosserat_casadi.plots.animation import FRAME_RATE, MOST_FRAMES, AnimationFrames, save_frames
 from cosserat_casadi.plots.canvas import AXIS_NAMES
 from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 
 MARKERS = {
     "limit": "o",
@@ -69,10 +69,7 @@ def plot_path(path: EquilibriumPath) -> Any:
     for index, name in enumerate(names):
         axes = figure.add_subplot(rows, columns, index + 1)
         _draw_rod(axes, path, _followed_section(path, name))
-        title = name
-        if len(names) == 1:
-            title = _subtitle(path)
-        axes.set_title(title, fontsize=10, color=PLAIN_TEXT if path.converged else FAILURE, wrap=True)
+        add_subtitle(axes, _subtitle(path) if len(names) == 1 else name, good=path.converged)
     add_title(figure, path.model.scene.title)
     return figure
 

@@ -18,8 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.arrow_records import LoadArrows
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
@@ -62,7 +61,7 @@ def plot_solution(solution: Solution) -> Any:
         draw_panel(panel, solution, quantity)
     panels[-1].set_xlabel("X = s/ℓ, base to tip")
     add_title(figure, solution.model.scene.title)
-    _draw_subtitle(canvas.axes, solution)
+    add_subtitle(canvas.axes, _subtitle(solution), good=solution.converged)
     return figure
 
 
@@ -102,15 +101,12 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     canvas.equalise(np.concatenate([shapes.points, *bodies]))
 
 
-def _draw_subtitle(axes: Any, solution: Solution) -> None:
-    """How good the solution is, or in red how the solve ended instead."""
-    style = {"fontsize": 10, "wrap": True}
+def _subtitle(solution: Solution) -> str:
     if not solution.converged:
-        axes.set_title(solution.message, color=FAILURE, **style)
-        return
+        return solution.message
     parts = [f"residual {solution.residual_norm:.0e}"]
     if solution.error_estimate is not None:
         parts.append(f"estimated tip error {solution.error_estimate:.0e} ℓ")
     if solution.stable is not None:
         parts.append({True: "stable", False: "unstable"}[solution.stable])
-    axes.set_title("; ".join(parts), color=PLAIN_TEXT, **style)
+    return "; ".join(parts)

@@ -20,7 +20,7 @@ from cosserat_casadi.plots.animation import SIZE, check_animation_path, save_fil
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.path_plot import path_interval, shown_points
 from cosserat_casadi.plots.scenery import draw_targets
 from cosserat_casadi.tubes.tube_arrows import load_arrows
@@ -70,23 +70,16 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
     first = solutions[0]
     add_title(figure, first.robot.scene.title)
-    _draw_subtitle(canvas.axes, solutions)
+    add_subtitle(canvas.axes, _subtitle(solutions), good=len(solutions) > 1 or first.converged)
     return figure
 
 
-def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
+def _subtitle(solutions: Sequence[TubeSolution]) -> str:
     first = solutions[0]
-    colour = PLAIN_TEXT
     if len(solutions) > 1:
         stable = sum(bool(solution.stable) for solution in solutions)
-        words = f"{len(solutions)} equilibria, {stable} of them stable"
-    elif first.converged:
-        verdict = VERDICTS[first.stable]
-        words = f"energy {first.energy:.6g} J; {verdict}"
-    else:
-        words = first.message
-        colour = FAILURE
-    axes.set_title(words, fontsize=10, color=colour, wrap=True)
+        return f"{len(solutions)} equilibria, {stable} of them stable"
+    return f"energy {first.energy:.6g} J; {VERDICTS[first.stable]}" if first.converged else first.message
 
 
 def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
@@ -188,10 +181,7 @@ def plot_tube_path(path: TubePath) -> Any:
         for stable, verdict in verdicts.items():
             axes.plot([], [], color="0.3", linestyle=STROKES[stable], label=verdict)
         axes.legend(fontsize=9)
-    colour = FAILURE
-    if path.converged:
-        colour = PLAIN_TEXT
-    left.set_title(_subtitle(path), fontsize=10, color=colour, wrap=True)
+    add_subtitle(left, _path_subtitle(path), good=path.converged)
     add_title(figure, path.model.scene.title)
     return figure
 
@@ -228,7 +218,7 @@ def animate_tube_path(path: TubePath, file: str | Path, *, progress: Callable[[f
     save_film(figure, show, len(shown), path_interval(shown), file, progress=progress)
 
 
-def _subtitle(path: TubePath) -> str:
+def _path_subtitle(path: TubePath) -> str:
     if not path.converged:
         return path.message
     snaps = [event for event in path.events if event.snaps_to is not None]

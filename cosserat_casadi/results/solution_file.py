@@ -48,7 +48,7 @@ def solution_result(solution: Solution) -> dict[str, Any]:
     }
     # A reader of rods alone need not know of tables that the scene does not have.
     if scene.listed_bodies:
-        data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.listed_bodies}
+        data["bodies"] = {body.name: asdict(solution.body(body.name)) for body in scene.listed_bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: solution.actuator(actuator.name) for actuator in scene.actuators}
     if solution.model.joint:
@@ -74,10 +74,6 @@ def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
         "tip": asdict(tip),
         "base_wrench": {"force": base_wrench.force, "moment": base_wrench.moment},
     }
-
-
-def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
-    return asdict(solution.body(name))
 
 
 def _contact_entry(contact: Contact) -> dict[str, Any]:

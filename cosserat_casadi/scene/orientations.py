@@ -48,7 +48,7 @@ base = { euler = { sequence = "xyz", angles = [0.1, 0, 1.57] } }     # "XYZ": ab
     @property
     def quaternion(self) -> FloatArray:
         """The orientation as a quaternion, shape (4,)."""
-        turns = [_about(np.eye(3)["xyz".index(axis.lower())] * angle) for axis, angle in self._turns]
+        turns = [quaternion_about(np.eye(3)["xyz".index(axis.lower())] * angle) for axis, angle in self._turns]
         first, second, third = turns if self.sequence.isupper() else turns[::-1]
         return np.asarray(quaternion_product(quaternion_product(first, second), third))
 
@@ -107,12 +107,11 @@ class _Ways(Record):
     def as_quaternion(self) -> FloatArray:
         """The orientation, shape (4,)."""
         if self.tangent is not None:
-            return np.asarray(
-                quaternion_product(quaternion_from_tangent(self.tangent), _about(np.array([0.0, 0.0, self.twist])))
-            )
+            twist = quaternion_about(np.array([0.0, 0.0, self.twist]))
+            return np.asarray(quaternion_product(quaternion_from_tangent(self.tangent), twist))
         if self.euler is not None:
             return self.euler.quaternion
-        return _about(np.asarray(self.rotation_vector))
+        return quaternion_about(np.asarray(self.rotation_vector))
 
 
 def orientation_faults(given: Table) -> Iterator[Fault]:
@@ -124,7 +123,7 @@ def orientation_faults(given: Table) -> Iterator[Fault]:
         yield Fault(("twist",), "stands without tangent", "it is the angle about that direction")
 
 
-def _about(vector: FloatArray) -> FloatArray:
+def quaternion_about(vector: FloatArray) -> FloatArray:
     """Quaternion of a rotation vector, rad, shape (4,)."""
     half = float(np.linalg.norm(vector)) / 2
     return np.concatenate([[np.cos(half)], np.sinc(half / np.pi) / 2 * vector])

@@ -25,6 +25,7 @@ from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.page import page_text
+from cosserat_casadi.results.json_text import plain
 from cosserat_casadi.view.questions import Question, QuestionError
 from cosserat_casadi.view.robot_session import RobotSession
 
@@ -346,15 +347,4 @@ def _json(answer: Any) -> bytes:
     try:
         return json.dumps(answer, allow_nan=False).encode()
     except ValueError:
-        return json.dumps(_finite(answer)).encode()
-
-
-def _finite(answer: Any) -> Any:
-    """An answer with None for numbers that are not finite."""
-    if isinstance(answer, dict):
-        return {key: _finite(value) for key, value in answer.items()}
-    if isinstance(answer, list):
-        return [_finite(value) for value in answer]
-    if isinstance(answer, float) and not abs(answer) < float("inf"):
-        return None
-    return answer
+        return json.dumps(plain(answer)).encode()
