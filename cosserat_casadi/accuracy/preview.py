@@ -290,8 +290,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
 
 def _numbers(matrix: Matrix) -> FloatArray:
     """Values of a matrix without symbols: what supports add is wrapped as an expression."""
-    values: FloatArray = ca.evalf(ca.MX(matrix)).full()
-    return values
+    return ca.evalf(ca.MX(matrix)).full()
 
 
 def _column(vector: Matrix) -> FloatArray:

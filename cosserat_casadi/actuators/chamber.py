@@ -77,8 +77,7 @@ def _area(actuator: scenes.Chamber) -> Scalar:
     if actuator.wall is None:
         assert actuator.area is not None, "the record's rules ask for area or wall"
         return actuator.area
-    area: Scalar = np.pi * actuator.wall.inner_radius**2
-    return area
+    return np.pi * actuator.wall.inner_radius**2
 
 
 def _growth_of_area(actuator: scenes.Chamber, pressure: Matrix) -> Scalar:
@@ -88,8 +87,7 @@ def _growth_of_area(actuator: scenes.Chamber, pressure: Matrix) -> Scalar:
         return _polynomial(actuator.area_growth, actuator.reference_pressure, pressure)
     if wall.reinforced:
         return 1.0
-    growth: Scalar = (1 + _widening(wall, pressure)) ** 2
-    return growth
+    return (1 + _widening(wall, pressure)) ** 2
 
 
 def _widening(wall: ChamberWall, pressure: Matrix) -> Scalar:
@@ -98,8 +96,7 @@ def _widening(wall: ChamberWall, pressure: Matrix) -> Scalar:
     outer = wall.outer_radius**2
     nu = wall.poisson_ratio
     by_pressure = (1 + nu) / wall.youngs_modulus * ((1 - 2 * nu) * inner + outer) / (outer - inner)
-    strain: Scalar = by_pressure * pressure
-    return strain
+    return by_pressure * pressure
 
 
 def _polynomial(coefficients: Sequence[Scalar], reference: Scalar | None, pressure: Matrix) -> Scalar:

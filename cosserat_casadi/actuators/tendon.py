@@ -55,8 +55,7 @@ class TendonActuator(Actuator[scenes.Tendon]):
 
     def resting_effort(self, actuator: scenes.Tendon) -> Scalar:
         """The pretension, N."""
-        pretension: Scalar = actuator.pretension
-        return pretension
+        return actuator.pretension
 
     def prescribes_conjugate(self, actuator: scenes.Tendon) -> bool:
         """Where the scene gives a length."""

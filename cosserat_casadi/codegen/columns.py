@@ -80,8 +80,7 @@ class ColumnForm:
 def in_groups(turns: FloatArray) -> FloatArray:
     """The turns of LANES columns after those of the LANES before, one entry of the group after the other."""
     entries, stride = turns.shape
-    ordered: FloatArray = turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2).ravel()
-    return ordered
+    return turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2).ravel()
 
 
 @dataclass(frozen=True)

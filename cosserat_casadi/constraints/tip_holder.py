@@ -39,8 +39,7 @@ class TipHolder(Kind, ABC, Generic[RecordType]):
 
     def axis(self, record: RecordType) -> Sequence[Scalar] | None:
         """Axis, in the world or in the body, that the held directions turn with where a parameter moves it."""
-        axis: Sequence[Scalar] | None = getattr(record, "axis", None)
-        return axis
+        return getattr(record, "axis", None)
 
     def directions(self, record: RecordType) -> HeldDirections:
         """Directions that are held at the place of the record."""

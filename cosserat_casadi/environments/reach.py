@@ -215,14 +215,12 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
 
     def _from_share(self, share: FloatArray) -> FloatArray:
         """Values of the inputs that act, from shares −1 to 1 of their ranges."""
-        values: FloatArray = self._acting.lower + (share + 1.0) / 2.0 * (self._acting.upper - self._acting.lower)
-        return values
+        return self._acting.lower + (share + 1.0) / 2.0 * (self._acting.upper - self._acting.lower)
 
     def _share(self, inputs: FloatArray) -> FloatArray:
         """Shares −1 to 1 that the inputs that act are at in their ranges."""
         ranges = self._acting.upper - self._acting.lower
-        share: FloatArray = 2.0 * (inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
-        return share
+        return 2.0 * (inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
 
     def _tip(self) -> FloatArray:
         """Position and velocity of the tip, m and m/s, shape (6,)."""

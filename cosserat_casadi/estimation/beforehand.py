@@ -154,8 +154,7 @@ def with_shared(known: Knowledge, shared: FloatArray) -> Knowledge:
 
 def expected_values(known: Knowledge, values: FloatArray) -> FloatArray:
     """Prior means of the unknowns, within their bounds; the values of the arguments where there is no prior."""
-    expected: FloatArray = np.clip(np.where(known.weight > 0.0, known.mean, values), known.lower, known.upper)
-    return expected
+    return np.clip(np.where(known.weight > 0.0, known.mean, values), known.lower, known.upper)
 
 
 def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatArray) -> Iterator[dict[str, FloatArray]]:

@@ -60,8 +60,7 @@ class Consistency:
     @property
     def outlying(self) -> npt.NDArray[np.bool_]:
         """Rows that stand out by themselves, shape (cases,)."""
-        outlying: npt.NDArray[np.bool_] = np.nan_to_num(self.row_deviations, nan=0.0) > ROW_DOUBTED
-        return outlying
+        return np.nan_to_num(self.row_deviations, nan=0.0) > ROW_DOUBTED
 
     def sentences(self, cases: Sequence[str]) -> Iterator[str]:
         """Sentences on the disagreements, for the user."""

@@ -216,8 +216,7 @@ def _reduced(found: Estimates, own: tuple[FloatArray, FloatArray]) -> tuple[Floa
 
 def _at_bound(values: FloatArray, limits: tuple[FloatArray, FloatArray]) -> npt.NDArray[np.bool_]:
     lower, upper = limits
-    at_bound: npt.NDArray[np.bool_] = (values <= lower) | (values >= upper)
-    return at_bound
+    return (values <= lower) | (values >= upper)
 
 
 def _solved(matrices: FloatArray, columns: FloatArray) -> FloatArray:
@@ -225,5 +224,4 @@ def _solved(matrices: FloatArray, columns: FloatArray) -> FloatArray:
     sizes = np.sqrt(np.maximum(np.diagonal(matrices, axis1=1, axis2=2), np.finfo(float).tiny))
     scaled = matrices / (sizes[:, :, None] * sizes[:, None, :])
     inverse = np.linalg.pinv(scaled, rcond=1e-10, hermitian=True)
-    solved: FloatArray = (inverse @ (columns / sizes[:, :, None])) / sizes[:, :, None]
-    return solved
+    return (inverse @ (columns / sizes[:, :, None])) / sizes[:, :, None]

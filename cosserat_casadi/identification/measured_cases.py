@@ -199,14 +199,12 @@ class _Reader:
     @property
     def _place(self) -> str | float | None:
         """The abscissa of the section or the number of the mode, or the column that has it; None without either."""
-        place: str | float | None = getattr(self.measurement, "at", getattr(self.measurement, "mode", None))
-        return place
+        return getattr(self.measurement, "at", getattr(self.measurement, "mode", None))
 
     @property
     def _time(self) -> scenes.InputColumn | None:
         """Where the times of the rows are; None where each case is an equilibrium."""
-        time: scenes.InputColumn | None = getattr(self.measurement, "time", None)
-        return time
+        return getattr(self.measurement, "time", None)
 
     def _check_labels(self, rows: Sequence[int]) -> None:
         """Every row says which case it belongs to: rows with empty cells there have nothing in common."""

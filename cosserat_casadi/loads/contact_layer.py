@@ -201,8 +201,7 @@ class _Drag:
     @property
     def share(self) -> Matrix:
         """The way over the reach, 1×1."""
-        share: Matrix = ca.sqrt(ca.sumsqr(self.way)) / self.reach
-        return share
+        return ca.sqrt(ca.sumsqr(self.way)) / self.reach
 
 
 def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix) -> _Drag | None:
@@ -262,14 +261,12 @@ def _remembers(section: Section) -> bool:
 
 def _is_known(section: Section) -> Matrix:
     """One for a section that has a history, zero before it has one: its rotation is then no rotation."""
-    known: Matrix = ca.sumsqr(section.data[4:]) / 3
-    return known
+    return ca.sumsqr(section.data[4:]) / 3
 
 
 def _along_surface(vector: Matrix, normal: Matrix) -> Matrix:
     """The part of a vector across the normal, 3×1."""
-    part: Matrix = vector - ca.dot(normal, vector) * normal
-    return part
+    return vector - ca.dot(normal, vector) * normal
 
 
 def _normal(load: ContactLayer, section: Section) -> Matrix:
@@ -283,14 +280,12 @@ def _touching(load: ContactLayer, section: Section, normal: Matrix) -> Matrix:
     """From the centre of a section, or of a disk, to its point that touches, 3×1, m."""
     if load.at is not None:
         return _support(load, section, normal)[1]
-    touching: Matrix = -_reach(load, section) * normal
-    return touching
+    return -_reach(load, section) * normal
 
 
 def _reach(load: ContactLayer, section: Section) -> Matrix | float:
     """Radius of a section or a body, m."""
-    reach: Matrix | float = section.data[0] if load.body is None else load.radius
-    return reach
+    return section.data[0] if load.body is None else load.radius
 
 
 def _energy(load: ContactLayer, section: Section) -> Matrix:

@@ -32,8 +32,7 @@ class MagnetLoad(Load[scenes.Magnet]):
         """The section that holds a dipole; None of a magnetised rod."""
         if load.moment is None:
             return None
-        at: Scalar = load.at
-        return at
+        return load.at
 
     def on_body(self, load: scenes.Magnet, body: scenes.Body) -> BodyPoint | None:
         """The point of the body that holds the dipole."""

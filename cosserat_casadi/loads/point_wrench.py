@@ -21,5 +21,4 @@ class PointWrenchLoad(Load[scenes.PointWrench]):
 
     def abscissa(self, load: scenes.PointWrench) -> Scalar:
         """The loaded section."""
-        at: Scalar = load.at
-        return at
+        return load.at

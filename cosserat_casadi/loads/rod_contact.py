@@ -232,8 +232,7 @@ def _over_second(results: Matrix, count: int = PANEL) -> Matrix:
     """Sum of what stands side by side for the sections of the second panel, or for so many panels."""
     rows, columns = results.shape
     summed = ca.sum2(ca.reshape(results, rows * columns // count, count))
-    by_section: Matrix = ca.reshape(summed, rows, columns // count)
-    return by_section
+    return ca.reshape(summed, rows, columns // count)
 
 
 def _over_first(results: Matrix) -> Matrix:
@@ -380,8 +379,7 @@ def _ball_about(balls: Matrix) -> Matrix:
     count = balls.shape[1]
     centre = ca.sum2(balls[:3, :]) / count
     reach = ca.sqrt(ca.sum1((balls[:3, :] - ca.repmat(centre, 1, count)) ** 2)) + balls[3, :]
-    about: Matrix = ca.vertcat(centre, ca.mmax(reach), balls[4, 0], balls[5, -1])
-    return about
+    return ca.vertcat(centre, ca.mmax(reach), balls[4, 0], balls[5, -1])
 
 
 @cache
@@ -410,8 +408,7 @@ class SectionsInContact:
     @property
     def panels(self) -> int:
         """Number of panels."""
-        count: int = self.positions.shape[1] // PANEL
-        return count
+        return self.positions.shape[1] // PANEL
 
     @cached_property
     def balls(self) -> Matrix:

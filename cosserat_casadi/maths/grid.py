@@ -107,8 +107,7 @@ class Grid:
         rates = self.rates
         if rates is None or not is_symbolic(rates):
             return None if rates is None else known(rates)[elements]
-        chosen: Numbers = rates[elements.tolist()]
-        return chosen
+        return rates[elements.tolist()]
 
     def on_rod(self, coordinates: FloatArray, elements: Indices) -> Numbers:
         """Abscissae X of points of elements, given in the coordinate that integrals run over, shape (k,)."""

@@ -43,8 +43,7 @@ class HermiteCurve:
         result = pieces[-1]
         for abscissa, piece in zip(self.abscissae[::-1], pieces[-2::-1], strict=True):
             result = ca.if_else(at < abscissa, piece, result)
-        integral: Matrix = result - self._integral_at_zero
-        return integral
+        return result - self._integral_at_zero
 
     def share_left(self, at: Matrix) -> Matrix:
         """Distance to the nearer end relative to the distance between the ends; negative beyond an end."""

@@ -74,8 +74,7 @@ def as_vector(values: Sequence[Scalar]) -> Numbers:
     if not any_symbolic(values):
         return np.asarray(values, dtype=float)
     entries = [value if isinstance(value, ca.MX) else ca.sparsify(ca.DM(value)) for value in values]
-    stacked: Matrix = ca.vertcat(*entries)
-    return stacked
+    return ca.vertcat(*entries)
 
 
 def side_by_side(columns: Sequence[Numbers]) -> Numbers:
@@ -83,14 +82,12 @@ def side_by_side(columns: Sequence[Numbers]) -> Numbers:
     if not any_symbolic(columns):
         return np.stack([known(own) for own in columns], axis=-1)
     # What is zero is not stored.
-    table: Matrix = ca.horzcat(*[own if is_symbolic(own) else ca.sparsify(as_matrix(own)) for own in columns])
-    return table
+    return ca.horzcat(*[own if is_symbolic(own) else ca.sparsify(as_matrix(own)) for own in columns])
 
 
 def column(table: Numbers, index: int) -> Numbers:
     """A column of a table, as a vector."""
-    part: Numbers = table[:, index]
-    return part
+    return table[:, index]
 
 
 def rows_of(table: Numbers) -> list[Numbers]:
@@ -111,8 +108,7 @@ def among(table: Numbers, columns: Sequence[int] | IndexArray, count: int) -> Nu
     """Columns of a table among so many, zero elsewhere; one column of expressions may stand for all of them."""
     if is_symbolic(table):
         chosen = ca.sparsify(ca.DM(np.eye(count)[np.asarray(columns)]))
-        placed: Matrix = as_matrix(repeated(table.T, len(columns))).T @ chosen
-        return placed
+        return as_matrix(repeated(table.T, len(columns))).T @ chosen
     whole = np.zeros((table.shape[0], count))
     whole[:, columns] = known(table)
     return whole
@@ -130,8 +126,7 @@ def row_times(factors: Numbers, numbers: Numbers) -> Numbers:
     """A vector, each entry times a factor; one expression for all entries is repeated."""
     if not any_symbolic([factors, numbers]):
         return np.asarray(known(factors) * known(numbers))
-    times: Matrix = as_matrix(factors) * as_matrix(numbers)
-    return times
+    return as_matrix(factors) * as_matrix(numbers)
 
 
 def each_times(numbers: Numbers, factors: Numbers | None) -> Numbers:
@@ -142,16 +137,14 @@ def each_times(numbers: Numbers, factors: Numbers | None) -> Numbers:
         own = known(numbers)
         return own * known(factors).reshape(-1, *[1] * (own.ndim - 1))
     table = as_matrix(repeated(numbers, factors.shape[0]))
-    scaled: Matrix = ca.horzcat(*[part * as_matrix(factors) for part in ca.horzsplit(table)])
-    return scaled
+    return ca.horzcat(*[part * as_matrix(factors) for part in ca.horzsplit(table)])
 
 
 def reciprocal(numbers: Numbers | None) -> Numbers | None:
     """One over each entry; None for None."""
     if numbers is None:
         return None
-    inverse: Numbers = 1 / numbers
-    return inverse
+    return 1 / numbers
 
 
 def repeated(numbers: Numbers, count: int) -> Numbers:

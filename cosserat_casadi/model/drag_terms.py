@@ -136,8 +136,7 @@ class RodDrag(Drag):
         assert self.load.motion is not None, "a drag is one of motion"
         nodes = self.sections.nodes
         along = force * self.load.motion.velocity[:, nodes] + moment * self.load.motion.angular_velocity[:, nodes]
-        power: Matrix = -ca.sum1(along) @ as_matrix(self.sections.weights)
-        return power
+        return -ca.sum1(along) @ as_matrix(self.sections.weights)
 
 
 @dataclass(frozen=True)

@@ -260,8 +260,7 @@ def _constant(field: Matrix) -> Numbers:
     """Values of a constant expression; an expression of parameters as it is."""
     if is_symbolic(field) and ca.symvar(field):
         return field
-    values: FloatArray = ca.evalf(ca.densify(field)).full()
-    return values
+    return ca.evalf(ca.densify(field)).full()
 
 
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:

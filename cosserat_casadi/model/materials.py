@@ -219,8 +219,7 @@ def _curve(points: Sequence[Sequence[float]]) -> HermiteCurve:
 def _size_of_bending(change: Matrix, bent: Sequence[int], smallest: float) -> Matrix:
     """Size of the change of curvature; ``smallest`` keeps its derivatives finite at none."""
     squares = _sum([change[component] ** 2 for component in bent])
-    size: Matrix = ca.sqrt(squares + smallest**2)
-    return size
+    return ca.sqrt(squares + smallest**2)
 
 
 @final
@@ -253,8 +252,7 @@ class SuperelasticLaw(Law[records.Superelastic]):
             first = _corner_energy(strain - begin, first_rounded)
             second = _corner_energy(strain - end, second_rounded)
             per_strain = stiffness / radius**2
-            energy: Matrix = per_strain * ((plateau - 1) * first + (beyond - plateau) * second)
-            return energy
+            return per_strain * ((plateau - 1) * first + (beyond - plateau) * second)
 
         return EnergyBeyondHooke(density, data)
 
@@ -262,16 +260,14 @@ class SuperelasticLaw(Law[records.Superelastic]):
 def _fibre_strain(change: Matrix, bent: Sequence[int], radius: Matrix, least: Matrix) -> Matrix:
     """Strain of the outermost fibre of a round section; never below ``least``, so that its root has derivatives."""
     squared = _sum([(radius * change[component]) ** 2 for component in bent])
-    strain: Matrix = ca.sqrt(ca.if_else(squared > least**2, squared, least**2))
-    return strain
+    return ca.sqrt(ca.if_else(squared > least**2, squared, least**2))
 
 
 def _corner_energy(beyond: Matrix, rounded: Matrix) -> Matrix:
     """Second integral of a slope that rises from 0 to 1, linearly from −rounded to rounded."""
     inside = (beyond + rounded) ** 3 / (12 * rounded)
     straight = beyond**2 / 2 + rounded**2 / 6
-    energy: Matrix = ca.if_else(beyond < -rounded, 0, ca.if_else(beyond < rounded, inside, straight))
-    return energy
+    return ca.if_else(beyond < -rounded, 0, ca.if_else(beyond < rounded, inside, straight))
 
 
 class RubberLaw(Law[RecordType], ABC):

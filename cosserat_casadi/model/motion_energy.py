@@ -190,8 +190,7 @@ class MotionEnergy:
             return ca.DM(*value.shape)
         moving = ca.DM(self.system.arguments.inputs.shape[0], 1)
         moving[geometry] = 1.0
-        rate: Matrix = ca.jtimes(value, self.system.arguments.inputs, moving * self._motion.inputs_rate)
-        return rate
+        return ca.jtimes(value, self.system.arguments.inputs, moving * self._motion.inputs_rate)
 
     # Loads
 

@@ -56,8 +56,7 @@ class PairHistory:
     @property
     def is_known(self) -> Matrix:
         """One where there is a history, zero before there is one, 1×1: rotations are none then."""
-        known: Matrix = ca.sumsqr(next(iter(self.poses.values()))[3:, 0]) / 3
-        return known
+        return ca.sumsqr(next(iter(self.poses.values()))[3:, 0]) / 3
 
     def drag_at(self, coordinates: FloatArray) -> Matrix:
         """Drag at sections at these coordinates from 0 to 1, 3×S."""

@@ -213,8 +213,7 @@ def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
     if not is_symbolic(nearer) and float(ca.norm_2(nearer - unit_old)) < SAME_AXIS:
         return None
     double = ca.vertcat(1 + ca.dot(unit_old, nearer), ca.cross(unit_old, nearer))
-    turn: Matrix = double / ca.norm_2(double)
-    return turn
+    return double / ca.norm_2(double)
 
 
 def decisive_axes(unloaded: UnloadedScene) -> set[int]:

@@ -124,8 +124,7 @@ def unit_quaternion(entries: Sequence[Scalar]) -> Numbers:
     """A quaternion of the scene, shape (4,): of expressions, as of an input, the norm does not matter."""
     quaternion = as_vector(entries)
     if is_symbolic(quaternion):
-        unit: Matrix = quaternion / ca.sqrt(ca.sumsqr(quaternion))
-        return unit
+        return quaternion / ca.sqrt(ca.sumsqr(quaternion))
     return quaternion
 
 

@@ -86,8 +86,7 @@ def linear(value: Scalar | Sequence[Scalar]) -> Field:
         return lambda X: expression
     assert isinstance(value, tuple)
     base, tip = value
-    from_base_to_tip: Field = lambda X: base + (tip - base) * X  # noqa: E731
-    return from_base_to_tip
+    return lambda X: base + (tip - base) * X
 
 
 def sizes_along(record: scenes.Section, X: Numbers) -> dict[str, Numbers]:

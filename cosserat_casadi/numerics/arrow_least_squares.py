@@ -122,8 +122,7 @@ class Limits:
 
     def at_end(self, values: FloatArray) -> npt.NDArray[np.bool_]:
         """Which unknowns are at an end of their range, shape as the values."""
-        at_end: npt.NDArray[np.bool_] = (values <= self.lower) | (values >= self.upper)
-        return at_end
+        return (values <= self.lower) | (values >= self.upper)
 
     def held(self, values: FloatArray, gradient: FloatArray) -> npt.NDArray[np.bool_]:
         """Which unknowns are at a bound that the descent would cross, shape as the values."""

@@ -43,8 +43,7 @@ class Loss:
             return np.ones_like(residual)
         if self.kind == "huber":
             return self.width / np.maximum(np.abs(residual), self.width)
-        weights: FloatArray = 1 / (1 + (residual / self.width) ** 2)
-        return weights
+        return 1 / (1 + (residual / self.width) ** 2)
 
     def noise_squares(self, residual: FloatArray) -> float:
         """A sum of squares that tells the noise of the data in the covariance (Jᵀ W J)⁻¹ of a weighted fit.
@@ -67,5 +66,4 @@ class Loss:
         if self.kind == "huber":
             return np.where(np.abs(residual) <= self.width, 1.0, 0.0)
         squares = (residual / self.width) ** 2
-        slopes: FloatArray = (1 - squares) / (1 + squares) ** 2
-        return slopes
+        return (1 - squares) / (1 + squares) ** 2

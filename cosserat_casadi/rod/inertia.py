@@ -96,8 +96,7 @@ def _with_fixed(masses: Numbers, added: Scalar, fixed: FixedMass, rod: DiscreteR
     if not any_symbolic([masses, density]):
         return np.asarray(known(masses) + np.asarray(density) * np.eye(rod.grid.size)[node])
     at_node = ca.DM(ca.Sparsity.triplet(rod.grid.size, 1, [node], [0]), 1.0)
-    total: Matrix = as_matrix(masses) + at_node * density
-    return total
+    return as_matrix(masses) + at_node * density
 
 
 def masses_along(rod: DiscreteRod) -> SectionMasses | None:

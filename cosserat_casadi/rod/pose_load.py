@@ -54,8 +54,7 @@ class LoadedSections:
         """Weights of the sections in sums, shape (k,): metres of rod, or one."""
         if self.load.at is not None:
             return np.ones(1)
-        lengths: Numbers = self.shape.rod.node_lengths[self.nodes]
-        return lengths
+        return self.shape.rod.node_lengths[self.nodes]
 
     @cached_property
     def position(self) -> Matrix:

@@ -84,8 +84,7 @@ def _rectangle_torsion_constant(width: Numbers, height: Numbers) -> Numbers:
     # Σ 1/n⁵ over all odd n, 31/32 of ζ(5).
     all_odd = 31 / 32 * 1.0369277551433699
     series = 64 / np.pi**5 * (b / a) * (all_odd - _tanh_deficit(a / b))
-    result: Numbers = a * b**3 * (1 / 3 - series)
-    return result
+    return a * b**3 * (1 / 3 - series)
 
 
 def _tanh_deficit(slenderness: Numbers) -> Numbers:

@@ -30,8 +30,7 @@ def _distances_from(obstacle: scenes.ObstacleRecord, count: int) -> ca.Function:
 @lru_cache(maxsize=64)
 def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
     """Point ↦ distance from an obstacle, its gradient and its second derivative."""
-    function: ca.Function = SURFACES[obstacle.kind].function(obstacle)
-    return function
+    return SURFACES[obstacle.kind].function(obstacle)
 
 
 def distances(obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatArray:
