@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -76,7 +77,8 @@ class TubeEvent:
 class TubePath(InputPath[TubeFunctions, TubeEvent]):
     """Equilibria of concentric tubes along one input, from the value that it has to another.
 
-    The error of the events is that of the input's values there, relative to its way.
+    The error of the events is that of the input's values there, relative to its way; that of the tips is found at
+    points between events too.
     """
 
     @property
@@ -202,7 +204,7 @@ def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
 
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
-    """Largest error of events and end of a path beside a finer one; None where they do not correspond."""
+    """Largest error of events, of the end and of points between them beside a finer path; None where they differ."""
     kinds = [[event.kind for event in path.events] for path in (rough, fine)]
     if not (rough.converged and fine.converged) or kinds[0] != kinds[1]:
         return None
@@ -210,7 +212,21 @@ def _difference(rough: TubePath, fine: TubePath) -> float | None:
     way = abs(fine.values[-1] - fine.values[0])
     for event, exact in zip(rough.events, fine.events, strict=True):
         errors += [abs(event.value - exact.value) / way, tip_error(event.solution, exact.solution)]
+    # Tubes that are turned once round are as little twisted at the end as where they began, and more so between.
+    for index in _between_events(rough):
+        found = rough.solutions[index]
+        exact_there = solution_near(fine.model, found.inputs, found.x)
+        if not exact_there.converged:
+            return None
+        errors.append(tip_error(found, exact_there))
     return float(max(errors))
+
+
+def _between_events(path: TubePath) -> list[int]:
+    """Indices of points at the quarters of each stretch of a path that has no event: far from where it turns."""
+    bounds = [0, *(event.position for event in path.events), len(path.factor)]
+    quarters = [np.linspace(first, behind - 1, 5)[1:-1].astype(int) for first, behind in pairwise(bounds)]
+    return [int(index) for index in np.unique(np.concatenate(quarters))]
 
 
 def _followed(

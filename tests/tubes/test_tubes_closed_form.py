@@ -135,6 +135,28 @@ def test_snap_where_the_closed_form_turns() -> None:
     assert snap.released_energy > 0.0
 
 
+def test_a_path_that_turns_once_round_is_known_on_its_way() -> None:
+    """Tubes that do not snap are in line at both ends, which says nothing of where they are opposed."""
+    tubes = Pendulum(1.5)
+    scene = tubes.scene(0.0)
+    path = follow(scene, "inner.rotation", 0.4 + 2 * np.pi)
+    assert path.converged
+    assert not path.events
+    assert path.error_estimate is not None
+    assert path.error_estimate <= scene.accuracy.tolerance
+
+    def missed(between_tips: float, rotation: float) -> float:
+        return float(tubes.between_drives(np.array(between_tips)) - rotation)
+
+    errors = []
+    for index in (len(path.factor) * np.array([0.3, 0.4, 0.45, 0.6])).astype(int):
+        rotation = path.values[index] - 0.4
+        exact = brentq(missed, 0.1, 6.2, args=(rotation,), xtol=1e-14)
+        errors.append(abs(path.x[index, 1] - path.x[index, 0] - exact))
+    # One of both angles is off by half of that at least.
+    assert max(errors) / 2 <= path.error_estimate
+
+
 @pytest.mark.slow
 def test_a_soft_robot_snaps_to_the_next_of_many() -> None:
     tubes = Pendulum(3.0, (0.3, 0.6))
