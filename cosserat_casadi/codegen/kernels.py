@@ -98,7 +98,7 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
 def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most_in_columns: int) -> list[Kernel]:
     """The functions of a scene that has no parts, a Jacobian of at most so many statements by columns.
 
-    Those in straight-line code call kernels of what they compute alike from unknowns and inputs.
+    Functions in straight-line code call kernels of the values that they share (shared_values.py).
     """
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
     straight: dict[int, list[ca.Function]] = defaultdict(list)

@@ -49,7 +49,7 @@ WIDEST_TURN = 120
 """Entries of a turn up to which places are looked through for turns that move on by equal steps."""
 
 LEAST_SAVED = 4
-"""Numbers that a table must be shorter by where entries become a group of their own."""
+"""Numbers that a table must be shorter by where entries become another group."""
 
 LOOP_IN_FOURS = """static void MADE({name}_turn)(casadi_real *w, int i) {{
 {lines}

@@ -1,8 +1,8 @@
-"""What several functions of scalars compute alike from the same arguments, as kernels that they call.
+"""Values that several functions of scalars compute alike from the same arguments, in kernels that they call.
 
 Residual, tip and sections of a rod begin with the same kinematics. Each value is known by the set of functions that
-need it; the values of one set are a kernel, if they are many, and hand over what is read outside of it. A kernel reads
-the values of those that more functions share.
+need it. The values of one set are a kernel, if they are many, which returns the values that are read outside of it. It
+reads the values of kernels that more functions share.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ GIVEN = 2
 
 
 def with_shared_kernels(functions: Sequence[ca.Function], name: str) -> list[PrintedKernel]:
-    """Functions in C, which call kernels of what they share.
+    """Functions in C, which call kernels of the values that they share.
 
     Args:
         functions: of scalars, with dense results, and with the same first two arguments.
@@ -108,7 +108,7 @@ class _Sharing:
         return {home: sorted(numbers) for home, numbers in handed_over.items()}
 
     def _add_kernel(self, home: int) -> None:
-        """The kernel of the values of a set, which reads what those of larger sets hand over."""
+        """Add the kernel of the values of a set, which reads the results of kernels of larger sets."""
         symbols = [ca.SX.sym("shared", len(self._handed_over[other])) for other in self._larger(home)]
         known = [symbol.nonzeros() for symbol in symbols]
         wanted = self._handed_over[home]
@@ -146,7 +146,7 @@ class _Sharing:
         return ca.Function(function.name(), symbols, shaped, function.name_in(), function.name_out())
 
     def _values(self, wanted: Sequence[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
-        """Expressions of values, where those are known that some kernels hand over."""
+        """Expressions of values from the results of kernels, by set."""
         listing = self._listing
         made: dict[int, ca.SX] = {}
         for home, entries in known.items():
