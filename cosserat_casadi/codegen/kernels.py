@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, with_calls_in_fours
-from cosserat_casadi.codegen.shared_values import GIVEN, with_shared_kernels
+from cosserat_casadi.codegen.shared_values import COMMON, with_shared_kernels
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
@@ -103,7 +103,7 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
     straight: dict[int, list[ca.Function]] = defaultdict(list)
     for one in written.values():
-        if isinstance(one, ca.Function) and one.is_a("SXFunction") and one.name_in()[:GIVEN] == ["x", "inputs"]:
+        if isinstance(one, ca.Function) and one.is_a("SXFunction") and one.name_in()[:COMMON] == ["x", "inputs"]:
             # To the solver parameters are further inputs.
             straight[one.size1_in(1)].append(one)
     for number, functions in enumerate(straight.values()):

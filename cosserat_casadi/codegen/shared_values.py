@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import casadi as ca
 
@@ -19,10 +19,10 @@ from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.streams import call_of_entries
 
 FEWEST_SHARED = 100
-"""Values from which on they are a kernel: fewer are computed in each function."""
+"""Number of shared values from which on they become a kernel; of fewer a call saves little code."""
 
-GIVEN = 2
-"""Arguments that all functions have: unknowns and inputs."""
+COMMON = 2
+"""Number of arguments that all functions begin with: unknowns and inputs."""
 
 
 def with_shared_kernels(functions: Sequence[ca.Function], name: str) -> list[PrintedKernel]:
@@ -48,12 +48,12 @@ class _Sharing:
         self._functions = functions
         self._name = name
         first = functions[0]
-        self._given = [ca.SX.sym(first.name_in(i), first.sparsity_in(i)) for i in range(GIVEN)]
-        self._further = [[ca.SX.sym("further", f.sparsity_in(i)) for i in range(GIVEN, f.n_in())] for f in functions]
-        symbols = [*self._given, *(symbol for further in self._further for symbol in further)]
+        self._common = [ca.SX.sym(first.name_in(i), first.sparsity_in(i)) for i in range(COMMON)]
+        self._further = [[ca.SX.sym("further", f.sparsity_in(i)) for i in range(COMMON, f.n_in())] for f in functions]
+        symbols = [*self._common, *(symbol for further in self._further for symbol in further)]
         results = []
         for function, further in zip(functions, self._further, strict=True):
-            results.append(ca.vertcat(*map(ca.vec, function.call([*self._given, *further]))))
+            results.append(ca.vertcat(*map(ca.vec, function.call([*self._common, *further]))))
         self._listing = Listing(ca.Function("joint", symbols, ca.cse(results)))
         self._entries = [symbol.nonzeros() for symbol in symbols]
         self._homes = self._homes_of_values()
@@ -69,7 +69,7 @@ class _Sharing:
         return [scalars_in_c(function, function, kernels=kernels) for function in functions]
 
     def _homes_of_values(self) -> list[int]:
-        """For each value the set of functions whose kernel computes it; 0 for what each function computes itself."""
+        """For each value the set of functions whose kernel computes it; 0 if each function computes it itself."""
         listing = self._listing
         users = [0] * len(listing.values)
         for i, output in enumerate(listing.outputs):
@@ -85,18 +85,16 @@ class _Sharing:
                     users[result] = users[results[0]]
             for operand in listing.operands(number):
                 users[operand] |= users[number]
-        homes: list[int] = []
-        of_given: list[bool] = []
+        # Arguments beyond those that all functions have are symbols of one function, and so is what depends on them.
+        homes = []
         for number, value in enumerate(listing.values):
-            known = not isinstance(value, Read) or value.argument < GIVEN
-            of_given.append(known and all(of_given[operand] for operand in listing.operands(number)))
-            shared = of_given[number] and users[number].bit_count() > 1 and isinstance(value, Computed | Called)
+            shared = users[number].bit_count() > 1 and isinstance(value, Computed | Called)
             homes.append(users[number] if shared else 0)
         counts = Counter(homes)
         return [home if counts[home] >= FEWEST_SHARED else 0 for home in homes]
 
     def _read_elsewhere(self) -> dict[int, list[int]]:
-        """Values that each kernel hands over, by its set of functions."""
+        """Numbers of the values that each kernel hands over, by its set of functions."""
         handed_over: dict[int, set[int]] = defaultdict(set)
         for number, home in enumerate(self._homes):
             for operand in self._listing.operands(number):
@@ -110,12 +108,12 @@ class _Sharing:
     def _add_kernel(self, home: int) -> None:
         """Add the kernel of the values of a set, which reads the results of kernels of larger sets."""
         symbols = [ca.SX.sym("shared", len(self._handed_over[other])) for other in self._larger(home)]
-        known = [symbol.nonzeros() for symbol in symbols]
+        entries = [symbol.nonzeros() for symbol in symbols]
         wanted = self._handed_over[home]
-        made = self._values(wanted, dict(zip(self._larger(home), known, strict=True)))
-        arguments = [*self._given, *symbols]
+        expressions = self._expressions(wanted, dict(zip(self._larger(home), entries, strict=True)))
+        arguments = [*self._common, *symbols]
         words = [f"given_{i}" for i in range(len(arguments))]
-        results = [ca.vertcat(*[made[number] for number in wanted])]
+        results = [ca.vertcat(*[expressions[number] for number in wanted])]
         name = f"{self._name}_{len(self._kernels)}"
         self._kernels[home] = ca.Function(name, arguments, results, words, ["shared"], {"never_inline": True})
 
@@ -129,43 +127,47 @@ class _Sharing:
         results: dict[int, ca.SX] = {}
         for home, kernel in self._kernels.items():
             if home >> i & 1:
-                arguments = [*self._given, *(results[other] for other in self._larger(home))]
+                arguments = [*self._common, *(results[other] for other in self._larger(home))]
                 (results[home],) = kernel.call(arguments, False, True)
-        made = self._values(
-            list(self._listing.outputs[i].values()), {home: result.nonzeros() for home, result in results.items()}
-        )
+        outputs = self._listing.outputs[i]
+        handed_over = {home: result.nonzeros() for home, result in results.items()}
+        expressions = self._expressions(list(outputs.values()), handed_over)
         entries = [ca.SX(0.0)] * self._listing.function.nnz_out(i)
-        for entry, number in self._listing.outputs[i].items():
-            entries[entry] = made[number]
-        ends = [0]
-        for k in range(function.n_out()):
-            ends.append(ends[-1] + function.nnz_out(k))
+        for entry, number in outputs.items():
+            entries[entry] = expressions[number]
+        patterns = [function.sparsity_out(k) for k in range(function.n_out())]
+        ends = accumulate((pattern.nnz() for pattern in patterns), initial=0)
         vectors = [ca.vertcat(*entries[begin:end]) for begin, end in pairwise(ends)]
-        shaped = [ca.SX(function.sparsity_out(k), vector) for k, vector in enumerate(vectors)]
-        symbols = [*self._given, *self._further[i]]
+        shaped = list(map(ca.SX, patterns, vectors))
+        symbols = [*self._common, *self._further[i]]
         return ca.Function(function.name(), symbols, shaped, function.name_in(), function.name_out())
 
-    def _values(self, wanted: Sequence[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
-        """Expressions of values from the results of kernels, by set."""
+    def _expressions(self, wanted: Sequence[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
+        """Expressions of values, and of those that they are computed from, by number.
+
+        Args:
+            wanted: numbers of the values.
+            known: for each kernel that is called the entries of its result, by its set of functions.
+        """
         listing = self._listing
-        made: dict[int, ca.SX] = {}
+        expressions: dict[int, ca.SX] = {}
         for home, entries in known.items():
-            made |= zip(self._handed_over[home], entries, strict=True)
-        needed = {number for number in wanted if number not in made}
+            expressions |= zip(self._handed_over[home], entries, strict=True)
+        needed = {number for number in wanted if number not in expressions}
         for number in reversed(range(len(listing.values))):
             if number in needed:
-                needed |= {operand for operand in listing.operands(number) if operand not in made}
+                needed |= {operand for operand in listing.operands(number) if operand not in expressions}
         for number in sorted(needed):
             value = listing.values[number]
-            operands = [made[operand] for operand in listing.operands(number)]
+            operands = [expressions[operand] for operand in listing.operands(number)]
             if isinstance(value, Constant):
-                made[number] = ca.SX(value.value)
+                expressions[number] = ca.SX(value.value)
             elif isinstance(value, Read):
-                made[number] = self._entries[value.argument][value.entry]
+                expressions[number] = self._entries[value.argument][value.entry]
             elif isinstance(value, Computed):
                 apply = ca.SX.unary if len(operands) == 1 else ca.SX.binary
-                made[number] = apply(value.operation, *operands)
-            elif number not in made:
+                expressions[number] = apply(value.operation, *operands)
+            elif number not in expressions:
                 call = listing.calls[value.call]
-                made |= zip(call.results, call_of_entries(call.function, operands), strict=True)
-        return made
+                expressions |= zip(call.results, call_of_entries(call.function, operands), strict=True)
+        return expressions

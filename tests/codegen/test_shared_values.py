@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
+import re
 
 import casadi as ca
 import numpy as np
@@ -18,23 +20,31 @@ LONG = FEWEST_SHARED
 
 
 def functions(inputs_size: int) -> list[ca.Function]:
-    """Three functions of a chain of values, two of which share a second chain behind it, with calls in both."""
+    """Four functions: all share a chain of values, three of them a second chain behind it, and two a third one.
+
+    The second result of a call that the first chain begins with is read by the second chain alone.
+    """
     x, inputs, load_factor = ca.SX.sym("x", 3), ca.SX.sym("inputs", inputs_size), ca.SX.sym("load_factor")
     pair = ca.SX.sym("pair", 2)
     turned = ca.Function("turned", [pair], [ca.cos(pair[0]) * pair[1], ca.sin(pair[1])], {"never_inline": True})
-    all_have = [x[0] * x[1] + ca.sum1(inputs)]
+    begin, aside = turned(ca.vertcat(x[0] * x[1] + ca.sum1(inputs), x[1]))
+    all_have = [begin]
     for k in range(LONG):
         all_have.append(ca.sin(all_have[-1]) + x[k % 3])
-    two_have = [ca.sum1(ca.vertcat(*turned(ca.vertcat(all_have[-1], x[2]))))]
+    three_have = [aside + ca.sum1(ca.vertcat(*turned(ca.vertcat(all_have[-1], x[2]))))]
     for k in range(LONG):
-        two_have.append(all_have[k] * ca.cos(two_have[-1]))
+        three_have.append(all_have[k] * ca.cos(three_have[-1]))
+    two_have = [three_have[-2]]
+    for _ in range(LONG):
+        two_have.append(all_have[2] - ca.cos(two_have[-1]))
     given = [x, inputs]
     names = ["x", "inputs"]
     last = ca.vertcat(two_have[-1], 0.0, load_factor * all_have[7])
     return [
         ca.Function("first", given, [all_have[-1] * x[0], ca.vertcat(*all_have[3:5])], names, ["a", "b"]),
-        ca.Function("second", given, [ca.vertcat(*two_have[-3:])], names, ["c"]),
-        ca.Function("third", [*given, load_factor], [ca.densify(last)], [*names, "load_factor"], ["d"]),
+        ca.Function("second", given, [ca.vertcat(*three_have[-3:])], names, ["c"]),
+        ca.Function("third", given, [two_have[-1] + x[1]], names, ["d"]),
+        ca.Function("fourth", [*given, load_factor], [ca.densify(last)], [*names, "load_factor"], ["e"]),
     ]
 
 
@@ -45,12 +55,19 @@ def test_functions_that_call_what_they_share(inputs_size: int) -> None:
     assert [[kernel.name() for kernel in function.kernels] for function in printed] == [
         ["shared_0"],
         ["shared_0", "shared_1"],
-        ["shared_0", "shared_1"],
+        ["shared_0", "shared_1", "shared_2"],
+        ["shared_0", "shared_1", "shared_2"],
     ]
     kernels = {kernel.name(): kernel for function in printed for kernel in function.kernels}
-    together = sum(function.n_instructions() for function in [*printed, *kernels.values()])
+    every = [*printed, *kernels.values()]
+    together = sum(function.n_instructions() for function in every)
     alone = sum(scalars_in_c(function, function).n_instructions() for function in plain)
-    assert together < alone - 2.5 * LONG
+    # One of four copies of the first chain is left, of three of the second, and of two of the third.
+    assert together < alone - 9 * LONG
+    calls = [int(turns) for one in every for turns in re.findall(r"turned\)\(w.*, (\d+)\);", one.body)]
+    assert sum(calls) == 2
+    # Kernels hand over what is read elsewhere alone.
+    assert [kernels[f"shared_{k}"].signature.numel_out(0) for k in (1, 2)] == [3, 1]
     texts = external_sources(printed, "shared", "long long int")
     library = os.fspath(compiled_texts("shared", texts, find_compiler()))
     rng = np.random.default_rng(3)
@@ -60,6 +77,27 @@ def test_functions_that_call_what_they_share(inputs_size: int) -> None:
         made = ca.external(function.name(), library).call(given)
         for one, other in zip(made, function.call(given), strict=True):
             assert_allclose(np.array(one), np.array(other), rtol=1e-15, atol=1e-15)
+
+
+def test_arguments_and_results_without_pointers() -> None:
+    """Arguments without a pointer are zero in what kernels compute, too; results without one are not written."""
+    plain = functions(2)
+    printed = with_shared_kernels(plain, "pointers")
+    texts = external_sources(printed, "pointers", "long long int")
+    library = ctypes.CDLL(os.fspath(compiled_texts("pointers", texts, find_compiler())))
+    arguments = [np.array([0.3, -0.2, 0.9]), np.array([0.1, 0.4]), np.array([0.7])]
+    for function, kernel in zip(plain, printed, strict=True):
+        given = arguments[: function.n_in()]
+        for absent in range(function.n_in()):
+            wanted = function.call([value * (k != absent) for k, value in enumerate(given)])
+            made = [np.full(result.numel(), np.nan) for result in wanted]
+            pointers = [None if k == absent else value.ctypes.data for k, value in enumerate(given)]
+            results = [None if k == 1 else value.ctypes.data for k, value in enumerate(made)]
+            work = np.full(kernel.reals, np.nan)
+            addresses = [(ctypes.c_void_p * len(listed))(*listed) for listed in (pointers, results)]
+            library[function.name()](*addresses, None, ctypes.c_void_p(work.ctypes.data), 0)
+            assert_allclose(made[0], np.array(wanted[0])[:, 0], rtol=1e-15, atol=1e-15)
+            assert all(np.isnan(value).all() for value in made[1:])
 
 
 def test_short_common_parts_stay_where_they_are() -> None:
