@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,6 +17,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import solver_function
+from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import (
     ARGUMENT_UNITS,
@@ -27,8 +28,6 @@ from cosserat_casadi.model.function_table import (
     Owner,
     owners,
 )
-
-Render = Callable[[str, dict[str, Any]], str]
 
 COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS", "v": "UNKNOWNS", "inputs_rate": "INPUTS", PARAMETERS: "PARAMETERS"}
 """Macros of the header with the number of entries of an argument."""
@@ -108,17 +107,17 @@ class FunctionInC:
             return f"{sentence} Takes {given}; gives {results}."
         return f"{sentence} Gives {results}."
 
-    def prototype(self, render: Render) -> str:
-        """Comment and prototype of the header."""
+    def prototype(self, basics: Mapping[str, Any]) -> str:
+        """Comment and prototype of the header, from the words of the library."""
         real = f"{self.names.name}_real"
         words = {
             "comment": _filled(f"/* {self.description} */"),
             "signature": _wrapped(f"void {self.symbol}(", self._parameters(real), ");"),
         }
-        return render("function.h.in", words)
+        return render("function.h.in", {**basics, **words})
 
-    def wrapper(self, render: Render) -> str:
-        """Definition: a call of the kernel."""
+    def wrapper(self, basics: Mapping[str, Any]) -> str:
+        """Definition, a call of the kernel, from the words of the library."""
         arguments = [f"&{name}" if name in SCALAR_ARGUMENTS else _word(name) for name in self.arguments]
         words = {
             "signature": _wrapped(f"void {self.symbol}(", self._parameters("real"), ") {"),
@@ -126,7 +125,7 @@ class FunctionInC:
             "arguments": ", ".join(arguments),
             "results": ", ".join(output.name for output in self.outputs),
         }
-        return render("function.c.in", words)
+        return render("function.c.in", {**basics, **words})
 
     def _parameters(self, real: str) -> list[str]:
         parameters = []

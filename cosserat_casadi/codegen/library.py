@@ -308,8 +308,7 @@ def _batch_words(name: str, rows: InLanes | None) -> dict[str, Any]:
 def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, Any]:
     parts = contents.parts
     motion = contents.motion
-    on_device = contents.on_device
-    sizes = _sizes(model, names, contents.generated) | {"on_device": on_device}
+    sizes = _sizes(model, names, contents.generated) | {"on_device": contents.on_device}
     sizes |= parameter_words(sizes, model, names, dynamics=motion is not None)
     linear = dense_words(sizes) if parts is None else block_words(sizes, parts)
     in_motion = {} if motion is None else motion_words(sizes, model, names, motion)
@@ -318,10 +317,6 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     functions = public_functions(model, names)
     margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights
-
-    def with_device(template: str, words: dict[str, Any]) -> str:
-        return render(template, {**words, "MACRO": names.macro, "on_device": on_device})
-
     return {
         **sizes,
         **dict.fromkeys(("of_rods", "on_cores", "with_axes"), True),
@@ -345,8 +340,8 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         **_pose_words(names),
         **linear,
         **in_motion,
-        "prototypes": "".join(function.prototype(with_device) for function in functions),
-        "functions": "".join(function.wrapper(with_device) for function in functions),
+        "prototypes": "".join(function.prototype(sizes) for function in functions),
+        "functions": "".join(function.wrapper(sizes) for function in functions),
         "function_rows": "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions),
     }
 
