@@ -39,11 +39,16 @@ CHOICE = """static void MADE({name})({parameters}) {{
 """
 """A function in fours for the width of vectors that the processor has."""
 
-PARAMETERS_OF_CALLEE = "const casadi_real *given, casadi_real *made, int turns"
-PARAMETERS_OF_LOOP = "casadi_real *w"
-PARAMETERS_OF_COLUMNS = (
-    "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed, int groups"
-)
+PARAMETERS_OF_CALLEE = {"given": "const casadi_real *", "made": "casadi_real *", "turns": "int "}
+PARAMETERS_OF_LOOP = {"w": "casadi_real *"}
+PARAMETERS_OF_COLUMNS = {
+    "w": "const casadi_real *",
+    "turns": "const casadi_real *",
+    "columns": "casadi_real *",
+    "passed": "casadi_real *",
+    "groups": "int ",
+}
+"""Types of the parameters of functions in fours by name."""
 
 PART_OF_COLUMNS = """static void MADE({name}_{part})(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed){body}"""
@@ -212,10 +217,10 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
     return PrintedSources(source, "\n".join([*functions, words["once"]]), prototypes, included)
 
 
-def _choice(name: str, parameters: str) -> str:
+def _choice(name: str, parameters: Mapping[str, str]) -> str:
     """A function in fours under its name, for the processor at hand."""
-    arguments = ", ".join(re.findall(r"\w+(?=,|$)", parameters))
-    return CHOICE.format(name=name, parameters=parameters, arguments=arguments)
+    declared = ", ".join(kind + parameter for parameter, kind in parameters.items())
+    return CHOICE.format(name=name, parameters=declared, arguments=", ".join(parameters))
 
 
 def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:
