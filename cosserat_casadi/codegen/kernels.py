@@ -124,6 +124,7 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
         return kernel(model, entry.function, entry.kernel)
     longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
     straight = None if _literal(model) else scalar(entry.function, entry.kernel, longest)
+    # More statements than STRAIGHT are worth it only where calls of intervals are made four at a time.
     if straight is None or (
         straight.n_instructions() > STRAIGHT and isinstance(with_calls_in_fours(straight), ca.Function)
     ):

@@ -121,10 +121,14 @@ class LoadedLibrary(ABC):
         return [pointer(self.inputs.stacked(inputs)), *self.parameters.passed(parameters)]
 
     def _judged(self, *arguments: Any) -> CompiledStability | None:
-        """Whether an equilibrium that the arguments say is stable; None where it is none."""
+        """Stability of an equilibrium; None where the arguments are of no equilibrium.
+
+        Args:
+            arguments: of the function in C, before its workspaces.
+        """
         info = StabilityInfo()
-        own_room = room(self._function("stability_workspace_size")())
-        status = self._function("stability")(*arguments, self._workspace(), own_room, ctypes.byref(info))
+        memory = room(self._function("stability_workspace_size")())
+        status = self._function("stability")(*arguments, self._workspace(), memory, ctypes.byref(info))
         return None if status != 0 else info.judged
 
     @cached_property

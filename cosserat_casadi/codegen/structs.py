@@ -9,8 +9,11 @@ import numpy as np
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.model.build import Model
 
-INPUT, PARAMETER = "INPUT", "PARAMETER"
-"""Words in macros of inputs and of parameters."""
+INPUT = "INPUT"
+"""Word in macros of inputs."""
+
+PARAMETER = "PARAMETER"
+"""Word in macros of parameters."""
 
 
 def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
@@ -100,7 +103,9 @@ def value_words(names: Names, entries: list[dict[str, Any]], word: str) -> tuple
     values = list[float]()
     for entry in entries:
         macro = _macro(names, word, entry["name"])
-        first, count, unit = entry["first"], len(entry["value"]), entry["unit"]
+        first = entry["first"]
+        count = len(entry["value"])
+        unit = entry["unit"]
         axes = "" if entry.get("axes", "none") == "none" else f", {entry['axes']} axes"
         remark = axes if word == INPUT else f": {entry['name']}"
         numbered = "1 number" if count == 1 else f"{count} numbers"
