@@ -320,21 +320,26 @@ class DiscreteScene:
         return Unknowns(tuple(self._blocks()))
 
     def _blocks(self) -> Iterator[UnknownBlock]:
+        """The blocks of unknowns in their order."""
         for name, rod in self.rods.items():
             yield UnknownBlock(BlockKind.STRAIN, name, name, rod.size, rod.energy_unit)
         for placed in self.constraints:
-            unit, weight = placed.constraint.unit, placed.step_weight
-            yield UnknownBlock(BlockKind.MULTIPLIER, placed.where, placed.rod, placed.size, unit, weight)
+            unit = placed.constraint.unit
+            yield UnknownBlock(
+                BlockKind.MULTIPLIER, placed.where, placed.rod, placed.size, unit, step_weight=placed.step_weight
+            )
         # Several rods may meet in a frame, so that it is solved with none of them.
         for frame_name, frame in self.frames.items():
             yield UnknownBlock(BlockKind.POSE, str(frame_name), None, FloatingFrame.SIZE, frame.unit)
         for placed in self.free_coordinates:
             yield UnknownBlock(BlockKind.COORDINATE, placed.where, None, 1, placed.constraint.unit)
         for cable in self.cables:
-            tendon, unit = cable.tendon, self.rods[cable.tendon.rod].energy_unit
-            yield UnknownBlock(BlockKind.TENSION, tendon.name, tendon.rod, 1, unit, FORCE_WEIGHT)
+            tendon = cable.tendon
+            unit = self.rods[tendon.rod].energy_unit
+            yield UnknownBlock(BlockKind.TENSION, tendon.name, tendon.rod, 1, unit, step_weight=FORCE_WEIGHT)
         for stop in self.stops:
-            yield UnknownBlock(BlockKind.STOP, stop.owner, None, 1, stop.placed.constraint.unit, FORCE_WEIGHT)
+            unit = stop.placed.constraint.unit
+            yield UnknownBlock(BlockKind.STOP, stop.owner, None, 1, unit, step_weight=FORCE_WEIGHT)
         for name, rod in self.rods.items():
             branches = len(rod.properties.branches)
             if branches and self.moving:
