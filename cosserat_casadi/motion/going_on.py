@@ -136,15 +136,16 @@ def go_on(
 
 
 def _factor_after_impacts(first: Strand, strand: Strand, history: History, told: History) -> float:
-    """Error of a motion over its distance from one that tells it, from above, where either was struck as they went on.
+    """Error of a motion over its distance from another one, from above, where either was struck as they went on.
 
     Args:
         first: the strand of the motion.
-        strand: that of the one that tells its error.
+        strand: the strand of the other one.
         history: the motion.
-        told: the one that tells its error.
+        told: the other one.
     """
-    modes, others = most_modes(first.discretisation), most_modes(strand.discretisation)
+    modes = most_modes(first.discretisation)
+    others = most_modes(strand.discretisation)
     if modes != others:
         return told_by_modes(modes, others, UNKNOWN_ORDER)
     if strand.settings.size is not None or strand.discretisation != first.discretisation:

@@ -91,8 +91,7 @@ class EventWatch:
         if not self._stopping:
             return None
         ends = [self._stopping_values(one, at) for one in (before, piece)]
-        lowest, highest = np.min(ends, axis=0), np.max(ends, axis=0)
-        through = np.flatnonzero((lowest < -THROUGH) & (highest > THROUGH))
+        through = np.flatnonzero((np.min(ends, axis=0) < -THROUGH) & (np.max(ends, axis=0) > THROUGH))
         return int(through[0]) if len(through) else None
 
     def _stopping_values(self, piece: Piece, instant: Instant) -> FloatArray:

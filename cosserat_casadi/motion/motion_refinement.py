@@ -111,7 +111,7 @@ ORDER_OF_WAVES = 2.3
 """Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
 MOST_IMPACTS = 1000
-"""Impacts, foreseen on as many modes as meet the tolerance, from which on these are not tried: that takes minutes."""
+"""Number of foreseen impacts beyond which no more modes are tried: so many take minutes."""
 
 FASTEST_GROWTH = 3.0
 """Largest power of the modes with which the number of impacts is taken to grow."""
@@ -289,15 +289,14 @@ class _Search:
 
     @property
     def told(self) -> dict[str, float]:
-        """Numbers of the last two levels that a sentence has: their modes and impacts, and their distance."""
-        fewer, last = self.levels[-2:]
-        before, after = impacts_of(fewer.history), impacts_of(last.history)
+        """Modes, impacts and distance of the last two levels, as sentences name them."""
+        before = self.levels[-2]
         return {
-            "fewer": fewer.modes,
-            "more": last.modes,
-            "before": before,
-            "after": after,
-            "distance": last.distance,
+            "fewer": before.modes,
+            "more": self.last.modes,
+            "before": impacts_of(before.history),
+            "after": impacts_of(self.last.history),
+            "distance": self.last.distance,
         }
 
 
@@ -482,7 +481,7 @@ def _erratic(search: _Search) -> Motion:
 
 
 def _given_up(search: _Search, why: str) -> Motion:
-    """The motion of the last level, where those on more modes would come near to it too slowly, or take too long."""
+    """The motion of the last level, and why no more modes are tried."""
     motion = _judged(search, search.last, search.space_error + TIME_SHARE * search.tolerance, [])
     return replace(motion, message=f"{motion.message} {why}")
 

@@ -140,7 +140,7 @@ INTERPRETED = Libraries()
 
 @lru_cache(maxsize=MOST_LOADED)
 def external(name: str, library: str) -> ca.Function:
-    """A function of a shared object, whose name is of its contents: it is loaded once in a process."""
+    """A function of a shared object, loaded once in a process: a file under the same name has the same contents."""
     return ca.external(name, library)
 
 
