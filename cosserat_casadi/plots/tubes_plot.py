@@ -148,9 +148,13 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
         style = {**category_style(index), "color": colour, "linestyle": STROKES[solution.stable], "markevery": 0.15}
         # The steps are few: corners that no tube has would show between them. Some have no length but for rounding.
         distance, rows = np.unique(np.round(shape.distance[here], NANOMETRES), return_index=True)
-        along = np.linspace(distance[0], distance[-1], DRAWN * len(distance))
-        curve = PchipInterpolator(distance, shape.angles[here, index][rows] - first)
-        panel.plot(along, curve(along), label=label, **style)
+        angles = shape.angles[here, index][rows] - first
+        # A tube that does not leave the base plate has one station, and no curve.
+        if len(distance) > 1:
+            curve = PchipInterpolator(distance, angles)
+            distance = np.linspace(distance[0], distance[-1], DRAWN * len(distance))
+            angles = curve(distance)
+        panel.plot(distance, angles, label=label, **style)
 
 
 def plot_tube_path(path: TubePath) -> Any:

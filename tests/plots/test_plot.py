@@ -354,6 +354,14 @@ def test_angles_of_tubes_are_curves_through_their_stations() -> None:
         assert len(distance) > 5 * len(np.unique(solution.shape.distance[here]))
 
 
+def test_a_tube_that_does_not_leave_the_plate_is_drawn() -> None:
+    robot = read_scene(ROOT / "examples" / "concentric_tubes.toml")
+    solution = solve(robot, {"outer.translation": 0.0})
+    lines = {line.get_label(): line.get_xdata() for line in plot_tubes(solution).axes[1].get_lines()}
+    assert len(lines["outer"]) == 1
+    assert len(lines["inner"]) > 1
+
+
 # The workspace figure: its panels, its points, the same bytes twice.
 
 
