@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
-from typing import Any, TypeGuard
+import math
+from collections.abc import Collection, Iterator
 
+from cosserat_casadi.scene.faults import SIZES
+from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.scene import Scene
 
 LOG = logging.getLogger(__name__)
@@ -16,9 +18,12 @@ SOFTEST = 1e3
 LIGHTEST = 10.0
 """Density, kg/m³, below that of foams: 6450 kg/m³ written as 6.45 g/cm³ is lighter."""
 
+NEAR_ONE = 100.0
+"""Largest number, and inverse of the smallest one, of a rod that is computed without units."""
+
 
 def note_unlikely_units(scene: Scene) -> None:
-    """Warn of every number that is likely in another unit."""
+    """Warn of every number that is likely in another unit; of none of a rod whose numbers are all near one."""
     for note in _notes(scene):
         LOG.warning("%s", note)
 
@@ -26,18 +31,24 @@ def note_unlikely_units(scene: Scene) -> None:
 def _notes(scene: Scene) -> Iterator[str]:
     for index, rod in enumerate(scene.rods):
         where = f"rods[{index}]"
-        modulus = getattr(rod.material, "youngs_modulus", None)
-        if _is_number(modulus) and modulus < SOFTEST:
+        length = _numbers(rod, {"length"})
+        sizes = _numbers(rod.section, SIZES)
+        material = _numbers(rod.material, {"youngs_modulus", "density"})
+        numbers = (length | sizes | material).values()
+        if all(1 / NEAR_ONE <= number <= NEAR_ONE for number in numbers):
+            continue
+        modulus = material.get("youngs_modulus", math.inf)
+        if modulus < SOFTEST:
             yield f"{where}.material.youngs_modulus: {modulus:g} Pa is softer than any rod (60 GPa are 60e9)"
-        density = getattr(rod.material, "density", None)
-        if _is_number(density) and 0.0 < density < LIGHTEST:
+        density = material.get("density", math.inf)
+        if density < LIGHTEST:
             yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
-        for key in ("radius", "outer_radius", "width", "height"):
-            size = getattr(rod.section, key, None)
-            if _is_number(size) and _is_number(rod.length) and size > rod.length:
-                yield f"{where}.section.{key}: {size:g} m is more than the length of {rod.length:g} m (are both in m?)"
+        longest = length.get("length", math.inf)
+        for key, size in sizes.items():
+            if size > longest:
+                yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
 
 
-def _is_number(value: Any) -> TypeGuard[float]:
-    """Whether a value is one number: no list, expression or nothing."""
-    return isinstance(value, float | int)
+def _numbers(record: Record | None, keys: Collection[str]) -> dict[str, float]:
+    """Values of some keys of a record that are one number each: no lists, and no expressions of parameters."""
+    return {key: value for key, value in record or () if key in keys and isinstance(value, float | int)}

@@ -28,6 +28,28 @@ def test_a_number_in_another_unit_is_noted(override: str, note: str, caplog: pyt
     assert [text.partition(" (")[0] for text in notes] == [note] * bool(note)
 
 
+@pytest.mark.parametrize(
+    ("radius", "warned"), [("0.01", False), ("{ base = 0.02, tip = 0.01 }", False), ("1e-3", True)]
+)
+def test_a_rod_without_units_is_not_warned_of(
+    radius: str, warned: bool, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """All numbers of a rod that is computed without units are near one."""
+    file = tmp_path / "rod.toml"
+    file.write_text(f"""\
+schema = 1
+
+[[rods]]
+name = "rod"
+strain = "planar"
+length = 1.0
+material = {{ youngs_modulus = 1.0, poisson_ratio = 0.0, density = 1.0 }}
+section = {{ shape = "circle", radius = {radius} }}
+""")
+    read_scene(file)
+    assert len(caplog.records) == 2 * warned
+
+
 def test_no_example_is_warned_of(caplog: pytest.LogCaptureFixture) -> None:
     examples: list[Path] = sorted((ROOT / "examples").glob("*.toml"))
     assert len(examples) > 30
