@@ -546,6 +546,7 @@ upper_stop = 0.8           # rad; and lower_stop, stop_stiffness or restitution
 
     coordinate_key: ClassVar[str] = "angle"
     effort_key: ClassVar[str] = "moment"
+    namesakes: ClassVar[Mapping[str, str]] = {"displacement": "angle", "force": "moment"}
     inputs: ClassVar[Mapping[str, InputField]] = {
         "angle": InputField("rad", 1, continuous=True, nonlinear=True),
         "moment": InputField("N m", 1),
@@ -588,6 +589,7 @@ displacement = 0.0         # of a drive, an input; or stiffness, rest, damping a
 
     coordinate_key: ClassVar[str] = "displacement"
     effort_key: ClassVar[str] = "force"
+    namesakes: ClassVar[Mapping[str, str]] = {"angle": "displacement", "moment": "force"}
     inputs: ClassVar[Mapping[str, InputField]] = {
         "displacement": InputField("m", 1, continuous=True, nonlinear=True),
         "force": InputField("N", 1),

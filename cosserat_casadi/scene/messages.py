@@ -67,7 +67,8 @@ def _fault(details: ErrorDetails) -> Fault:
     # The last part is the key with the fault, in the record that the others lead to.
     record = record_at(location[:-1])
     if kind in ("extra_forbidden", "invalid_key"):
-        return Fault(path, "unknown key", closest(str(location[-1]), keys_of(record)))
+        key = str(location[-1])
+        return Fault(path, "unknown key", closest(record.namesakes.get(key, key), keys_of(record)))
     return Fault(path, _problem_text(kind, details), _remedy(kind, path, record, details))
 
 

@@ -85,9 +85,11 @@ class Record(BaseModel):
     Attributes:
         example: the table as a scene has it, TOML, for the reference page. Names in it are those of the page: the rods
             "finger" and "arm", the body "platform", the load "push" and the actuator "cable".
+        namesakes: keys of other records, each with the key that has its part here.
     """
 
     example: ClassVar[str] = ""
+    namesakes: ClassVar[Mapping[str, str]] = {}
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 

@@ -56,6 +56,10 @@ def support(text, **rods):
     return scene(f'[[supports]]\nrod = "finger"\n{text}', **rods)
 
 
+def joint(kind, text):
+    return scene(f'[[joints]]\nrod = "finger"\nkind = "{kind}"\n{HALF}\naxis = [0, 0, 1]\n{text}')
+
+
 def actuator_table(text):
     return f"""[[actuators]]\nname = 'cable'\nkind = 'tendon'\nrod = "finger"\n{text}\n"""
 
@@ -390,6 +394,8 @@ def test_five_faults_are_told_at_once_in_the_order_of_the_file():
         (scene(rods=rod(strain='"kirchof"')), "did you mean 'kirchhoff'?"),
         (scene(rods=rod('section = { shape = "circl", radius = 1e-3 }')), "did you mean 'circle'?"),
         (scene(rods=rod().replace("length = 0.2", "")), "undeformed length, m"),
+        (joint("prismatic", "angle = 0.1"), "did you mean 'displacement'?"),
+        (joint("revolute", "force = 0.1"), "did you mean 'moment'?"),
         (load("kind = 'tip_wrench'\nrod = 'toe'\nforce = [1, 0, 0]"), "rods: finger"),
         (scene(PUSH, before="inputs = ['pull.force']"), "names: push, finger"),
         (load("kind = 'point_wrench'\nrod = 'finger'\nat = 0.0\nforce = [1, 0, 0]"), "leave it out"),
