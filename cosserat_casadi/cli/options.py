@@ -141,15 +141,16 @@ def check_animation(animation: Path | None, problems: list[Problem], *, meshes: 
     """Add the faults of the file of an animation; ``meshes`` says whether it may be a file of meshes."""
     if animation is None:
         return
+    others = MESHES if meshes else ()
     with collect_problems(problems):
         check_writable(animation, "--animation")
-    if meshes and animation.suffix.lower() in MESHES:
+    if animation.suffix.lower() in others:
         return
     # Imported here, because matplotlib is an extra and takes long to load.
     from cosserat_casadi.plots.animation import check_animation_path
 
     with collect_problems(problems):
-        check_animation_path(animation, "--animation")
+        check_animation_path(animation, "--animation", others)
 
 
 def check_file(file: Path | None, option: str, suffix: str) -> None:
@@ -210,14 +211,14 @@ def check_plot(plot: Path | None, *, meshes: bool = False) -> None:
     """
     if plot is None:
         return
-    if meshes and plot.suffix.lower() in MESHES:
-        check_writable(plot, "--plot")
+    others = MESHES if meshes else ()
+    check_writable(plot, "--plot")
+    if plot.suffix.lower() in others:
         return
     # Imported here, because matplotlib is an extra and takes long to load.
     from cosserat_casadi.plots.figure import check_plot_path
 
-    check_writable(plot, "--plot")
-    check_plot_path(plot)
+    check_plot_path(plot, others)
 
 
 def given_files(*files: Path | None) -> list[Path]:

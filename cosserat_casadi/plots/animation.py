@@ -85,12 +85,13 @@ class AnimationUnavailableError(CosseratError):
         )
 
 
-def check_animation_path(path: str | Path, where: str = "path") -> None:
+def check_animation_path(path: str | Path, where: str = "path", others: tuple[str, ...] = ()) -> None:
     """Refuse an animation that cannot be made, before any work is done for it.
 
     Args:
         path: the file.
         where: what a refusal calls it.
+        others: suffixes of meshes, where the user may ask for them instead: a refusal names them too.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
@@ -99,7 +100,7 @@ def check_animation_path(path: str | Path, where: str = "path") -> None:
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         problem = f"{path} has no suffix of an animation that can be made"
-        raise SceneError(Problem(where, problem, f"use one of {', '.join(FORMATS)}"))
+        raise SceneError(Problem(where, problem, f"use one of {', '.join(FORMATS + others)}"))
     figure_class()
     if suffix == ".mp4":
         from matplotlib.animation import FFMpegWriter

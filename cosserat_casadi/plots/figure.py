@@ -49,15 +49,19 @@ def figure_class() -> Any:
     return ShownFigure
 
 
-def check_plot_path(path: str | Path) -> None:
+def check_plot_path(path: str | Path, others: tuple[str, ...] = ()) -> None:
     """Refuse a figure that cannot be made, before any work is done for it.
+
+    Args:
+        path: the file.
+        others: suffixes of meshes, where the user may ask for them instead: a refusal names them too.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
         PlotUnavailableError: matplotlib is not installed.
     """
     if Path(path).suffix.lower() not in FORMATS:
-        remedy = f"use one of {', '.join(FORMATS)}"
+        remedy = f"use one of {', '.join(FORMATS + others)}"
         raise SceneError(Problem("--plot", f"{path} has no suffix of a figure that can be drawn", remedy))
     figure_class()
 

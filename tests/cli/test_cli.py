@@ -140,7 +140,7 @@ def test_check_says_how_lists_were_read(wire: Path) -> None:
         (["solve", "wire.toml", "--set", "push.force=[0,0,"], "--set push.force"),
         (["solve", "wire.toml", "--output", "no/such/r.json"], "does not exist"),
         (["solve", "wire.toml", "--output", "."], "is a folder"),
-        (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "--plot"),
+        (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "one of .png, .pdf, .svg, .glb, .usda"),
         (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
         (
             ["solve", "wire.toml", "--set", "wire.length=1e-60", "--set", "wire.material.youngs_modulus=1e120"],
@@ -170,7 +170,7 @@ def test_check_says_how_lists_were_read(wire: Path) -> None:
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--csv", "no/p.csv"], "--csv"),
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--plot", "f.doc"], "--plot"),
         (["inverse", "wire.toml", "--output", "r.json"], "targets: missing"),
-        (["inverse", "wire.toml", "--plot", "f.doc"], "--plot"),
+        (["inverse", "wire.toml", "--plot", "f.doc"], "one of .png, .pdf, .svg)"),
         (["sing"], "sing"),
     ],
 )

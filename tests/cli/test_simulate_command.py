@@ -234,7 +234,7 @@ def never(scene: Scene, **options: Any) -> Motion:
         (["wire.toml", "--output", "m.mat"], ["--output", "one of .json, .csv, .parquet, .npz"]),
         (["wire.toml", "--output", "no/m.json"], ["--output", "does not exist"]),
         (["wire.toml", "--plot", "m.gif"], ["--plot", ".png, .pdf, .svg"]),
-        (["wire.toml", "--animation", "m.avi"], ["--animation", "one of .gif, .mp4"]),
+        (["wire.toml", "--animation", "m.avi"], ["--animation", "one of .gif, .mp4, .glb, .usda"]),
         (["wire.toml", "--animation", "no/m.gif"], ["--animation", "does not exist"]),
         (["wire.toml", "--speed", "0"], ["--speed", "must be > 0, got 0"]),
         (["wire.toml", "--speed", "nan"], ["--speed", "must be > 0, got nan"]),
