@@ -170,7 +170,8 @@ def solve(
         tolerance=limits.newton.tolerance,
     )
     stalled = solution.outcome is Outcome.LOAD_STALLED
-    if stalled and end.load_factor == 0.0 and isinstance(start, Solution) and start.model is not model:
+    from_others = isinstance(start, Solution) and start.model is not model
+    if stalled and end.load_factor == 0.0 and from_others and model.scene.has_contact:
         solution = replace(solution, message=solution.message + AT_ONCE)
     if stalled and start is None:
         solution = _settled_on_obstacles(solution, limits, progress)

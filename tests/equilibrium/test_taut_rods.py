@@ -44,3 +44,15 @@ def test_a_rod_held_nearer_is_not_taut() -> None:
     solution = solve(given)
     assert solution.converged
     assert TAUT not in solution.message
+
+
+def test_a_start_with_other_parameters_is_told_of_obstacles_where_there_are_some() -> None:
+    name = "rod.stiffness.bending_y"
+    unloaded = held("pinned", LENGTH, "planar")
+    model = build(unloaded.model_copy(update={"parameters": (name,)}), discretise(unloaded, 4, 10))
+    start = solve(model, {"side.force": [0.0, 0.0, 0.0]})
+    assert start.converged
+    # So large a load ends the path at its first step.
+    stalled = solve(model, {"side.force": [1e6, 0.0, 0.0]}, parameters={name: 2.0}, start=start)
+    assert stalled.load_factor == 0.0
+    assert stalled.message.endswith(TAUT)
