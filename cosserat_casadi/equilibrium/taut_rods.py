@@ -8,9 +8,16 @@ from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.scene.rod_records import SHEAR_AND_EXTENSION
 
 CLOSED = 1e-9
 """Residual of constraints, relative to the length of the rods, below which they are closed."""
+
+STRAIGHT = 1e-9
+"""Share by which the ends of a straight rod may be nearer to each other than along its sections."""
+
+SECTIONS = 9
+"""Sections of a rod that tell whether it is straight."""
 
 DEPENDENT = 1e-9
 """Share of the largest singular value below which one counts as zero."""
@@ -36,6 +43,16 @@ def held_taut(model: Model, inputs: FloatArray) -> bool:
     unloaded = model.unloaded()
     if np.abs(column(model.path_residual(unloaded, inputs, 1.0))[held]).max() > CLOSED:
         return False
+    # On few modes a curved rod may be locked too, which more modes mend.
+    stiff = [rod.name for rod in model.scene.rods if not set(rod.admitted) & SHEAR_AND_EXTENSION]
+    if not any(_is_straight(model, unloaded, inputs, name) for name in stiff):
+        return False
     changes = model.path_jacobian(unloaded, inputs, 1.0).full()[np.ix_(held, model.shape_unknowns)]
     singular = np.linalg.svd(changes, compute_uv=False)
     return bool(len(singular) < len(changes) or singular[-1] <= DEPENDENT * singular[0])
+
+
+def _is_straight(model: Model, x: FloatArray, inputs: FloatArray, rod: str) -> bool:
+    positions = np.hstack([model.shape[rod](x, inputs, X)[0].full() for X in np.linspace(0.0, 1.0, SECTIONS)])
+    along = np.linalg.norm(np.diff(positions), axis=0).sum()
+    return bool(np.linalg.norm(positions[:, -1] - positions[:, 0]) >= (1.0 - STRAIGHT) * along)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from cosserat_casadi import Outcome, Solution, build, discretise, solve
@@ -44,6 +45,16 @@ def test_a_rod_held_nearer_is_not_taut() -> None:
     solution = solve(given)
     assert solution.converged
     assert TAUT not in solution.message
+
+
+def test_a_curved_rod_that_its_modes_lock_is_not_taut() -> None:
+    """One mode has no way to move between clamps; the rod itself may bend."""
+    arch = rod("planar", length=1.0, intrinsic={"curvature": [0, 3.0, 0]})
+    clamp = {"rod": "rod", "kind": "clamped", "position": [(1 - np.cos(3)) / 3, 0, np.sin(3) / 3]}
+    clamp["quaternion"] = [np.cos(1.5), 0, np.sin(1.5), 0]
+    given = scene(rods=[arch], supports=[clamp])
+    model = build(given, discretise(given, 1, 10))
+    assert not held_taut(model, model.inputs.pack())
 
 
 def test_a_start_with_other_parameters_is_told_of_obstacles_where_there_are_some() -> None:
