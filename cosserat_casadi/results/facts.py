@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,9 +38,6 @@ Titled = tuple[str | None, Facts]
 MOST_OF_A_KIND = 4
 """Tips, modes, unknowns or events that are listed; the rest is counted."""
 
-NOTHING = "none"
-"""Words for an empty list."""
-
 ROUNDING = 1e-14
 """Share of the largest entry of a vector below which an entry is shown as zero."""
 
@@ -53,18 +50,20 @@ SMALLEST = 1e-300
 
 def scene_facts(scene: Scene) -> Titled:
     """Rods or tubes, what acts on them, and the inputs."""
-    parts: dict[str, Iterable[Any]] = {
+    parts: dict[str, Sequence[Any]] = {
         "rods": scene.rods,
         "tubes": scene.tubes,
         "bodies": scene.listed_bodies,
         "joints": scene.joints,
+        "supports": scene.supports,
         "disks": scene.disks,
         "loads": scene.loads,
         "actuators": scene.actuators,
         "obstacles": scene.obstacles,
     }
-    facts = [(part, _listed(entry.name or "without name" for entry in entries)) for part, entries in parts.items()]
-    facts = [(part, words) for part, words in facts if words != NOTHING]
+    facts = [
+        (part, _listed(entry.name or "without name" for entry in entries)) for part, entries in parts.items() if entries
+    ]
     return scene.title, [*facts, ("inputs", _listed(scene.input_names()))]
 
 
@@ -88,11 +87,13 @@ def tube_model_facts(model: TubeFunctions) -> Titled:
 def _arguments(model: Model | TubeFunctions) -> Facts:
     """Names of inputs, and of parameters where the scene names some."""
     facts = [("inputs", _listed(model.inputs.names))]
-    return [*facts, ("parameters", _listed(model.parameters.names))] if model.parameters.size else facts
+    if model.parameters.size:
+        facts.append(("parameters", _listed(model.parameters.names)))
+    return facts
 
 
 def linear_model_facts(model: LinearModel) -> Titled:
-    """Sizes, and the slowest eigenvalue, of a linear model."""
+    """States, inputs and outputs of a linear model."""
     facts = [
         ("states", f"{len(model.states)}, of {model.modes} modes"),
         ("inputs", _listed(model.inputs)),
@@ -102,12 +103,15 @@ def linear_model_facts(model: LinearModel) -> Titled:
 
 
 def choice_facts(choice: Choice) -> Titled:
-    """Modes that were chosen, and how good they are."""
+    """Largest error of a discretisation, the ranges that it was chosen for, and its modes."""
     title, facts = model_facts(choice.model)
-    facts = [fact for fact in facts if fact[0] != "inputs"]
-    facts.append(("ranges", _listed(line.partition("=")[0] for line in choice.ranges.described)))
-    facts.append(("solved", f"{choice.solves}, {len(choice.without_equilibrium)} without an equilibrium"))
-    return title, [*facts, ("largest error", _error(choice.error_estimate, choice.scene.accuracy.tolerance))]
+    of_choice = [
+        ("largest error", _error(choice.error_estimate, choice.scene.accuracy.tolerance)),
+        ("ranges", _listed(line.partition("=")[0] for line in choice.ranges.described)),
+        ("solved", f"{choice.solves}, {len(choice.without_equilibrium)} without an equilibrium"),
+    ]
+    # The ranges name the inputs.
+    return title, [*of_choice, *(fact for fact in facts if fact[0] != "inputs")]
 
 
 def solution_facts(solution: Solution) -> Titled:
@@ -336,7 +340,7 @@ def _listed(words: Iterable[str]) -> str:
     """Words in a row; the rest of a long list is counted."""
     every = list(words)
     left_out = len(every) - MOST_OF_A_KIND
-    shown = ", ".join(every[:MOST_OF_A_KIND]) or NOTHING
+    shown = ", ".join(every[:MOST_OF_A_KIND]) or "none"
     return f"{shown} and {left_out} more" if left_out > 0 else shown
 
 

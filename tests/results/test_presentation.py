@@ -253,17 +253,21 @@ def test_a_result_says_what_matters_in_a_few_lines(name: str) -> None:
 
 
 def test_scenes_and_models_say_what_they_are_in_a_few_lines() -> None:
+    tip = {"name": "pin", "rod": "rod", "kind": "pinned", "position": [0.0, 0.0, 0.7]}
+    held = scene(push(force=[0.3, 0, 0]), supports=[tip])
     given = scene(push(force=[0.3, 0, 0]))
     model = build(given)
     linear = linearise(solve(model))
     tubes = read_scene(ROOT / "examples" / "concentric_tubes.toml")
     shown = {
-        "Scene": (given, "loads   push"),
+        "Scene": (held, "supports  pin"),
         "Model": (model, f"unknowns  {model.size}"),
         "Choice": (choose(given, samples=1), "tolerance 1e-06"),
         "LinearModel": (linear, f"states   {len(linear.A)}, of {linear.modes} modes"),
         "TubeModel": (build(tubes, 4), "tubes   outer, inner"),
     }
+    # The error stands first, where no rods push it out of the lines.
+    assert repr(shown["Choice"][0]).splitlines()[1].startswith("  largest error")
     for name, (one, words) in shown.items():
         lines = repr(one).splitlines()
         assert lines[0].split(": ")[0] == name
