@@ -78,7 +78,7 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
 
 
 SUFFIXES = {"--csv": ".csv", "--write": ".toml"}
-"""Suffix of the only format that an option writes."""
+"""Suffixes of options that write one format in all commands."""
 
 
 def check_files(
@@ -94,12 +94,12 @@ def check_files(
 
     Args:
         files: to be written, by the option that asks for each; None where none is asked for.
-        scene: as in :func:`check_inputs_stay`.
-        settings: as there.
-        problems: are added to: a file cannot be written, would be written over one that is read, or has the suffix of
-            another format.
-        others: as there.
-        output_suffix: of the format that the result is written in.
+        scene: file of the scene, whose tables are read too.
+        settings: changes of the scene, which may name other tables.
+        problems: list that the faults are added to: a file cannot be written, would be written over one that is read,
+            or has the suffix of another format.
+        others: files that the command reads beside the scene.
+        output_suffix: suffix of the format of the result.
         meshes: whether the figure may be a file of meshes.
 
     Raises:
