@@ -23,7 +23,7 @@ from cosserat_casadi.scene.values import (
 )
 
 MOST_DISKS = 1000
-"""Disks of a row of which an element each can be computed with."""
+"""Largest number of disks of a row; each of them ends an element of its rod."""
 
 
 def lead_through_disks(tables: dict[str, Any]) -> None:

@@ -102,9 +102,7 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     free = _with_swept_inputs(scene, table.columns)
     layout = input_layout(free)
     index_of = column_indices(layout)
-    whole = list(_named_whole(table, layout, index_of))
-    if whole:
-        raise SceneError(*whole)
+    refuse(_named_whole(table, layout, index_of))
     input_columns = [k for k, column in enumerate(table.columns) if column in index_of]
     parameter_columns = [k for k, column in enumerate(table.columns) if column not in index_of]
     inputs = table.scratch.array((len(table.values), layout.size))

@@ -151,7 +151,7 @@ class Robot(TubeNumbers[FloatArray]):
             inputs = np.array(values, dtype=float).ravel()
             # Refused where it has too few or too many numbers.
             self.layout.split(inputs)
-        refuse([*self._out_of_range(inputs)])
+        refuse(self._out_of_range(inputs))
         return inputs
 
     def _named(self, values: Mapping[str, npt.ArrayLike]) -> FloatArray:
