@@ -217,6 +217,14 @@ class Curve:
             return None
         return CorrectedPoint(y, limits.reject_above)
 
+    def at(self, start: FloatArray, load_factor: float) -> FloatArray | None:
+        """Find the unknowns at a load factor near a start, both of shape (n,); None where no step leads there."""
+        across_loads = np.append(np.zeros_like(start), 1.0)
+        corrected = self.correct(np.append(start, load_factor), Hyperplane(across_loads, load_factor))
+        if corrected is None:
+            return None
+        return corrected.y[:-1]
+
     def bounded(self, current: ArcPoint, step: float) -> float:
         """A step, cut to what the settings allow at a point."""
         limits = self.settings

@@ -14,7 +14,7 @@ from enum import Enum
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import ArcPoint, Curve, Hyperplane, plane_through
+from cosserat_casadi.numerics.arclength import ArcPoint, Curve, plane_through
 from cosserat_casadi.numerics.events import Arc, Event, events_between
 from cosserat_casadi.numerics.neutral import direction_in
 from cosserat_casadi.numerics.progress import Progress
@@ -195,14 +195,10 @@ def _end(arc: Arc) -> ArcPoint:
     if near is None:
         return arc.end
     # At the load factor 1 to the last digit, so that the end is the equilibrium asked for.
-    across_loads = np.append(np.zeros_like(near.x), 1.0)
-    guess = np.append(near.x, 1.0)
-    corrected = arc.curve.correct(guess, Hyperplane(across_loads, 1.0))
-    if corrected is None:
+    x = arc.curve.at(near.x, 1.0)
+    if x is None:
         return near
-    x = corrected.y[:-1]
-    exact = np.append(x, 1.0)
-    point = arc.curve.point(exact, near.tangent, near.length)
+    point = arc.curve.point(np.append(x, 1.0), near.tangent, near.length)
     return point or near
 
 

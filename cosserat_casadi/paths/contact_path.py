@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import numpy.typing as npt
@@ -60,6 +60,15 @@ class ContactPath(EquilibriumPath):
         """Resolution index at all points, shape (k,): one above 1 is not resolved, as a solve would not be."""
         return np.array([self.arrangements[number].resolution_index(z, factor) for z, factor, number in self._points])
 
+    @property
+    def stretches(self) -> list[range]:
+        """Indices of the points between one event and the next, all of one arrangement."""
+        # The event of a change of contact may be the first point of the next arrangement, and lie before what follows.
+        changes = np.flatnonzero(np.diff(self.arrangement)) + 1
+        others = [event.position for event in self.events if event.contact is None]
+        bounds = [0, *sorted([*changes.tolist(), *others]), len(self.factor)]
+        return [range(first, behind) for first, behind in pairwise(bounds)]
+
     def contacts(self, index: int) -> tuple[PathContact, ...]:
         """The contacts at a point of the path."""
         arrangement = self.arrangements[self.arrangement[index]]
@@ -72,16 +81,22 @@ class ContactPath(EquilibriumPath):
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
-        return self._judged(self.arrangement[index], self.x[index], self.factor[index])
-
-    def event_solution(self, event: PathEvent) -> Solution:
-        """The equilibrium at an event with its contacts, judged likewise."""
-        return self._judged(event.arrangement, event.x, event.factor)
-
-    def _judged(self, arrangement: int, x: FloatArray, factor: float) -> Solution:
-        """The equilibrium with some unknowns of an arrangement at a factor."""
-        found = self.arrangements[arrangement].equilibrium_at(x, float(factor))
+        found = self.arrangements[self.arrangement[index]].equilibrium_at(self.x[index], float(self.factor[index]))
         return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
+
+    def shape(self, index: int, x: FloatArray, factor: float) -> Solution:
+        """The equilibrium with unknowns, forces and places of a point, or near them at another factor, not judged."""
+        return self.arrangements[self.arrangement[index]].equilibrium_at(x, float(factor)).solution
+
+    def event_shape(self, event: PathEvent) -> Solution:
+        """The equilibrium at an event with its contacts, not judged."""
+        return self.arrangements[event.arrangement].equilibrium_at(event.x, event.factor).solution
+
+    def _corrected(self, index: int, start: FloatArray, factor: float) -> FloatArray | None:
+        """Unknowns, forces and places that solve the equations of a point's arrangement at another factor."""
+        arrangement = self.arrangements[self.arrangement[index]]
+        found = arrangement.curve.at(start / arrangement.scale, factor)
+        return None if found is None else arrangement.scale * found
 
     @property
     def _points(self) -> Iterable[tuple[FloatArray, float, int]]:

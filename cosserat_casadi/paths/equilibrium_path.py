@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.rubbing import RubbingStretch
 from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import ModelType, SectionForce, Solution, SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arclength import ArcSettings, Curve
+from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.trace import PathOutcome, Trace
 from cosserat_casadi.result import Result
 
-EventType = TypeVar("EventType")
+
+class AlongPath(Protocol):
+    """What lies between two points of a path."""
+
+    @property
+    def position(self) -> int:
+        """Index of the first point beyond it."""
+
+
+EventType = TypeVar("EventType", bound=AlongPath)
 
 
 @dataclass(frozen=True)
@@ -99,8 +110,8 @@ class InputPath(Result, Generic[ModelType, EventType]):
         factor: share of the way at each of k points in the order of travel, shape (k,).
         x: unknowns, shape (k, model.size).
         events: limit points and bifurcations in the order of travel.
-        error_estimate: estimated error of where the events lie, relative, and of the poses and lengths of cables there
-            and at both ends, as that of an equilibrium; None if not estimated.
+        error_estimate: estimated error of where the events lie, relative, and of the poses and lengths of cables
+            there, at both ends and between, as that of an equilibrium; None if not estimated.
     """
 
     model: ModelType
@@ -128,6 +139,50 @@ class InputPath(Result, Generic[ModelType, EventType]):
         """Stacked inputs at a factor."""
         change = factor * self.change
         return self.base + change
+
+    @property
+    def stretches(self) -> list[range]:
+        """Indices of the points before the first event, between one event and the next, and beyond the last one."""
+        bounds = [0, *(event.position for event in self.events), len(self.factor)]
+        return [range(first, behind) for first, behind in itertools.pairwise(bounds)]
+
+    def between_events(self, finer: Self) -> Iterator[tuple[int, int, FloatArray | None]]:
+        """Compare this path with a finer one that has the same events, at the quarters of each stretch between them.
+
+        Yields:
+            index of a point of this path, which is not beside an event; index of a point near it on the finer path;
+            unknowns of the finer path at the factor of the first, None where Newton's method finds none.
+        """
+        for stretch, finer_stretch in zip(self.stretches, finer.stretches, strict=True):
+            quarters = np.linspace(stretch.start, stretch.stop - 1, 5)[1:-1].astype(int)
+            for index in np.unique(quarters).tolist():
+                if index in stretch[1:-1] and len(finer_stretch) > 1:
+                    yield index, *finer._unknowns_at(float(self.factor[index]), finer_stretch)
+
+    def _unknowns_at(self, factor: float, stretch: range) -> tuple[int, FloatArray | None]:
+        """Unknowns at a factor, sought from the chord of the two points of a stretch that it lies between.
+
+        Returns:
+            index of the second of these points; unknowns, None where Newton's method does not converge.
+        """
+        factors = self.factor[stretch.start : stretch.stop]
+        lower = np.minimum(factors[:-1], factors[1:])
+        upper = np.maximum(factors[:-1], factors[1:])
+        missed = np.maximum(np.maximum(lower - factor, factor - upper), 0.0)
+        after = stretch[int(np.argmin(missed)) + 1]
+        way = self.factor[after] - self.factor[after - 1]
+        share = 0.0
+        if way != 0.0:
+            share = float(np.clip((factor - self.factor[after - 1]) / way, 0.0, 1.0))
+        start = self.x[after - 1] + share * (self.x[after] - self.x[after - 1])
+        return after, self._corrected(after, start, factor)
+
+    def _corrected(self, index: int, start: FloatArray, factor: float) -> FloatArray | None:
+        """Unknowns that solve the equations of a point at another factor; None where Newton's method finds none."""
+        # Inputs of one point that other points do not share, such as a history of friction, stay.
+        before = self.all_inputs[index] - self.factor[index] * self.change
+        curve = Curve(input_path(self.model, start, before, before + self.change), DETERMINANT, ArcSettings())
+        return curve.at(start, factor)
 
 
 def path_events(traced: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:
@@ -251,8 +306,12 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
             stable=bool(stable[index]),
         )
 
-    def event_solution(self, event: PathEvent) -> Solution:
-        """The equilibrium at an event, as that at a point, without its stability."""
+    def shape(self, index: int, x: FloatArray, factor: float) -> Solution:
+        """The equilibrium with unknowns of a point, or near them at another factor, without its stability."""
+        return self._solution(x, self.all_inputs[index] + (factor - self.factor[index]) * self.change)
+
+    def event_shape(self, event: PathEvent) -> Solution:
+        """The equilibrium at an event, without its stability."""
         return self._solution(event.x, self.inputs(event.factor))
 
     def _solution(self, x: FloatArray, inputs: FloatArray) -> Solution:

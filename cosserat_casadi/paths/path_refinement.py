@@ -1,4 +1,4 @@
-"""A path on a discretisation that is fine enough: refined until the events and the end stay where they are.
+"""A path on a discretisation that is fine enough: refined until the events and the shapes stay where they are.
 
 See docs/theory.md, section 12, "Modes".
 """
@@ -96,7 +96,7 @@ def follow(
     A model keeps its modes and nodes, or its steps. A scene is followed on modes and nodes, or steps, that meet its
     tolerance. Where the scene fixes modes or nodes they are used as they are, and no error is estimated. Else the path
     is followed with more and more modes until the factors of its events, relative, and the poses and lengths of cables
-    there and at both ends change by less than the tolerance; the last change is ``error_estimate``.
+    there, at both ends and between change by less than the tolerance; the last change is ``error_estimate``.
 
     An input begins at its value in ``values``; without one, of rods at zero, of concentric tubes at the scene's value.
 
@@ -183,6 +183,8 @@ def _follow_refined(
         if coarse is not None:
             change = path_distance(coarse, fine)
             if change <= accuracy.tolerance:
+                change = max(change, _distance_between_events(coarse, fine))
+            if change <= accuracy.tolerance:
                 return replace(fine, error_estimate=change + ROUNDING)
         coarse = fine
     if not fine.converged:
@@ -205,22 +207,38 @@ def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
         difference = abs(coarse_event.factor - fine_event.factor)
         scale = max(abs(fine_event.factor), SMALLEST_FACTOR)
         differences.append(difference / scale)
-    for coarse_solution, fine_solution in zip(_compared(coarse), _compared(fine), strict=True):
-        differences.append(pose_distance(coarse_solution, fine_solution))
-        differences.append(cable_distance(coarse_solution, fine_solution))
+    differences += [_distance(*pair) for pair in zip(_compared(coarse), _compared(fine), strict=True)]
     return max(differences)
+
+
+def _distance_between_events(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
+    """Largest such difference at some points between events; infinite where the finer path has no equilibrium near one.
+
+    A path may bend rods on its way more than at its ends: a heavy rod that is turned from hanging to standing is
+    straight at both.
+    """
+    differences = [0.0]
+    for index, near, x in coarse.between_events(fine):
+        if x is None:
+            return float("inf")
+        factor = float(coarse.factor[index])
+        differences.append(_distance(coarse.shape(index, coarse.x[index], factor), fine.shape(near, x, factor)))
+    return max(differences)
+
+
+def _distance(coarse: Solution, fine: Solution) -> float:
+    """Larger difference of two equilibria, of their poses and of the lengths of cables."""
+    return max(pose_distance(coarse, fine), cable_distance(coarse, fine))
 
 
 def _compared(path: EquilibriumPath) -> list[Solution]:
     """Equilibria at which paths are compared: the first one, those of the events, and that at factor 1 if there is."""
     if not len(path.factor):
         return []
-    solutions = [path.solution(0)]
-    solutions += [path.event_solution(event) for event in path.events]
     # A path that ends short of factor 1 has no end to compare.
-    if path.converged:
-        solutions.append(path.solution(len(path.factor) - 1))
-    return solutions
+    ends = (0, -1) if path.converged else (0,)
+    solutions = [path.shape(index, path.x[index], float(path.factor[index])) for index in ends]
+    return solutions + [path.event_shape(event) for event in path.events]
 
 
 def _largest_turn(path: EquilibriumPath) -> float:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -213,20 +212,12 @@ def _difference(rough: TubePath, fine: TubePath) -> float | None:
     for event, exact in zip(rough.events, fine.events, strict=True):
         errors += [abs(event.value - exact.value) / way, tip_error(event.solution, exact.solution)]
     # Tubes that are turned once round are as little twisted at the end as where they began, and more so between.
-    for index in _between_events(rough):
-        found = rough.solutions[index]
-        exact_there = solution_near(fine.model, found.inputs, found.x)
-        if not exact_there.converged:
+    for index, _, x in rough.between_events(fine):
+        if x is None:
             return None
-        errors.append(tip_error(found, exact_there))
+        found = rough.solutions[index]
+        errors.append(tip_error(found, solution_at(fine.model, found.inputs, x, found=True)))
     return float(max(errors))
-
-
-def _between_events(path: TubePath) -> list[int]:
-    """Indices of points at the quarters of each stretch of a path that has no event: far from where it turns."""
-    bounds = [0, *(event.position for event in path.events), len(path.factor)]
-    quarters = [np.linspace(first, behind - 1, 5)[1:-1].astype(int) for first, behind in pairwise(bounds)]
-    return [int(index) for index in np.unique(np.concatenate(quarters))]
 
 
 def _followed(
