@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
@@ -250,8 +252,26 @@ def test_a_path_that_ends_unloaded_is_known_where_it_begins() -> None:
     _assert_known(path, bent, start, index=0, sections=[1.0])
 
 
+FAR = {"name": "far", "kind": "plane", "point": [0, 0, -5], "normal": [0, 0, 1]}
+
+
+@pytest.mark.parametrize("obstacle", [{}, FAR])
+def test_a_path_that_is_straight_at_both_ends_is_known_between(obstacle: dict[str, object]) -> None:
+    """A heavy rod that is turned from hanging to standing, without obstacles or among such as it does not touch."""
+    beam = rod("planar", length=1.0, stiffness={"bending_y": 1.0}, linear_density=1.0)
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, 7.0]}
+    given = {"rods": [beam], "inputs": ["rod.base.quaternion"], "accuracy": {"tolerance": 1e-6}}
+    turned = scene(weight, **given, obstacles=[obstacle] if obstacle else [])
+    path = follow(turned, "rod.base.quaternion", [0, 0, 1, 0], {"rod.base.quaternion": [1, 0, 0, 0]})
+    assert not path.events
+    assert_allclose(path.tip().position[[0, -1]], [[0, 0, 1], [0, 0, -1]], rtol=0, atol=1e-12)
+    index = int(np.argmin(np.abs(path.factor - 0.74)))
+    there = {"rod.base.quaternion": path.value_at(path.factor[index])}
+    _assert_known(path, scene(weight, **given), there, index=index, sections=[1.0])
+
+
 def _assert_known(
-    path: EquilibriumPath, subject: Scene, values: dict[str, list[float]], *, index: int, sections: list[float]
+    path: EquilibriumPath, subject: Scene, values: Mapping[str, npt.ArrayLike], *, index: int, sections: list[float]
 ) -> None:
     """Sections at a point of a path are as near as told to those on far more modes, and within the tolerance."""
     truth = solve(build(subject, discretise(subject, 24, 48, "magnus8")), values).pose(sections)
