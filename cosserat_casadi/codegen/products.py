@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
+
+import casadi as ca
 
 ROWS_AT_ONCE = 16
 """Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
@@ -36,23 +39,26 @@ TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) &&
 """Macros that make a routine of its sums, for any processor and for the wider vectors of newer processors."""
 
 SPARSE = """SUMS product_sparse{alone}_{rows}_sums(const casadi_real* x,
-    const casadi_real* y, const int* colind, int columns, casadi_real* z) {{
-  const int *row = colind + columns + 1;
-  int c, k, r;
-  for (c = 0; c < columns; ++c, z += {rows}) {{
-    const int begin = colind[c], end = colind[c + 1];
+    const casadi_real* y, const int* groups, int count, casadi_real* z) {{
+  int c, k, r, turn;
+  for (c = 0; c < count; ++c) {{
+    const int inner = groups[0], turns = groups[1], step = {rows} * groups[2], *row = groups + 3;
+    for (turn = 0; turn < turns; ++turn, y += inner, z += {rows}) {{
+      const casadi_real *from = x + turn * step;
 {sums}
+    }}
+    groups = row + inner;
   }}
 }}
 PRODUCT(product_sparse{alone}_{rows}, (const casadi_real* x, const casadi_real* y,
-    const int* colind, int columns, casadi_real* z), (x, y, colind, columns, z))
+    const int* groups, int count, casadi_real* z), (x, y, groups, count, z))
 """
 
 DENSE = """SUMS product_dense{alone}_{rows}_sums(const casadi_real* x, int inner,
     const casadi_real* y, int columns, casadi_real* z) {{
   int c, k, r;
   for (c = 0; c < columns; ++c, y += inner, z += {rows}) {{
-    const int begin = 0, end = inner;
+    const casadi_real *from = x;
 {sums}
   }}
 }}
@@ -62,8 +68,8 @@ PRODUCT(product_dense{alone}_{rows}, (const casadi_real* x, int inner, const cas
 
 BUNCHES = """    for (r = {first}; r < {last}; r += {count}) {{
       casadi_real {begun};
-      for (k = begin; k < end; ++k) {{
-        const casadi_real f = y[k], *s = x + {column} * {rows} + r;
+      for (k = 0; k < inner; ++k) {{
+        const casadi_real f = y[k], *s = from + {column} * {rows} + r;
         {added}
       }}
       {stored}
@@ -76,7 +82,8 @@ class Product:
 
     Attributes:
         rows: of X.
-        dense: whether Y is dense; else it is stored column by column, with a table of its entries.
+        dense: whether Y is dense; else it is stored column by column, with a table of its entries
+            (:func:`column_groups`).
         alone: whether it is the result itself; else it is added to the numbers of the result.
     """
 
@@ -103,6 +110,29 @@ def product_routines(products: Iterable[Product]) -> str:
     """The routines of these products; nothing where there are none."""
     wanted = sorted(set(products))
     return TWICE + "".join(product.text for product in wanted) if wanted else ""
+
+
+def column_groups(pattern: ca.Sparsity) -> list[list[int]]:
+    """Columns of a sparse matrix in groups that follow on each other, as the routines of products read them.
+
+    Each group is the number of entries of a column, the number of columns, how many rows down each column has its
+    entries from the one before, and the rows of the first column.
+    """
+    rows = pattern.row()
+    groups: list[list[int]] = []
+    before: list[int] = []
+    for begin, end in pairwise(pattern.colind()):
+        column = rows[begin:end]
+        steps = {b - a for a, b in zip(before, column, strict=True)} if len(before) == len(column) else set()
+        step = steps.pop() if steps else 0
+        alike = bool(groups) and len(before) == len(column) and not steps
+        if alike and (groups[-1][1] == 1 or groups[-1][2] == step):
+            groups[-1][1] += 1
+            groups[-1][2] = step
+        else:
+            groups.append([len(column), 1, 0, *column])
+        before = column
+    return groups
 
 
 def _sums(rows: int, column: str, alone: bool) -> str:

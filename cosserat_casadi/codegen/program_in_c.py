@@ -22,7 +22,7 @@ from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.codegen.numbered import SMALL, Numbers, Program, Step
 from cosserat_casadi.codegen.printed_kernels import Callee, ConstantTable, PrintedKernel
-from cosserat_casadi.codegen.products import Product
+from cosserat_casadi.codegen.products import Product, column_groups
 from cosserat_casadi.codegen.scalars_in_c import callee, scalars_in_c
 from cosserat_casadi.codegen.statements import (
     FEWEST,
@@ -424,12 +424,13 @@ class _Writing:
             dense = right.pattern.is_dense()
             product = Product(rows, dense, not start)
             self.products[product] = None
-            columns = right.pattern.size2()
             if dense:
+                columns = right.pattern.size2()
                 self.lines.append(f"  {product.name}({x}, {inner}, {y}, {columns}, w + {first});")
                 return
-            table = self.tables.of_integers(np.array([*right.pattern.colind(), *right.pattern.row()]))
-            self.lines.append(f"  {product.name}({x}, {y}, {table}, {columns}, w + {first});")
+            groups = column_groups(right.pattern)
+            table = self.tables.of_integers(np.concatenate(groups))
+            self.lines.append(f"  {product.name}({x}, {y}, {table}, {len(groups)}, w + {first});")
             return
         if not start:
             self.lines.append(f"  program_clear(w + {first}, {count});")

@@ -23,6 +23,9 @@ BUDGETS = {
 MOST_BY_ESTIMATE = {"planar_strip": 43_000, "nitinol_wire": 121_000, "follower_reissner": 138_000}
 """Bytes that the estimate of errors adds, where they are held: the balance of a rod with modes and intervals added."""
 
+MOST_WITH_MOTION = 1_475_000
+"""Bytes of the library of dropped_rod with its motion and with the estimate of errors."""
+
 
 def bytes_of_c(files: Mapping[str, str]) -> int:
     wanted = {file: text for file, text in files.items() if file.endswith((".c", ".h")) and "_demo" not in file}
@@ -37,3 +40,9 @@ def test_bytes_of_c_of_examples(name: str) -> None:
     assert without <= BUDGETS[name]
     if name in MOST_BY_ESTIMATE:
         assert bytes_of_c(folder_files(solution.model, "sized")) - without <= MOST_BY_ESTIMATE[name]
+
+
+@pytest.mark.slow
+def test_bytes_of_c_with_motion() -> None:
+    solution = solve(read_scene(ROOT / "examples" / "dropped_rod.toml"))
+    assert bytes_of_c(folder_files(solution.model, "sized", dynamics=True)) <= MOST_WITH_MOTION

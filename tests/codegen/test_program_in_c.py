@@ -14,7 +14,7 @@ from cosserat_casadi import Model, build, discretise, scene_from_dict
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.numbered import function_of
-from cosserat_casadi.codegen.products import Product
+from cosserat_casadi.codegen.products import Product, column_groups
 from cosserat_casadi.codegen.program_in_c import ConstantTables, program_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from tests.families import mostly_slow
@@ -247,6 +247,29 @@ def test_products_of_sparse_matrices() -> None:
     function = ca.Function("sparse", [x, y, z], [ca.mtimes(x, y), ca.mtimes(x, z)])
     texts, compiled = in_c(function, "sparse_in_c")
     assert texts["sparse_in_c.c"].count("  program_sparse(") == 2
+    assert_same(compiled, function, 1e-14)
+
+
+def test_columns_of_sparse_matrices_are_read_in_groups() -> None:
+    """Columns with equal rows, rows that move down or up by equal steps, no rows, and columns alone."""
+    of_columns = [[0, 4], [2, 6], [4, 8], [7, 9], [5, 7], [3, 5], [], [], [1, 2, 9], [1, 2, 9], [1, 9], [0, 9], [3]]
+    entries = [(row, column) for column, rows in enumerate(of_columns) for row in rows]
+    pattern = ca.Sparsity.triplet(10, len(of_columns), *map(list, zip(*entries, strict=True)))
+    assert column_groups(pattern) == [
+        [2, 3, 2, 0, 4],
+        [2, 3, -2, 7, 9],
+        [0, 2, 0],
+        [3, 2, 0, 1, 2, 9],
+        [2, 1, 0, 1, 9],
+        [2, 1, 0, 0, 9],
+        [1, 1, 0, 3],
+    ]
+    x, y = ca.MX.sym("x", 21, 10), ca.MX.sym("y", pattern)
+    z = ca.MX.sym("z", 21, len(of_columns))
+    function = ca.Function("grouped", [x, y, z], [x @ y, ca.mac(x, y, z)])
+    texts, compiled = in_c(function, "grouped_in_c")
+    calls = [f"  {Product(21, False, alone).name}(" for alone in (False, True)]
+    assert all(texts["grouped_in_c.c"].count(call) == 1 for call in calls)
     assert_same(compiled, function, 1e-14)
 
 
