@@ -9,16 +9,14 @@ from collections.abc import Iterable
 def closest(word: str, known: Iterable[str]) -> str:
     """A remedy for an unknown word: the known one that it looks like, or all that are known."""
     words = list(known)
-    close = close_matches(word, words)
-    if close:
-        return f"did you mean '{close[0]}'?"
-    return f"known: {', '.join(words[:30])}"
+    return likely_meant(word, words) or f"known: {', '.join(words[:30])}"
 
 
-def close_matches(word: str, known: Iterable[str]) -> list[str]:
-    """The known word that looks most like another; empty where none does."""
+def likely_meant(word: str, known: Iterable[str]) -> str:
+    """A remedy that names the known word which looks most like an unknown one; empty where none does."""
     # difflib takes time with the square of the length.
-    return difflib.get_close_matches(word[:40], known, n=1)
+    close = difflib.get_close_matches(word[:40], known, n=1)
+    return f"did you mean '{close[0]}'?" if close else ""
 
 
 def counted(count: int, noun: str) -> str:

@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, core_schema
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.records import Record, refusal, restated
-from cosserat_casadi.spelling import close_matches
+from cosserat_casadi.spelling import likely_meant
 
 Member = TypeVar("Member", bound=Record)
 
@@ -96,8 +96,7 @@ class Family(Generic[Member]):
         if isinstance(word, str) and word in self.records:
             return word
         choices = ", ".join(repr(known) for known in self.records)
-        close = close_matches(word, self.records) if isinstance(word, str) else []
-        remedy = f"did you mean '{close[0]}'?" if close else ""
+        remedy = likely_meant(word, self.records) if isinstance(word, str) else ""
         fault = Fault((self.key,), f"must be one of {choices}, got {shown(word)}", remedy)
         if word is None:
             fault = Fault((self.key,), "missing", f"one of {choices}")

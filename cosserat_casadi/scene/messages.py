@@ -16,7 +16,7 @@ from cosserat_casadi.scene.faults import Fault, Path, printable, shortened, show
 from cosserat_casadi.scene.overrides import Assignment
 from cosserat_casadi.scene.records import REFUSED, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
-from cosserat_casadi.spelling import close_matches, closest
+from cosserat_casadi.spelling import closest, likely_meant
 
 WANTED = {
     "finite_number": "finite",
@@ -133,9 +133,9 @@ def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) 
     word = details["input"]
     if kind == "literal_error" and isinstance(word, str):
         known = re.findall(r"'([^']*)'", details["ctx"]["expected"])
-        close = close_matches(word, known)
-        if close:
-            return f"did you mean '{close[0]}'?"
+        remedy = likely_meant(word, known)
+        if remedy:
+            return remedy
     return _description(path, record)
 
 

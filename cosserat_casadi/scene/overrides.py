@@ -11,7 +11,7 @@ from typing import Any
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.scene.faults import Path, printable, shown
 from cosserat_casadi.scene.toml import keys_are_too_deep
-from cosserat_casadi.spelling import close_matches
+from cosserat_casadi.spelling import likely_meant
 
 NAMED_LISTS = (
     "obstacles",
@@ -150,10 +150,8 @@ def _segments(key: str) -> list[str]:
 
 def _known_names(word: str, lists: Mapping[str, str], known: Sequence[str]) -> str:
     """A remedy for an unknown first word of a key: the name that it looks like, or the names of the scene's entries."""
-    close = close_matches(word, [*lists, *known])
-    if close:
-        return f"did you mean '{close[0]}'?"
-    return f"the scene has {', '.join([*lists][:MOST_NAMES])}, and tables such as accuracy.tolerance"
+    names = f"the scene has {', '.join([*lists][:MOST_NAMES])}, and tables such as accuracy.tolerance"
+    return likely_meant(word, [*lists, *known]) or names
 
 
 def _lists_by_name(tables: Mapping[str, Any]) -> dict[str, str]:
