@@ -79,11 +79,14 @@ thickness = 0.002
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """One of count and abscissae, which ascend."""
+        """One of count and abscissae, which ascend and are not too many."""
         if ("count" in given) == ("at" in given):
             problem = "stands beside at" if "at" in given else "missing"
             yield Fault(("count",), problem, "give count or at")
-        for i, (before, at) in enumerate(itertools.pairwise(numbers_of(given.get("at"))), 1):
+        places = numbers_of(given.get("at"))
+        if len(places) > MOST_DISKS:
+            yield Fault(("at",), f"must have at most {MOST_DISKS} entries, got {len(places)}")
+        for i, (before, at) in enumerate(itertools.pairwise(places), 1):
             if not at > before:
                 yield Fault(("at", i), f"must be > {shown(before)}, the place before it, got {shown(at)}")
 

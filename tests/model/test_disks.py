@@ -154,3 +154,5 @@ def test_refusals(changes: dict[str, Any], where: str, problem: str) -> None:
 def test_a_row_of_absurdly_many_disks_is_refused() -> None:
     with pytest.raises(SceneError, match=r"disks\[0\]\.count: must be <= 1000, got 1000000"):
         scene(_counted(1000000))
+    with pytest.raises(SceneError, match=r"disks\[0\]\.at: must have at most 1000 entries, got 1001"):
+        scene({**ROW, "at": np.linspace(0.1, 1.0, 1001).tolist()})
