@@ -110,6 +110,9 @@ MOST_RUNGS = 3
 ORDER_OF_WAVES = 2.3
 """Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
+BLOWS = ("impact", "stop_hit")
+"""Kinds of events that are blows, whatever energy they take."""
+
 MOST_IMPACTS = 1000
 """Number of foreseen impacts beyond which no more modes are tried: so many take minutes."""
 
@@ -619,8 +622,8 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
 
 
 def _has_blows(history: History) -> bool:
-    """Whether a motion has impacts, also such as take no energy, or cables that snapped taut."""
-    return history.lost > 0.0 or is_struck(history)
+    """Whether a motion has blows of contacts, stops or cables; elastic ones of contacts and stops take no energy."""
+    return history.lost > 0.0 or any(event.kind in BLOWS for event in history.events)
 
 
 def _judged(search: _Search, level: ResolvedMotion, error: float, companions: Sequence[Companion | None]) -> Motion:

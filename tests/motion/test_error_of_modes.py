@@ -54,6 +54,15 @@ def test_orders_beyond_belief_are_bounded() -> None:
     assert search((6, 9, 12), 5.0, lost=1e-3).order == UNKNOWN_ORDER
 
 
+@pytest.mark.parametrize("kind", ["impact", "stop_hit"])
+def test_blows_that_take_no_energy_bound_the_order(kind: str) -> None:
+    """The energies of elastic blows are rounding, of either sign."""
+    struck = search((6, 9, 12), 5.0, lost=-1e-18)
+    assert_allclose(struck.order, 5.0, rtol=0, atol=0.05)
+    struck.last.history.events = [SimpleNamespace(kind=kind)]
+    assert struck.order == UNKNOWN_ORDER
+
+
 def test_waves_that_modes_do_not_see_yet_end_no_search() -> None:
     """Errors of short waves hardly fall at first, and then with the fourth power: a search goes on if that would do."""
     stagnant = search((9, 12, 16), 0.7, tolerance=0.01)
