@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,16 @@ from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion import simulate as motion_simulate
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion
-from cosserat_casadi.motion.simulate import LEAST_SLOPE, LEAST_TIGHTENING, TIGHTER, Simulator, TimedHistory, started
+from cosserat_casadi.motion.simulate import (
+    LEAST_SLOPE,
+    LEAST_SLOPE_AFTER_IMPACTS,
+    LEAST_TIGHTENING,
+    TIGHTER,
+    Simulator,
+    TimedHistory,
+    left_by,
+    started,
+)
 from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.numerics.integration import StepOutcome
 from tests.families import mostly_slow
@@ -136,6 +146,18 @@ def test_a_motion_that_does_not_end_ends_the_search(
 ) -> None:
     monkeypatch.setattr(type(coarse), "completed", False)
     assert np.isnan(simulator.tightened(coarse, STEP_TOLERANCE, 1.0).error)
+
+
+@pytest.mark.parametrize(
+    ("slope", "struck"), [(LEAST_SLOPE, ()), (LEAST_SLOPE_AFTER_IMPACTS, (0,)), (LEAST_SLOPE_AFTER_IMPACTS, (1,))]
+)
+def test_two_motions_tell_the_error_of_the_finer_one(slope: float, struck: Sequence[int]) -> None:
+    """Of errors that go as a power of the tolerance, whichever of the motions has impacts."""
+    impact = SimpleNamespace(kind="impact")
+    statistics = SimpleNamespace(steps=10**9)
+    finer, coarser = (SimpleNamespace(events=[impact] * (k in struck), statistics=statistics) for k in range(2))
+    errors = np.array([1e-4, 1e-3]) ** slope
+    assert_allclose(left_by(10.0, finer, coarser) * (errors[1] - errors[0]), errors[0], rtol=1e-6, atol=0)
 
 
 def test_where_more_exact_steps_end_early_the_last_whole_motion_and_its_error_are_kept(

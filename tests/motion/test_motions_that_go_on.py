@@ -16,7 +16,7 @@ from cosserat_casadi.motion.checkpoint import Checkpoint, EnergyAccount, Resume,
 from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, told_by_modes
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_start import resumed_start
-from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.simulate import HALVED, Simulator, started
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
 from tests.families import mostly_slow
@@ -182,3 +182,17 @@ def test_blows_count_in_the_error_of_a_motion_that_goes_on_to_them() -> None:
     assert_allclose(modes, SAFETY, rtol=1e-12, atol=0)
     assert_allclose(factors[1], told_by_modes(2, 2 + FINER_MODES, UNKNOWN_ORDER), rtol=1e-12, atol=0)
     assert first.error_estimate < second.error_estimate
+    # A motion without a break has the same factor for the error of its modes.
+    whole = moved(tables)
+    assert whole.end is not None
+    assert_allclose(whole.end.strands[-1].factor, factors[1], rtol=1e-12, atol=0)
+
+
+def test_steps_of_given_size_keep_their_factor_after_blows() -> None:
+    """The second motion has half of the steps, whatever tolerance both were computed with."""
+    tables = {**swing(0.125), "motions": [], "obstacles": [BLOCK]}
+    first = moved({**tables, "simulation": {**tables["simulation"], "duration": 0.0625}})
+    second = moved(tables, first)
+    assert any(event.kind == "impact" for event in second.events)
+    assert first.end is not None and second.end is not None
+    assert second.end.strands[1].factor == first.end.strands[1].factor == HALVED
