@@ -91,11 +91,13 @@ def test_float_program_of_random_loads_vs_double(library: Library) -> None:
 def test_estimates_in_float_count_rounding(export_recipe: ExportRecipe) -> None:
     """Of modes that leave less than float does: no answer is farther from that in double than it says."""
     made = export_recipe("fine", Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar"), 7, 8))
-    cases = made.loads(200, 24, 1.0)
+    cases = made.loads(200, 26, 4.0)
     statuses, errors, q = batch(made.program("batch.c", *QUICK, "-DFINE_SINGLE"), cases)
     converged = statuses == 0
     assert np.count_nonzero(converged) >= 190
-    assert np.median(errors[converged]) < 2e-4
+    least = 3e-5 * (1.0 + np.linalg.norm(q[converged], axis=1))
+    assert np.all(errors[converged] >= 0.999 * least)
+    assert np.median(errors[converged]) < 1e-4
     for inputs, error, unknowns in zip(cases[converged], errors[converged], q[converged], strict=True):
         off = made.tips(unknowns, inputs) - made.tips(made.compiled.solve(inputs).x, inputs)
         assert np.linalg.norm(off) <= error * made.length, inputs
