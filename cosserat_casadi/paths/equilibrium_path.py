@@ -25,7 +25,7 @@ from cosserat_casadi.result import Result
 
 
 class AlongPath(Protocol):
-    """What lies between two points of a path."""
+    """An event, or anything else, that lies between two points of a path."""
 
     @property
     def position(self) -> int:
@@ -147,11 +147,11 @@ class InputPath(Result, Generic[ModelType, EventType]):
         return [range(first, behind) for first, behind in itertools.pairwise(bounds)]
 
     def between_events(self, finer: Self) -> Iterator[tuple[int, int, FloatArray | None]]:
-        """Compare this path with a finer one that has the same events, at the quarters of each stretch between them.
+        """Find equilibria of a finer path with the same events at quarters of each stretch between events of this one.
 
         Yields:
-            index of a point of this path, which is not beside an event; index of a point near it on the finer path;
-            unknowns of the finer path at the factor of the first, None where Newton's method finds none.
+            index of a point of this path that is not beside an event; index of a point near it on the finer path;
+            unknowns of the finer path at the factor of the first, None where Newton's method does not converge.
         """
         for stretch, finer_stretch in zip(self.stretches, finer.stretches, strict=True):
             quarters = np.linspace(stretch.start, stretch.stop - 1, 5)[1:-1].astype(int)
