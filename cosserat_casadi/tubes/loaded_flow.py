@@ -10,7 +10,7 @@ Robot. 26 (2010) 769). These are Hamilton's equations of
 Each of its parts alone is solved in closed form. The torques turn the tubes. The moment turns the frame about itself,
 and back about the tangent. The pre-curvature turns the frame about a fixed axis, and changes the torques. The tangent
 moves the position, and changes the moment by the lever of n. Their symmetric product is a step of order two that is
-symplectic and keeps rotations; `maths.composition` makes one of order eight of it. See docs/tubes.md.
+symplectic and keeps rotations; `tubes.stages` makes one of order eight of it. See docs/tubes.md.
 """
 
 from __future__ import annotations

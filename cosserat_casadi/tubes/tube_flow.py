@@ -12,7 +12,7 @@ R. J. Webster, G. S. Chirikjian, Int. J. Robot. Res. 29 (2010) 1263).
 
 Where the torques alone drive the angles, or the angles alone the torques and the frame, the equations are solved in
 closed form. Half a step of one, a step of the other, half a step of the first is a symmetric, symplectic step of order
-two; `maths.composition` makes one of order eight of it. See docs/tubes.md.
+two; `tubes.stages` makes one of order eight of it. See docs/tubes.md.
 """
 
 from __future__ import annotations
