@@ -73,6 +73,24 @@ def root(missed: object, guess: list[float]) -> np.ndarray:
     return np.asarray(found)
 
 
+def test_a_coarser_path_finds_its_points_on_a_finer_one(lowered: ContactPath) -> None:
+    """In every arrangement of contacts, at the factors of the coarser path: solves for themselves find the same."""
+    coarse = followed(TABLE, "weight.acceleration", [0, 0, -9.81], 6)
+    arrangements = {}
+    for index, near, x in coarse.between_events(lowered):
+        assert x is not None
+        factor = float(coarse.factor[index])
+        shape = lowered.shape(near, x, factor)
+        rough = coarse.shape(index, coarse.x[index], factor)
+        assert_allclose(shape.tip().position, rough.tip().position, rtol=0, atol=1e-3)
+        assert lowered.arrangement[near] == coarse.arrangement[index]
+        arrangements[coarse.arrangement[index]] = factor, shape
+    assert sorted(arrangements) == [0, 1, 2]
+    for factor, shape in arrangements.values():
+        alone = solve(lowered.model, {"weight.acceleration": [0, 0, -9.81 * factor]})
+        assert_allclose(shape.tip().position, alone.tip().position, rtol=0, atol=1e-9)
+
+
 @pytest.mark.slow
 def test_a_rod_comes_to_lie_on_a_table(lowered: ContactPath) -> None:
     """The tip touches; it carries more and more, until it lies level: from there on a line grows."""

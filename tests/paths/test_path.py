@@ -260,7 +260,7 @@ def test_a_path_that_is_straight_at_both_ends_is_known_between(obstacle: dict[st
     """A heavy rod that is turned from hanging to standing, without obstacles or among such as it does not touch."""
     beam = rod("planar", length=1.0, stiffness={"bending_y": 1.0}, linear_density=1.0)
     weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, 7.0]}
-    given = {"rods": [beam], "inputs": ["rod.base.quaternion"], "accuracy": {"tolerance": 1e-6}}
+    given: dict[str, Any] = {"rods": [beam], "inputs": ["rod.base.quaternion"], "accuracy": {"tolerance": 1e-6}}
     turned = scene(weight, **given, obstacles=[obstacle] if obstacle else [])
     path = follow(turned, "rod.base.quaternion", [0, 0, 1, 0], {"rod.base.quaternion": [1, 0, 0, 0]})
     assert not path.events
