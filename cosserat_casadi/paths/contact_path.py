@@ -86,7 +86,7 @@ class ContactPath(EquilibriumPath):
 
     def shape(self, index: int, x: FloatArray, factor: float) -> Solution:
         """The equilibrium with unknowns, forces and places of a point, or near them at another factor, not judged."""
-        return self.arrangements[self.arrangement[index]].equilibrium_at(x, float(factor)).solution
+        return self.arrangements[int(self.arrangement[index])].equilibrium_at(x, float(factor)).solution
 
     def event_shape(self, event: PathEvent) -> Solution:
         """The equilibrium at an event with its contacts, not judged."""
