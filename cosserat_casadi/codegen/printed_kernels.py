@@ -129,6 +129,7 @@ class PrintedKernel:
         is_program: whether it is a function of matrices, in loops.
         products: products of matrices whose routines it calls.
         kernels: kernels that it calls.
+        places: of its results in the array, where it leaves them there for the kernels that call it.
     """
 
     signature: ca.Function
@@ -142,6 +143,7 @@ class PrintedKernel:
     is_program: bool = False
     products: tuple[Product, ...] = ()
     kernels: tuple[PrintedKernel, ...] = ()
+    places: tuple[int, ...] = ()
 
     def name(self) -> str:
         """Its name in C."""

@@ -66,6 +66,22 @@ def scalars_in_c(
     return _Writing(Listing(function), signature, None, arithmetic, kernels or {}).result()
 
 
+def shared_in_c(function: ca.Function, earlier: Sequence[PrintedKernel], first: int) -> PrintedKernel:
+    """A kernel as C whose results stay in the array that it works in, which is that of the kernels that call it.
+
+    Args:
+        function: the function, of scalars and with one result.
+        earlier: kernels of this kind that are called before; their results are its last arguments.
+        first: where its numbers begin in the array.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form here.
+    """
+    writing = _Writing(Listing(function), function, None, SINGLE, {}, first)
+    writing.inherit(function.n_in() - len(earlier), earlier)
+    return writing.result()
+
+
 def with_calls_in_fours(kernel: ca.Function) -> Kernel:
     """A kernel of which calls of one function are made together; itself where it has none, or no form here."""
     if not kernel.is_a("SXFunction") or not kernel.find_functions(0):
@@ -135,16 +151,19 @@ class _Writing:
         form: ColumnForm | None,
         arithmetic: Arithmetic,
         kernels: Mapping[int, PrintedKernel],
+        first_of_shared: int | None = None,
     ) -> None:
         self.arithmetic = arithmetic
         self.listing = listing
         self.name: str = signature.name()
         self.signature = signature
         self.form = form
-        self.reals = 0
-        self.place: dict[int, int] = {}
         self.callee_names = listing.names_of_callees("")
         self.kernels = {hash(call.function): kernels.get(hash(call.function)) for call in listing.calls}
+        self.is_shared = first_of_shared is not None
+        called = [kernel.reals for kernel in self.kernels.values() if kernel is not None]
+        self.reals = max(called, default=first_of_shared or 0)
+        self.place: dict[int, int] = {}
         self.in_column = self._in_column()
         self.batch_of = self._batches()
         # What is given to calls is read before the next ones are given anything.
@@ -162,6 +181,13 @@ class _Writing:
         self.callees: dict[str, Callee] = {}
         self.statements = 0
 
+    def inherit(self, argument: int, kernels: Sequence[PrintedKernel]) -> None:
+        """Read arguments, from a number on, where these kernels leave them."""
+        for number, value in enumerate(self.listing.values):
+            if isinstance(value, Read) and value.argument >= argument:
+                self.place[number] = kernels[value.argument - argument].places[value.entry]
+                self.done.add(number)
+
     def result(self) -> PrintedKernel:
         """The kernel."""
         tables = {}
@@ -173,7 +199,10 @@ class _Writing:
                 numbers = tuple(f"{value:.17g}" for value in in_groups(self.form.turns))
                 tables["turns"] = ConstantTable("casadi_real", numbers)
             self._write_columns(self.form)
-        self._write_results()
+        if self.is_shared:
+            self._keep_results()
+        else:
+            self._write_results()
         self._write_main()
         body = "\n".join(self.functions)
         return PrintedKernel(
@@ -185,6 +214,7 @@ class _Writing:
             self.statements,
             columns=self.column_functions,
             kernels=tuple(kernel for kernel in self.kernels.values() if kernel is not None),
+            places=self._places_of_results() if self.is_shared else (),
         )
 
     def _write_main(self) -> None:
@@ -192,11 +222,15 @@ class _Writing:
         given = "const casadi_real **arg, casadi_real **res, casadi_real *w"
         # What one of them passes on to others stands behind all else.
         first = self.reals
-        parts, passed = in_parts(self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{first + place}] = {{0}};")
+        parts, passed = in_parts(
+            self.main.statements, LONGEST_OF_NUMBERS, lambda place: f"w[{first + place}] = {{0}};", self.place
+        )
         self._room(passed)
         lines = []
         for k, part in enumerate(parts):
             elsewhere = {value: first + place for value, place in part.passed.items()}
+            made = {statement.made for statement in part.statements}
+            elsewhere |= {value: place for value, place in self.place.items() if value not in made}
             block = Block(self.main.type, self.main.letter, part.statements)
             lines = block.lines(partial(self._text_in_part, elsewhere))
             self.statements += len(part.statements)
@@ -243,10 +277,14 @@ class _Writing:
         batches: dict[int, _Batch] = {}
         for calls in groups.values():
             call = self.listing.calls[calls[0]]
-            width = LANES if self._are_made_together(len(calls)) and self._kernel(calls) is None else 1
+            kernel = self._kernel(calls)
+            width = LANES if self._are_made_together(len(calls)) and kernel is None else 1
             batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
-            self._room(width * batch.turns * batch.results)
             batches |= dict.fromkeys(calls, batch)
+            if kernel is not None:
+                self.place |= zip(call.results, kernel.places, strict=True)
+                continue
+            self._room(width * batch.turns * batch.results)
             self._place_results(batch)
         return batches
 
@@ -303,7 +341,7 @@ class _Writing:
             return self.listing.operands(number)
         batch = self.batch_of[value.call]
         if self._kernel(batch.calls) is not None:
-            # It reads arguments where they are.
+            # It reads the arguments of this kernel.
             operands = self.listing.calls[value.call].operands
             return [operand for operand in operands if isinstance(self.listing.values[operand], Called)]
         return [operand for call in batch.calls for operand in self.listing.calls[call].operands]
@@ -328,29 +366,11 @@ class _Writing:
         """The kernel that calls of one function are of, if any."""
         return self.kernels[hash(self.listing.calls[calls[0]].function)]
 
-    def _append_call_of_kernel(self, batch: _Batch, kernel: PrintedKernel) -> None:
-        """Append a call that is given whole arguments, and all that kernels before have handed over."""
-        call = self.listing.calls[batch.calls[0]]
-        given = []
-        first = 0
-        for i in range(call.function.n_in()):
-            begin = self.listing.values[call.operands[first]] if call.function.nnz_in(i) else None
-            first += call.function.nnz_in(i)
-            if isinstance(begin, Called):
-                given.append(f"w + {self.batch_of[begin.call].made}")
-            else:
-                given.append(f"arg[{begin.argument}]" if isinstance(begin, Read) else "w")
-        lines = [
-            f"{{{{ const casadi_real *given[] = {{{{{', '.join(given)}}}}};",
-            f"casadi_real *made[] = {{{{w + {batch.made}}}}};",
-            f"MADE({kernel.name()})(given, made, w + {self._room(kernel.reals)}); }}}}",
-        ]
-        self.main.statements.append(Statement("\n    ".join(lines), []))
-
     def _append_calls(self, batch: _Batch) -> None:
         kernel = self._kernel(batch.calls)
         if kernel is not None:
-            self._append_call_of_kernel(batch, kernel)
+            # It works in the same array, in which kernels before have left what it reads.
+            self.main.statements.append(Statement(f"MADE({kernel.name()})(arg, res, w);", []))
             return
         for k in range(batch.width * batch.turns):
             turn, lane = divmod(k, batch.width)
@@ -376,6 +396,21 @@ class _Writing:
                     self.main.statements.append(Statement(f"{asked}{place} = {{0}};", [entries[entry]]))
                 else:
                     self.main.statements.append(Statement(f"{asked}{place} = {self.arithmetic.number(0.0)};", []))
+
+    def _keep_results(self) -> None:
+        """Append the entries of the one result, each in a place of its own."""
+        kept = self.listing.outputs[0].values()
+        for number in kept:
+            if number not in self.place:
+                self.place[number] = self._room(1)
+        for number in kept:
+            self._compute(number)
+            if self._is_constant(number):
+                self.main.statements.append(Statement(f"w[{self.place[number]}] = {{0}};", [number]))
+
+    def _places_of_results(self) -> tuple[int, ...]:
+        entries = self.listing.outputs[0]
+        return tuple(self.place[entries[entry]] for entry in range(len(entries)))
 
     def _is_of_all_columns(self, number: int) -> bool:
         value = self.listing.values[number]

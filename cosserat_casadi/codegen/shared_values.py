@@ -15,7 +15,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.listing import Called, Computed, Constant, Listing, Read
 from cosserat_casadi.codegen.printed_kernels import PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
+from cosserat_casadi.codegen.scalars_in_c import scalars_in_c, shared_in_c
 from cosserat_casadi.codegen.streams import call_of_entries
 
 FEWEST_SHARED = 100
@@ -59,12 +59,13 @@ class _Sharing:
         self._homes = self._homes_of_values()
         self._handed_over = self._read_elsewhere()
         self._kernels: dict[int, ca.Function] = {}
+        self._printed: dict[int, PrintedKernel] = {}
 
     def printed(self) -> list[PrintedKernel]:
         """The functions, which call the kernels."""
         for home in sorted(self._handed_over, key=lambda home: (-home.bit_count(), home)):
             self._add_kernel(home)
-        kernels = {hash(kernel): scalars_in_c(kernel, kernel) for kernel in self._kernels.values()}
+        kernels = {hash(kernel): self._printed[home] for home, kernel in self._kernels.items()}
         functions = [self._function(i) for i in range(len(self._functions))]
         return [scalars_in_c(function, function, kernels=kernels) for function in functions]
 
@@ -115,7 +116,11 @@ class _Sharing:
         words = [f"given_{i}" for i in range(len(arguments))]
         results = [ca.vertcat(*[expressions[number] for number in wanted])]
         name = f"{self._name}_{len(self._kernels)}"
-        self._kernels[home] = ca.Function(name, arguments, results, words, ["shared"], {"never_inline": True})
+        kernel = ca.Function(name, arguments, results, words, ["shared"], {"never_inline": True})
+        earlier = [self._printed[other] for other in self._larger(home)]
+        first = max((printed.reals for printed in self._printed.values()), default=0)
+        self._printed[home] = shared_in_c(kernel, earlier, first)
+        self._kernels[home] = kernel
 
     def _larger(self, users: int) -> list[int]:
         """The kernels of sets that hold this one, in the order in which they are called."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, isfinite
 
 import casadi as ca
@@ -223,7 +224,7 @@ def computations(listing: Listing, arithmetic: Arithmetic) -> list[Statement]:
 
 
 def in_parts(
-    statements: Sequence[Statement], longest: int, store: Callable[[int], str]
+    statements: Sequence[Statement], longest: int, store: Callable[[int], str], stored: Container[int] = ()
 ) -> tuple[list[StatementPart], int]:
     """Statements in parts, each a function.
 
@@ -231,6 +232,7 @@ def in_parts(
         statements: the statements.
         longest: most of them in a part.
         store: place of a value that is passed on ↦ text of the statement that stores it.
+        stored: values that a statement behind that of the value stores, whose places are known.
 
     Returns:
         the parts, with statements that store the values that other parts read, and the number of these values.
@@ -238,14 +240,18 @@ def in_parts(
     count = max(-(-len(statements) // longest), 1)
     # A Jacobian that reads no columns has no statements for them.
     size = max(-(-len(statements) // count), 1)
-    parts = [statements[first : first + size] for first in range(0, len(statements), size)]
+    parts = [list(statements[first : first + size]) for first in range(0, len(statements), size)]
+    for part, following in pairwise(parts):
+        if following[0].made is None:
+            # It stores what the last statement computes.
+            part.append(following.pop(0))
     passed: dict[int, int] = {}
     before: set[int] = set()
     for part in parts:
         own = {statement.made for statement in part if statement.made is not None}
         for statement in part:
             for operand in statement.operands:
-                if operand in before:
+                if operand in before and operand not in stored:
                     passed.setdefault(operand, len(passed))
         before |= own
     return [_part(part, passed, store) for part in parts], len(passed)

@@ -159,7 +159,7 @@ typedef struct {
   nitinol_wire_real balance[2 * NITINOL_WIRE_UNKNOWNS + 9 + 7];
   nitinol_wire_real watched[7];
   nitinol_wire_real watched_after[7];
-  nitinol_wire_real kernel_reals[1336];
+  nitinol_wire_real kernel_reals[1323];
   int kernel_integers[1];
 } nitinol_wire_workspace;
 

@@ -11,17 +11,17 @@ int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
 #define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 553
+#define nitinol_wire_k_residual_SZ_W 509
 int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_jacobian_SZ_ARG 3
 #define nitinol_wire_k_jacobian_SZ_RES 1
 #define nitinol_wire_k_jacobian_SZ_IW 0
-#define nitinol_wire_k_jacobian_SZ_W 1335
+#define nitinol_wire_k_jacobian_SZ_W 1322
 int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_rate_SZ_ARG 5
 #define nitinol_wire_k_rate_SZ_RES 1
 #define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 759
+#define nitinol_wire_k_rate_SZ_W 716
 int nitinol_wire_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tangent_SZ_ARG 1
 #define nitinol_wire_k_tangent_SZ_RES 1
@@ -36,7 +36,7 @@ int nitinol_wire_k_richer_lack(const casadi_real** arg, casadi_real** res, casad
 #define nitinol_wire_k_richer_lack_SZ_ARG 2
 #define nitinol_wire_k_richer_lack_SZ_RES 1
 #define nitinol_wire_k_richer_lack_SZ_IW 0
-#define nitinol_wire_k_richer_lack_SZ_W 700
+#define nitinol_wire_k_richer_lack_SZ_W 699
 int nitinol_wire_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_richer_balance_SZ_ARG 4
 #define nitinol_wire_k_richer_balance_SZ_RES 1
@@ -46,7 +46,7 @@ int nitinol_wire_k_watched(const casadi_real** arg, casadi_real** res, casadi_in
 #define nitinol_wire_k_watched_SZ_ARG 2
 #define nitinol_wire_k_watched_SZ_RES 1
 #define nitinol_wire_k_watched_SZ_IW 0
-#define nitinol_wire_k_watched_SZ_W 242
+#define nitinol_wire_k_watched_SZ_W 199
 int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_igm_SZ_ARG 4
 #define nitinol_wire_k_igm_SZ_RES 3
@@ -56,17 +56,17 @@ int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define nitinol_wire_k_tip_SZ_ARG 2
 #define nitinol_wire_k_tip_SZ_RES 2
 #define nitinol_wire_k_tip_SZ_IW 0
-#define nitinol_wire_k_tip_SZ_W 242
+#define nitinol_wire_k_tip_SZ_W 199
 int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_jacobian_SZ_ARG 2
 #define nitinol_wire_k_tip_jacobian_SZ_RES 2
 #define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 830
+#define nitinol_wire_k_tip_jacobian_SZ_W 786
 int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_shape_SZ_ARG 3
 #define nitinol_wire_k_shape_SZ_RES 2
 #define nitinol_wire_k_shape_SZ_IW 0
-#define nitinol_wire_k_shape_SZ_W 242
+#define nitinol_wire_k_shape_SZ_W 199
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

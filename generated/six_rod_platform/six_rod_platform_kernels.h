@@ -26,7 +26,7 @@ int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_jacobian_1_SZ_ARG 4
 #define six_rod_platform_k_jacobian_1_SZ_RES 1
 #define six_rod_platform_k_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_jacobian_1_SZ_W 2188
+#define six_rod_platform_k_jacobian_1_SZ_W 2177
 int six_rod_platform_k_input_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_input_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_input_jacobian_0_SZ_RES 1
@@ -56,7 +56,7 @@ int six_rod_platform_k_richer_lack(const casadi_real** arg, casadi_real** res, c
 #define six_rod_platform_k_richer_lack_SZ_ARG 2
 #define six_rod_platform_k_richer_lack_SZ_RES 1
 #define six_rod_platform_k_richer_lack_SZ_IW 0
-#define six_rod_platform_k_richer_lack_SZ_W 1824
+#define six_rod_platform_k_richer_lack_SZ_W 1822
 int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_richer_balance_SZ_ARG 4
 #define six_rod_platform_k_richer_balance_SZ_RES 1

@@ -11,17 +11,17 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 709
+#define tendon_robot_k_residual_SZ_W 649
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
 #define tendon_robot_k_jacobian_SZ_IW 0
-#define tendon_robot_k_jacobian_SZ_W 2231
+#define tendon_robot_k_jacobian_SZ_W 2210
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 927
+#define tendon_robot_k_rate_SZ_W 867
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -46,12 +46,12 @@ int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
 #define tendon_robot_k_richer_balance_SZ_IW 0
-#define tendon_robot_k_richer_balance_SZ_W 1771
+#define tendon_robot_k_richer_balance_SZ_W 1769
 int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_watched_SZ_ARG 2
 #define tendon_robot_k_watched_SZ_RES 1
 #define tendon_robot_k_watched_SZ_IW 0
-#define tendon_robot_k_watched_SZ_W 353
+#define tendon_robot_k_watched_SZ_W 293
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
@@ -61,17 +61,17 @@ int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define tendon_robot_k_tip_SZ_ARG 2
 #define tendon_robot_k_tip_SZ_RES 2
 #define tendon_robot_k_tip_SZ_IW 0
-#define tendon_robot_k_tip_SZ_W 338
+#define tendon_robot_k_tip_SZ_W 278
 int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 974
+#define tendon_robot_k_tip_jacobian_SZ_W 914
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2
 #define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 357
+#define tendon_robot_k_shape_SZ_W 297
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3
@@ -86,12 +86,12 @@ int tendon_robot_k_actuator_upper_west(const casadi_real** arg, casadi_real** re
 #define tendon_robot_k_actuator_upper_west_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_west_SZ_RES 3
 #define tendon_robot_k_actuator_upper_west_SZ_IW 0
-#define tendon_robot_k_actuator_upper_west_SZ_W 12
+#define tendon_robot_k_actuator_upper_west_SZ_W 356
 int tendon_robot_k_actuator_upper_south(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_upper_south_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_south_SZ_RES 3
 #define tendon_robot_k_actuator_upper_south_SZ_IW 0
-#define tendon_robot_k_actuator_upper_south_SZ_W 12
+#define tendon_robot_k_actuator_upper_south_SZ_W 368
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.shared_values import FEWEST_SHARED, with_shared_kernels
+from cosserat_casadi.codegen.statements import LONGEST_OF_NUMBERS
 
 LONG = FEWEST_SHARED
 
@@ -48,6 +49,30 @@ def functions(inputs_size: int) -> list[ca.Function]:
     ]
 
 
+def functions_that_share_two_calls() -> list[ca.Function]:
+    """Three functions of a chain of values with two calls at its beginning and end; two share a second chain."""
+    x, inputs, load_factor = ca.SX.sym("x", 3), ca.SX.sym("inputs", 2), ca.SX.sym("load_factor")
+    pair = ca.SX.sym("pair", 2)
+    turned = ca.Function("turned", [pair], [pair[0] * pair[1], pair[0] - 0.3 * pair[1]], {"never_inline": True})
+    all_have = [x[0] * x[1] + ca.sum1(inputs)]
+    for k in range(LONG):
+        all_have.append(ca.sin(all_have[-1]) + x[k % 3])
+    # Both calls are made at once, and what the later one needs is there before what the earlier one makes.
+    early, late = (ca.vertcat(*turned(ca.vertcat(value, x[1]))) for value in (all_have[2], all_have[-2]))
+    two_have = [ca.sum1(ca.vertcat(*turned(ca.vertcat(all_have[-1], x[2]))))]
+    for k in range(LONG):
+        two_have.append(all_have[k] * ca.cos(two_have[-1]))
+    given = [x, inputs]
+    names = ["x", "inputs"]
+    last = ca.vertcat(two_have[-1], 0.0, load_factor * all_have[7] * ca.sum1(early - late))
+    several = ca.vertcat(*all_have[3:5], late)
+    return [
+        ca.Function("first", given, [early * x[0] + all_have[-1], several], names, ["a", "b"]),
+        ca.Function("second", given, [ca.vertcat(*two_have[-3:], early, late)], names, ["c"]),
+        ca.Function("third", [*given, load_factor], [ca.densify(last)], [*names, "load_factor"], ["d"]),
+    ]
+
+
 @pytest.mark.parametrize("inputs_size", [2, 0])
 def test_functions_that_call_what_they_share(inputs_size: int) -> None:
     plain = functions(inputs_size)
@@ -69,13 +94,27 @@ def test_functions_that_call_what_they_share(inputs_size: int) -> None:
     # Kernels hand over what is read elsewhere alone.
     assert [kernels[f"shared_{k}"].signature.numel_out(0) for k in (1, 2)] == [3, 1]
     texts = external_sources(printed, "shared", "long long int")
+    assert_same_numbers(plain, texts)
+
+
+@pytest.mark.parametrize("longest", [LONGEST_OF_NUMBERS, 40])
+def test_kernels_in_one_piece_and_in_several_that_pass_values_on(longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cosserat_casadi.codegen.scalars_in_c.LONGEST_OF_NUMBERS", longest)
+    plain = functions_that_share_two_calls()
+    texts = external_sources(with_shared_kernels(plain, "shared"), "shared", "long long int")
+    assert ("shared_0_part_1" in texts["shared.c"]) is (longest < LONG)
+    assert_same_numbers(plain, texts)
+
+
+def assert_same_numbers(plain: list[ca.Function], texts: dict[str, str]) -> None:
+    """Compiled functions give the numbers of CasADi's."""
     library = os.fspath(compiled_texts("shared", texts, find_compiler()))
     rng = np.random.default_rng(3)
-    arguments = [rng.normal(size=3), rng.normal(size=inputs_size), 0.7]
+    arguments = [rng.normal(size=3), rng.normal(size=plain[0].numel_in(1)), 0.7]
     for function in plain:
         given = arguments[: function.n_in()]
-        made = ca.external(function.name(), library).call(given)
-        for one, other in zip(made, function.call(given), strict=True):
+        results = ca.external(function.name(), library).call(given)
+        for one, other in zip(results, function.call(given), strict=True):
             assert_allclose(np.array(one), np.array(other), rtol=1e-15, atol=1e-15)
 
 
