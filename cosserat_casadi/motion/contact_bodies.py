@@ -31,16 +31,21 @@ class BodyFacing(Facing):
         """Length of the longest rod that holds it, m."""
         return float(self.model.discrete.body_frame(self.owner).length)
 
-    def at(self, nodes: FloatArray, X: float) -> SectionGap:
+    def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
         """The gap, whatever the abscissa."""
         still = np.zeros(3)
         distance = distance_along(self.obstacle, nodes[0], still, still)
         gap = (distance.value - self.radius) / self.length
         return SectionGap(gap, 0.0, 0.0, CENTRE, distance.normal, distance.curvature, still)
 
-    def place(self, nodes: FloatArray, near: float) -> float:
+    def place(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
         """The abscissa that it has."""
         return near
+
+    @property
+    def ends(self) -> Sequence[float]:
+        """Those of the abscissae that it may have."""
+        return (0.0, 1.0)
 
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
         """The ball, where its gap is not above a bound."""

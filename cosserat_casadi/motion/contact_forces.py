@@ -28,12 +28,14 @@ class MovingContact(NamedTuple):
         slides: whether it is the section whose gap is least, wherever that is; else it is the same section all along,
             or a body.
         height: gap, over the length, that it keeps: a share of what counts as touching.
+        element: number of the element of the rod that it slides in; None for the element of its place.
     """
 
     facing: int
     place: float
     slides: bool
     height: float = 0.0
+    element: int | None = None
 
 
 Touches = tuple[MovingContact, ...]
@@ -80,12 +82,17 @@ class Follower:
         facings: what touches, of each contact; nothing in a copy by pickle, which tells the places alone.
         touches: the contacts.
         places: where they were last followed to.
+        elements: numbers of the elements that they slide in; polynomials of these are followed a little beyond.
     """
 
     def __init__(self, facings: Sequence[Facing], touches: Touches) -> None:
         self.facings = [facings[touch.facing] for touch in touches]
         self.touches = touches
         self.places = [touch.place for touch in touches]
+        self.elements = [
+            facing.element(touch.place) if touch.element is None else touch.element
+            for facing, touch in zip(self.facings, touches, strict=True)
+        ]
 
     def __getstate__(self) -> dict[str, Any]:
         # Their functions are those of one process; a motion that goes on has its own.
@@ -113,20 +120,20 @@ class Follower:
             places: of the contacts there.
         """
         found = []
-        for facing, old, new in zip(self.facings, self.places, places, strict=True):
+        for facing, element, old, new in zip(self.facings, self.elements, self.places, places, strict=True):
             is_far = abs(new - old) > FAR
-            found.append(is_far and facing.at(facing.nodes(x, inputs), old).bend <= FLATTEST)
+            found.append(is_far and facing.at(facing.nodes(x, inputs), old, element).bend <= FLATTEST)
         return found
 
     def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[SectionGap]]:
         """Places and gaps of the contacts."""
         gaps = []
         places = []
-        for touch, facing, near in zip(self.touches, self.facings, self.places, strict=True):
+        for touch, facing, element, near in zip(self.touches, self.facings, self.elements, self.places, strict=True):
             nodes = facing.nodes(x, inputs)
-            place = facing.place(nodes, near) if touch.slides else near
+            place = facing.place(nodes, near, element) if touch.slides else near
             places.append(place)
-            gaps.append(facing.at(nodes, place))
+            gaps.append(facing.at(nodes, place, element))
         return places, gaps
 
     def state(self, x: FloatArray, inputs: FloatArray) -> ContactsAtState:

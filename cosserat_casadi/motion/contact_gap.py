@@ -8,6 +8,7 @@ and its second derivative is less by what that place slides (E. Polak, *Optimiza
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -113,12 +114,21 @@ class Facing(ABC):
         return self.points.positions(x, inputs)
 
     @abstractmethod
-    def at(self, nodes: FloatArray, X: float) -> SectionGap:
-        """The gap at a section."""
+    def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
+        """The gap at a section, by the polynomials of an element next to it; None for its own element."""
 
     @abstractmethod
-    def place(self, nodes: FloatArray, near: float) -> float:
-        """Abscissa next to another where the gap is least."""
+    def place(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
+        """Abscissa next to another where the gap is least, by these polynomials."""
+
+    @property
+    @abstractmethod
+    def ends(self) -> Sequence[float]:
+        """Abscissae between which the gap is smooth: ends of the elements, base to tip."""
+
+    def element(self, X: float) -> int:
+        """Number of the element of a section; of two that meet there the one beyond."""
+        return min(max(bisect_right(self.ends, X) - 1, 0), len(self.ends) - 2)
 
     @abstractmethod
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:

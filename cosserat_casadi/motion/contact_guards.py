@@ -39,7 +39,7 @@ class GuardKind(IntEnum):
     """The force of a contact, which ends where it would pull."""
 
     END = 1
-    """How far a place is from the ends of its rod, and one that slides from other contacts."""
+    """How far a place is from the ends of its rod, and one that slides from those of its element and other contacts."""
 
     BEND = 2
     """The bend of the gap about a section that slides."""
@@ -112,7 +112,7 @@ class ContactGuards:
             placed = [touch._replace(place=place) for touch, place in zip(touches, followed.places, strict=True)]
             for k, (touch, gap) in enumerate(zip(placed, followed.gaps, strict=True)):
                 if touch.facing not in arrangement.laid:
-                    ends[k] = min(self._within(touch, x, inputs), apart(touch, placed))
+                    ends[k] = min(self._within(touch, follower.elements[k], x, inputs), apart(touch, placed))
                 if touch.slides:
                     bends[k] = -1.0 if followed.gone[k] else gap.bend - FLATTEST
             others = np.ones(len(self.facings))
@@ -136,10 +136,11 @@ class ContactGuards:
 
         return values
 
-    def _within(self, touch: MovingContact, x: FloatArray, inputs: FloatArray) -> float:
-        """How far a place is from the ends of the rod; of an end, how fast the gap rises towards all rods there."""
+    def _within(self, touch: MovingContact, element: int, x: FloatArray, inputs: FloatArray) -> float:
+        """How far a place is from the ends of its element; of an end, how fast the gap rises towards all rods there."""
         if touch.slides:
-            return min(touch.place, 1.0 - touch.place)
+            ends = self.facings[touch.facing].ends
+            return min(touch.place - ends[element], ends[element + 1] - touch.place)
         if self.facings[touch.facing].of_body:
             return 1.0
         return self.meeting_ends.rise(touch, x, inputs)

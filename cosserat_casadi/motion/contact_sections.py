@@ -5,7 +5,6 @@ Positions between the nodes are those of the polynomials through the nodes, as r
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -55,7 +54,7 @@ LEVEL_DIGITS = 10
 """Digits after the point of a gap over the length that tell hills from valleys."""
 
 BEYOND = 0.05
-"""How far beyond the ends of a rod its polynomials are followed, over the length."""
+"""How far beyond the ends of a rod and of its elements polynomials are followed, over the length."""
 
 
 @dataclass(frozen=True)
@@ -102,9 +101,9 @@ class RodFacing(Facing):
         radii = section_radius(self.model.discrete.rods[self.owner].properties, self.laid_at)
         return np.asarray(self._grid.interpolation_matrix(self.laid_at)), radii
 
-    def at(self, nodes: FloatArray, X: float) -> SectionGap:
-        """The gap at a section, a little beyond the ends of the rod too."""
-        element, start, width = self._element_of(X)
+    def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
+        """The gap at a section, a little beyond the ends of the rod and of an element too."""
+        element, start, width = self._element_of(X, element)
         coefficients = self._coefficients(nodes, element)
         at = (np.array([number]) for number in ((X - start) / width, start, width))
         gap, normal, curvature, tangent, basis = self._section.matrices(coefficients, *at)
@@ -114,15 +113,20 @@ class RodFacing(Facing):
         rows[:, element * count : (element + 1) * count] = basis.T @ self._to_coefficients
         return SectionGap(value, slope, bend, Rows(*rows), normal[:, 0], curvature, tangent[:, 0])
 
-    def place(self, nodes: FloatArray, near: float) -> float:
+    def place(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
         """Abscissa next to another where the gap is least; not beyond the ends by more than a little."""
-        X = self._stationary(nodes, near)
+        X = self._stationary(nodes, near, element)
         if abs(X - near) <= FAR:
             return X
         # Down the gaps from section to section no other minimum can be met.
         beside = float(self.looked_at[self._downhill(self._level(nodes), near)])
-        X = self._stationary(nodes, beside)
-        return X if abs(X - beside) <= FAR else beside
+        farthest = FAR
+        if element is not None and not self.ends[element] <= beside <= self.ends[element + 1]:
+            # By the polynomials of its element it may be farther beyond an end of that one than it is.
+            beside = min(max(beside, self.ends[element]), self.ends[element + 1])
+            farthest = BEYOND
+        X = self._stationary(nodes, beside, element)
+        return X if abs(X - beside) <= farthest else beside
 
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
         """Sections whose gaps are the least about them, and not above a bound, base to tip.
@@ -162,26 +166,28 @@ class RodFacing(Facing):
         gaps = self.gaps(nodes)
         return self._refined(nodes, int(np.argmin(gaps)))
 
-    def _stationary(self, nodes: FloatArray, near: float) -> float:
+    def _stationary(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
         """Newton's method for a place where the slope is zero; not a number where it leads nowhere."""
         X = near
         for _ in range(MOST_ITERATIONS // ITERATIONS_AT_ONCE):
-            element, start, width = self._element_of(X)
-            at = (np.array([number]) for number in ((X - start) / width, start, width))
-            found = self._places.matrices(self._coefficients(nodes, element), *at)
+            number, start, width = self._element_of(X, element)
+            at = (np.array([value]) for value in ((X - start) / width, start, width))
+            found = self._places.matrices(self._coefficients(nodes, number), *at)
             share, change = (float(part[0, 0]) for part in found)
             X = start + width * share
             # Not where it is not a number.
             if not -BEYOND <= X <= 1.0 + BEYOND:
                 return float("nan")
-            if abs(width * change) <= PLACED:
+            # Beyond its element the gap is that of the next one.
+            if abs(width * change) <= PLACED and self._element_of(X, element)[0] == number:
                 break
         return X
 
-    def _element_of(self, X: float) -> tuple[int, float, float]:
-        """Number of the element of a section, the abscissa of its base and its width."""
-        ends = self._ends
-        element = min(max(bisect_right(ends, X) - 1, 0), len(ends) - 2)
+    def _element_of(self, X: float, element: int | None) -> tuple[int, float, float]:
+        """An element that a section is in or next to, else its own: number, abscissa of its base, and width."""
+        ends = self.ends
+        if element is None or not ends[element] - BEYOND <= X <= ends[element + 1] + BEYOND:
+            element = self.element(X)
         return element, ends[element], ends[element + 1] - ends[element]
 
     def _coefficients(self, nodes: FloatArray, element: int) -> FloatArray:
@@ -249,7 +255,8 @@ class RodFacing(Facing):
         return self.model.discrete.rods[self.owner].grid
 
     @cached_property
-    def _ends(self) -> tuple[float, ...]:
+    def ends(self) -> Sequence[float]:
+        """Ends of the elements, base to tip: the bend of the gap jumps where curvatures do."""
         return self._grid.known_places
 
     @cached_property

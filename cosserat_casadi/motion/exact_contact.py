@@ -150,7 +150,7 @@ class ExactContacts:
             case GuardKind.FORCE:
                 return self._lifted_off(known, number, before)
             case GuardKind.END:
-                return self._come_to_end(known, number, before, inputs)
+                return self._come_to_end(known, number, phases.follower.elements[number], before, inputs)
             case GuardKind.BEND:
                 return self._without_bend(known, number, phases.follower, before, inputs)
             case GuardKind.CLEAR:
@@ -166,13 +166,30 @@ class ExactContacts:
         event = self._event("lift_off", before.time, left)
         return replace(known, held=tuple(held), left=(left,), events=(event,))
 
-    def _come_to_end(self, known: _Known, number: int, before: Instant, inputs: FloatArray) -> _Known:
-        """Contacts of which one has come to an end of its rod or to another, or leaves an end: the rod may lie down."""
+    def _come_to_end(self, known: _Known, number: int, element: int, before: Instant, inputs: FloatArray) -> _Known:
+        """Contacts of which one has come to an end of its rod or to another, or leaves an end: the rod may lie down.
+
+        One that comes to an end of its element goes on in the next one, where the gap has another bend.
+
+        Args:
+            known: the contacts.
+            number: of the contact.
+            element: that it slides in.
+            before: state before the event.
+            inputs: at its time.
+        """
         end = known.held[number]
-        if end.slides and apart(end, known.held) < min(end.place - BASE, TIP - end.place):
+        ends = self.facings[end.facing].ends
+        is_beyond = end.place > (ends[element] + ends[element + 1]) / 2.0
+        nearest = ends[element + is_beyond]
+        if end.slides and apart(end, known.held) < abs(end.place - nearest):
             # Two that slide to one place would be one constraint twice.
             return self._lying(known, end, before, inputs)
-        moved = self.meeting_ends.gone_on(end, before.x, inputs)
+        crosses = end.slides and BASE < nearest < TIP
+        if crosses:
+            moved = end._replace(place=nearest, element=element + (1 if is_beyond else -1))
+        else:
+            moved = self.meeting_ends.gone_on(end, before.x, inputs)
         if moved.facing in known.laid:
             # Where the next rod lies, this one lies down too.
             return self._lying(known, end, before, inputs)
@@ -180,9 +197,11 @@ class ExactContacts:
         held[number] = moved
         known = replace(known, held=tuple(held))
         facing = self.facings[moved.facing]
-        if moved.slides and facing.at(facing.nodes(before.x, inputs), moved.place).bend <= FLATTEST:
+        if moved.slides and facing.at(facing.nodes(before.x, inputs), moved.place, moved.element).bend <= FLATTEST:
             # An end that is left where the gap is flat leaves no section for another.
             return self._lying(known, moved, before, inputs)
+        if crosses:
+            return known
         name = "slide_from_end" if moved.slides else "slide_to_end"
         if moved.facing != end.facing:
             name = "slide_over_joint"

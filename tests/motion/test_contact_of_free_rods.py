@@ -15,7 +15,7 @@ from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, Guar
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.simulate import moving_inputs
+from cosserat_casadi.motion.simulate import Simulator, moving_inputs, started
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
 from tests.families import mostly_slow
@@ -239,6 +239,31 @@ def test_a_place_that_slides_fast_along_the_rod_is_not_taken_for_one_that_jumps(
     assert [event.kind for event in motion.events] == ["impact", "lift_off", "impact", "slide_from_end"]
     assert motion.contacts[-1][0].at < 0.65
     assert abs(motion.energy.imbalance).max() < 5e-4
+
+
+def test_a_place_that_slides_over_an_end_of_an_element_goes_on_in_the_next_one() -> None:
+    """The bend of the gap jumps there by a factor of four: steps over it came to a halt, or it struck once more."""
+    scene = read_scene("examples/rod_hits_floor.toml", ["simulation.duration=0.401"])
+    model = build(scene.with_motion_inputs(), moving=True)
+    assert scene.simulation is not None
+    simulator = Simulator(model, scene.simulation, started(model, scene.simulation, None))
+    (facing,) = ExactContacts(model).facings
+    times = []
+    for tolerance in (1e-4, 3e-6):
+        history = simulator.controlled(tolerance)
+        assert history.completed
+        kinds = [event.kind for event in history.events]
+        assert kinds == ["impact", "lift_off", "impact", "slide_from_end", "lift_off"]
+        crossed = next(leg.start.instant.time for leg in history.legs if leg.start.instant.time > 0.399)
+        times.append([crossed, history.events[-1].time])
+        # Sections by the polynomials of their own elements: one touches to the error between steps, none is inside.
+        for time in np.linspace(crossed, history.events[-1].time, 5):
+            state = history.at(float(time))
+            nodes = facing.nodes(state.x, state.inputs)
+            deepest = facing.deepest(nodes)
+            assert_allclose(deepest.gap, 0.0, rtol=0, atol=0.1 * tolerance)
+            assert 0.594 < deepest.place < 0.6 + 1e-6
+    assert_allclose(times[0], times[1], rtol=0, atol=3e-5)
 
 
 def test_a_free_rod_that_would_be_held_in_contact_has_no_start() -> None:
