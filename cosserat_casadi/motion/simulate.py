@@ -293,6 +293,9 @@ class Simulator:
             return self.told_by_half(fine, tolerance)
         distance = path_distance(self.paths(timed.history), self.paths(fine))
         left = left_by(factor, fine, timed.history)
+        if timed.companion is not None and is_struck(fine) and distance > 0.0:
+            # Which section strikes next may be decided by chance: two motions may agree that both err as others do.
+            left = max(left, timed.distance / distance)
         return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:

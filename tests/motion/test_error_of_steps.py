@@ -313,7 +313,7 @@ def test_a_steel_wire_is_not_buckled_by_what_newtons_method_leaves_of_its_stretc
     assert history.statistics.rejected <= 10
 
 
-@pytest.mark.parametrize(("distances", "erratic"), [([0.1, 0.09], True), ([0.1, 0.03, 1e-6], False)])
+@pytest.mark.parametrize(("distances", "erratic"), [([0.1, 0.09], True), ([0.1, 0.03, 1e-6, 1e-8], False)])
 def test_motions_that_more_exact_steps_bring_no_nearer_end_a_search(
     monkeypatch: pytest.MonkeyPatch, distances: list[float], erratic: bool
 ) -> None:
@@ -327,6 +327,10 @@ def test_motions_that_more_exact_steps_bring_no_nearer_end_a_search(
     timed = simulator.tightened(coarse, 1e-2, 1e-3)
     assert list(told) == []
     assert (timed.error > 1e-3) is erratic
+    if not erratic:
+        # Two motions that agree may err as much as those before: a fourth motion is asked for.
+        assert_allclose(timed.error, distances[-2], rtol=1e-12, atol=0)
+        assert_allclose(timed.distance, distances[-1], rtol=1e-12, atol=0)
     # In a search, from the more exact steps to the coarser ones; the first two of those that converge are as above.
     backwards = iter(distances[1::-1])
     monkeypatch.setattr(motion_refinement, "path_distance", lambda *_: next(backwards))
