@@ -44,7 +44,7 @@ class BodyFacing(Facing):
 
     @property
     def ends(self) -> Sequence[float]:
-        """Those of the abscissae that it may have."""
+        """The abscissae of base and tip of a rod, whatever the body."""
         return (0.0, 1.0)
 
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
