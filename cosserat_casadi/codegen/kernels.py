@@ -40,6 +40,12 @@ MOST_BESIDE_STEPS = 20_000
 Compilers would take most of their time for it, and steps do without it.
 """
 
+SHORT = 1000
+"""Instructions of a function up to which it shares kernels with short ones alone.
+
+Handing over what long ones need would take a fifth of its time.
+"""
+
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
     """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
@@ -101,11 +107,11 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
     Functions in straight-line code call kernels of the values that they share (shared_values.py).
     """
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
-    straight: dict[int, list[ca.Function]] = defaultdict(list)
+    straight: dict[tuple[int, bool], list[ca.Function]] = defaultdict(list)
     for one in written.values():
         if isinstance(one, ca.Function) and one.is_a("SXFunction") and one.name_in()[:COMMON] == ["x", "inputs"]:
             # To the solver parameters are further inputs.
-            straight[one.size1_in(1)].append(one)
+            straight[one.size1_in(1), one.n_instructions() <= SHORT].append(one)
     for number, functions in enumerate(straight.values()):
         with suppress(UnknownOperationError):
             for shared in with_shared_kernels(functions, names.kernel(f"shared_{number}")):

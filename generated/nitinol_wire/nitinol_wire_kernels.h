@@ -61,7 +61,7 @@ int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define nitinol_wire_k_tip_jacobian_SZ_ARG 2
 #define nitinol_wire_k_tip_jacobian_SZ_RES 2
 #define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 786
+#define nitinol_wire_k_tip_jacobian_SZ_W 752
 int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_shape_SZ_ARG 3
 #define nitinol_wire_k_shape_SZ_RES 2

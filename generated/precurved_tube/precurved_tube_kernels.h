@@ -11,7 +11,7 @@ int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_residual_SZ_ARG 3
 #define precurved_tube_k_residual_SZ_RES 1
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 509
+#define precurved_tube_k_residual_SZ_W 510
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_jacobian_SZ_ARG 3
 #define precurved_tube_k_jacobian_SZ_RES 1
@@ -21,7 +21,7 @@ int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int
 #define precurved_tube_k_rate_SZ_ARG 5
 #define precurved_tube_k_rate_SZ_RES 1
 #define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 742
+#define precurved_tube_k_rate_SZ_W 744
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tangent_SZ_ARG 1
 #define precurved_tube_k_tangent_SZ_RES 1
@@ -46,7 +46,7 @@ int precurved_tube_k_watched(const casadi_real** arg, casadi_real** res, casadi_
 #define precurved_tube_k_watched_SZ_ARG 2
 #define precurved_tube_k_watched_SZ_RES 1
 #define precurved_tube_k_watched_SZ_IW 0
-#define precurved_tube_k_watched_SZ_W 255
+#define precurved_tube_k_watched_SZ_W 169
 int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_igm_SZ_ARG 4
 #define precurved_tube_k_igm_SZ_RES 3
@@ -56,17 +56,17 @@ int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int*
 #define precurved_tube_k_tip_SZ_ARG 2
 #define precurved_tube_k_tip_SZ_RES 2
 #define precurved_tube_k_tip_SZ_IW 0
-#define precurved_tube_k_tip_SZ_W 255
+#define precurved_tube_k_tip_SZ_W 169
 int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_jacobian_SZ_ARG 2
 #define precurved_tube_k_tip_jacobian_SZ_RES 2
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 835
+#define precurved_tube_k_tip_jacobian_SZ_W 837
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_shape_SZ_ARG 3
 #define precurved_tube_k_shape_SZ_RES 2
 #define precurved_tube_k_shape_SZ_IW 0
-#define precurved_tube_k_shape_SZ_W 271
+#define precurved_tube_k_shape_SZ_W 272
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -11,7 +11,7 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 649
+#define tendon_robot_k_residual_SZ_W 626
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
@@ -21,7 +21,7 @@ int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* 
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 867
+#define tendon_robot_k_rate_SZ_W 865
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -41,7 +41,7 @@ int tendon_robot_k_richer_lack(const casadi_real** arg, casadi_real** res, casad
 #define tendon_robot_k_richer_lack_SZ_ARG 2
 #define tendon_robot_k_richer_lack_SZ_RES 1
 #define tendon_robot_k_richer_lack_SZ_IW 0
-#define tendon_robot_k_richer_lack_SZ_W 1613
+#define tendon_robot_k_richer_lack_SZ_W 1543
 int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
@@ -51,7 +51,7 @@ int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_in
 #define tendon_robot_k_watched_SZ_ARG 2
 #define tendon_robot_k_watched_SZ_RES 1
 #define tendon_robot_k_watched_SZ_IW 0
-#define tendon_robot_k_watched_SZ_W 293
+#define tendon_robot_k_watched_SZ_W 250
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
@@ -61,17 +61,17 @@ int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define tendon_robot_k_tip_SZ_ARG 2
 #define tendon_robot_k_tip_SZ_RES 2
 #define tendon_robot_k_tip_SZ_IW 0
-#define tendon_robot_k_tip_SZ_W 278
+#define tendon_robot_k_tip_SZ_W 250
 int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 914
+#define tendon_robot_k_tip_jacobian_SZ_W 883
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2
 #define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 297
+#define tendon_robot_k_shape_SZ_W 268
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3
@@ -86,12 +86,12 @@ int tendon_robot_k_actuator_upper_west(const casadi_real** arg, casadi_real** re
 #define tendon_robot_k_actuator_upper_west_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_west_SZ_RES 3
 #define tendon_robot_k_actuator_upper_west_SZ_IW 0
-#define tendon_robot_k_actuator_upper_west_SZ_W 356
+#define tendon_robot_k_actuator_upper_west_SZ_W 0
 int tendon_robot_k_actuator_upper_south(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_upper_south_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_south_SZ_RES 3
 #define tendon_robot_k_actuator_upper_south_SZ_IW 0
-#define tendon_robot_k_actuator_upper_south_SZ_W 368
+#define tendon_robot_k_actuator_upper_south_SZ_W 0
 #ifdef __cplusplus
 } /* extern "C" */
 #endif
