@@ -398,7 +398,7 @@ class _Writing:
                     self.main.statements.append(Statement(f"{asked}{place} = {self.arithmetic.number(0.0)};", []))
 
     def _keep_results(self) -> None:
-        """Append the entries of the one result, each in a place of its own."""
+        """Append the entries of the one result, each in another place."""
         kept = self.listing.outputs[0].values()
         for number in kept:
             if number not in self.place:

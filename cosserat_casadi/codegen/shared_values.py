@@ -148,7 +148,7 @@ class _Sharing:
         return ca.Function(function.name(), symbols, shaped, function.name_in(), function.name_out())
 
     def _expressions(self, wanted: Sequence[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
-        """Expressions of values, and of those that they are computed from, by number.
+        """Expressions of values, and of the values that they are computed from, by number.
 
         Args:
             wanted: numbers of the values.

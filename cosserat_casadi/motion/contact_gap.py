@@ -115,7 +115,7 @@ class Facing(ABC):
 
     @abstractmethod
     def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
-        """The gap at a section, by the polynomials of an element next to it; None for its own element."""
+        """The gap at a section, by the polynomials of an element next to it; None for the element that it lies in."""
 
     @abstractmethod
     def place(self, nodes: FloatArray, near: float, element: int | None = None) -> float:

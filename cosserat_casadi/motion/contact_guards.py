@@ -39,7 +39,7 @@ class GuardKind(IntEnum):
     """The force of a contact, which ends where it would pull."""
 
     END = 1
-    """How far a place is from the ends of its rod, and one that slides from those of its element and other contacts."""
+    """How far a place is from the ends of its rod; a place that slides, from ends of its element and other contacts."""
 
     BEND = 2
     """The bend of the gap about a section that slides."""

@@ -184,7 +184,7 @@ class RodFacing(Facing):
         return X
 
     def _element_of(self, X: float, element: int | None) -> tuple[int, float, float]:
-        """An element that a section is in or next to, else its own: number, abscissa of its base, and width."""
+        """An element next to a section, or the element that it lies in: number, abscissa of its base, and width."""
         ends = self.ends
         if element is None or not ends[element] - BEYOND <= X <= ends[element + 1] + BEYOND:
             element = self.element(X)

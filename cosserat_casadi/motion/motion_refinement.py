@@ -278,7 +278,7 @@ class _Search:
 
     @property
     def foreseen_impacts(self) -> float:
-        """Number of impacts on as many modes as meet the tolerance, by those of the last two levels.
+        """Number of impacts on as many modes as meet the tolerance, by the impacts of the last two levels.
 
         Sections of a rod that lies down strike one by one, over and over, and more modes have more sections.
         """

@@ -232,7 +232,7 @@ def _distance(coarse: Solution, fine: Solution) -> float:
 
 
 def _compared(path: EquilibriumPath) -> list[Solution]:
-    """Equilibria at which paths are compared: the first one, those of the events, and that at factor 1 if there is."""
+    """Equilibria at which paths are compared: the first point, the events, and the point at factor 1 if any."""
     if not len(path.factor):
         return []
     # A path that ends short of factor 1 has no end to compare.

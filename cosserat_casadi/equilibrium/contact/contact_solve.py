@@ -142,7 +142,7 @@ def _held(
 
 
 def stays_unmet(found: ContactEquilibrium, before: float, tolerance: float) -> bool:
-    """Whether contacts leave more than a tolerance unmet, and as much as those before on coarser modes."""
+    """Whether contacts leave more than a tolerance unmet, and as much as the contacts on coarser modes before."""
     return found.unmet() > max(tolerance, STAYING * before)
 
 
