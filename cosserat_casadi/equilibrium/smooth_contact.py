@@ -13,6 +13,7 @@ from cosserat_casadi.equilibrium.rod_contacts import contacts_of_rods
 from cosserat_casadi.equilibrium.rubbing import friction_between
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure, push_on_disk
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -58,10 +59,7 @@ def depths_along(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
     """
-    if not len(x):
-        return np.zeros(0)
-    depths: FloatArray = model.contact_depth.map(len(x))(x.T, inputs.T).full()[0]
-    return depths
+    return evaluated(model.contact_depth, x, inputs)[0][:, 0, 0]
 
 
 def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.strain_margins import VANISHED, StrainMargin, margins_of
@@ -48,12 +49,12 @@ def first_beyond(model: Model, x: FloatArray, inputs: FloatArray) -> BeyondLimit
     """
     if model.strain_margins is None or not len(x):
         return None
-    margins = model.strain_margins.map(len(x))(x.T, inputs.T).full()
-    beyond = np.flatnonzero(np.min(margins, axis=0) <= VANISHED)
+    margins = evaluated(model.strain_margins, x, inputs)[0][:, :, 0]
+    beyond = np.flatnonzero(np.min(margins, axis=1) <= VANISHED)
     if not len(beyond):
         return None
     state = int(beyond[0])
-    first = int(np.argmax(margins[:, state] <= VANISHED))
+    first = int(np.argmax(margins[state] <= VANISHED))
     return BeyondLimit(state, margins_of(model.discrete)[first])
 
 

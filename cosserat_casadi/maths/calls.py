@@ -1,10 +1,13 @@
-"""Which functions a function calls."""
+"""Calls of functions: at many arguments at once, and which functions a function calls."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
 
 
 def called_functions(function: ca.Function, codes: Iterable[int] | None = None) -> dict[int, ca.Function]:
@@ -47,3 +50,35 @@ def chooses(function: ca.Function) -> bool:
     Written as scalars, or as a program without branches, it would compute all that it may leave out.
     """
     return any(called.class_name() == "Switch" for called in functions_within(function))
+
+
+def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]:
+    """Outputs of a function of dense vectors at T arguments, of shape (T, rows, columns) each.
+
+    Args:
+        function: the function.
+        arguments: in their order, shape (T, entries) each.
+    """
+    count = len(arguments[0])
+    sparsities = [function.sparsity_out(index) for index in range(function.n_out())]
+    # CasADi maps over one argument at least; a motion that never started has none.
+    if count == 0:
+        return [np.zeros((0, *sparsity.shape)) for sparsity in sparsities]
+    # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
+    buffer, evaluate = function.map(count).buffer()
+    given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
+    results = [np.zeros(count * sparsity.nnz()) for sparsity in sparsities]
+    for number, array in enumerate(given):
+        buffer.set_arg(number, array.data)
+    for number, array in enumerate(results):
+        buffer.set_res(number, array.data)
+    evaluate()
+    return [_dense(entries.reshape(count, -1), sparsity) for entries, sparsity in zip(results, sparsities, strict=True)]
+
+
+def _dense(entries: FloatArray, sparsity: ca.Sparsity) -> FloatArray:
+    """Matrices of a pattern from its entries, column after column: shapes (T, nonzeros) to (T, rows, columns)."""
+    stored_rows, stored_columns = sparsity.get_triplet()
+    matrices = np.zeros((len(entries), *sparsity.shape))
+    matrices[:, stored_rows, stored_columns] = entries
+    return matrices

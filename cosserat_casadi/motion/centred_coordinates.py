@@ -14,6 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -88,7 +89,7 @@ class CentredCoordinates:
     def positions_of_model(self, positions: FloatArray) -> FloatArray:
         """Unknowns of the model at T times, from those in these coordinates, shape (T, size) each."""
         x = positions.copy()
-        x[:, self._pose] = self._position.map(len(positions))(positions.T).full().T
+        x[:, self._pose] = evaluated(self._position, positions)[0][:, :, 0]
         return x
 
     def from_model(self, instant: Instant) -> Instant:

@@ -13,7 +13,7 @@ from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.tip_paths import watched_times
+from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.scene.simulation import Simulation
 
 THINNEST = 1e-3
@@ -65,8 +65,7 @@ def too_deep(history: History, duration: float) -> str:
     """A sentence where a motion does not resolve its contact: rods are deeper inside obstacles than their width."""
     if history.model.contact_depth is None:
         return ""
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
+    times, x, inputs = watched_states(history, duration)
     depths = depths_along(history.model, x, inputs)
     worst = int(np.argmax(depths))
     if depths[worst] <= 1.0:
@@ -81,8 +80,7 @@ def told_passage(history: History, duration: float) -> str:
     """A sentence on rods that pass through each other between two times that are watched; else nothing."""
     if not history.model.discrete.pairs:
         return ""
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
+    times, x, inputs = watched_states(history, duration)
     barriers = SmoothBarriers(history.model)
     for row in range(len(times) - 1):
         if barriers.rods_pass(x[row], x[row + 1], (inputs[row], inputs[row + 1])):
@@ -103,8 +101,7 @@ def told_inside(history: History, duration: float, deepest: float) -> str:
     """
     if history.contacts is None:
         return ""
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
+    times, x, inputs = watched_states(history, duration)
     found = [history.contacts.deepest(*state) for state in zip(x, inputs, strict=True)]
     number = int(np.argmax([one.depth for one in found]))
     worst = found[number]

@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.tip_paths import watched_times
+from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.rod.discretisation import Discretisation
 
 UNKNOWN_ORDER = 1.7
@@ -53,8 +53,8 @@ def most_modes(chosen: Mapping[str, Discretisation]) -> int:
 
 def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
-    x, _ = history.rough_positions(watched_times(history, duration))
-    return _by_strain(history.model, np.abs(x).max(axis=0) * displacements(history.model))
+    states = watched_states(history, duration)
+    return _by_strain(history.model, np.abs(states.x).max(axis=0) * displacements(history.model))
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:

@@ -300,6 +300,11 @@ class History:
         return own if coordinates is None else coordinates.positions_of_model(own)
 
     @cached_property
+    def watched_until(self) -> dict[float, Any]:
+        """States at the times at which paths are compared, by the duration up to which they are."""
+        return {}
+
+    @cached_property
     def paths_until(self) -> dict[float, Any]:
         """Paths of tips and bodies by the duration up to which they are compared: several comparisons ask for them."""
         return {}

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -97,19 +98,3 @@ def states_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Actua
     # The third output of an actuator, the rate of the conjugate with the unknowns, is for control.
     effort, conjugate, *_ = evaluated(function, x, inputs)
     return ActuatorStates(effort[:, 0, 0], conjugate[:, 0, 0])
-
-
-def evaluated(function: ca.Function, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
-    """Outputs of a function of (x, inputs) at T times, of shape (T, rows, columns) each."""
-    count = len(x)
-    shapes = [function.size_out(index) for index in range(function.n_out())]
-    # CasADi maps over one time at least; a motion that never started has none.
-    if count == 0:
-        return [np.zeros((0, rows, columns)) for rows, columns in shapes]
-    stacked = function.map(count)(x.T, inputs.T)
-    outputs = []
-    for output, (rows, columns) in zip(stacked, shapes, strict=True):
-        # The results stand side by side, one block of columns a time.
-        blocks = output.full().reshape(rows, count, columns)
-        outputs.append(np.moveaxis(blocks, 1, 0))
-    return outputs

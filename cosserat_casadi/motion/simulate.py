@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.strain_limits import first_beyond
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
@@ -33,7 +34,7 @@ from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import warnings
-from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_times
+from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_states
 from cosserat_casadi.motion.trajectory import (
     Account,
     Energies,
@@ -237,7 +238,8 @@ class Simulator:
         """Paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
         if duration not in history.paths_until:
-            history.paths_until[duration] = paths(history, watched_times(history, duration), self._library)
+            states = watched_states(history, duration)
+            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self._library)
         known: Paths = history.paths_until[duration]
         return known
 
@@ -488,16 +490,14 @@ def started(model: Model, simulation: Simulation, solution: Solution | None, nea
 def unresolved(history: History, duration: float) -> bool:
     """Whether the rods bend too sharply for their nodes at some time."""
     model = history.model
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
-    indices = model.resolution_index.map(len(times))(x.T, inputs.T).full()
+    _, x, inputs = watched_states(history, duration)
+    (indices,) = evaluated(model.resolution_index, x, inputs)
     return bool(indices.max() > 1.0)
 
 
 def told_beyond(history: History, duration: float) -> tuple[MotionOutcome, str] | None:
     """When strains are first beyond their limits, as outcome and sentence; None where they never are."""
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
+    times, x, inputs = watched_states(history, duration)
     beyond = first_beyond(history.model, x, inputs)
     if beyond is None:
         return None

@@ -6,13 +6,14 @@ of :func:`watched_sections`, as at rest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.equilibrium.solution import rotations
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
@@ -21,7 +22,7 @@ from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.pose_series import Frames, evaluated, frames_of
+from cosserat_casadi.motion.pose_series import Frames, frames_of
 from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.scene.constraint_records import Body
 
@@ -51,10 +52,28 @@ class Paths:
     section_axes: FloatArray
 
 
-def watched_times(history: History, duration: float) -> FloatArray:
-    """Times at which paths are compared, as far as a motion reaches them, shape (T,), s."""
-    times = np.linspace(history.begin, duration, WATCHED)
-    return times[times <= history.end.time]
+class WatchedStates(NamedTuple):
+    """States of a motion at the T times at which paths are compared, as far as it reaches them.
+
+    Attributes:
+        times: shape (T,), s.
+        x: unknowns, shape (T, model.size).
+        inputs: stacked inputs, shape (T, model.inputs.size).
+    """
+
+    times: FloatArray
+    x: FloatArray
+    inputs: FloatArray
+
+
+def watched_states(history: History, duration: float) -> WatchedStates:
+    """The states of a motion at the times at which it is compared with another one of a duration, s."""
+    if duration not in history.watched_until:
+        times = np.linspace(history.begin, duration, WATCHED)
+        times = times[times <= history.end.time]
+        history.watched_until[duration] = WatchedStates(times, *history.rough_positions(times))
+    known: WatchedStates = history.watched_until[duration]
+    return known
 
 
 def functions_of_sections(model: Model) -> list[ca.Function]:
@@ -66,21 +85,16 @@ def functions_of_sections(model: Model) -> list[ca.Function]:
     return [*functions, *_between(model).values()]
 
 
-def paths(history: History, times: FloatArray, library: str | None = None) -> Paths:
+def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None = None) -> Paths:
     """The paths of all watched sections, moving bases and bodies at T times.
 
     Args:
-        history: the motion.
-        times: shape (T,), s.
+        model: the model.
+        x: unknowns, shape (T, model.size).
+        inputs: stacked inputs, shape (T, model.inputs.size).
         library: shared object that has :func:`functions_of_sections`; None without one.
     """
-    model = history.model
-    tips: Mapping[str, ca.Function] = model.tip
-    between = _between(model)
-    if library is not None:
-        tips = {name: external(f"{TIP}{number}", library) for number, name in enumerate(model.discrete.rods)}
-        between = {name: external(function.name(), library) for name, function in between.items()}
-    x, inputs = history.rough_positions(times)
+    tips, between = (model.tip, _between(model)) if library is None else _external(model, library)
     points = []
     section_axes = []
     for name, rod in model.discrete.rods.items():
@@ -103,6 +117,20 @@ def paths(history: History, times: FloatArray, library: str | None = None) -> Pa
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
 
 
+def _external(model: Model, library: str) -> tuple[dict[str, ca.Function], dict[str, ca.Function]]:
+    """The poses of the tips and those between ends, by their rods, without a function being written for them."""
+    rods = list(enumerate(model.discrete.rods))
+    tips = {name: external(f"{TIP}{number}", library) for number, name in rods}
+    held = [(number, name) for number, name in rods if _places_between(model, name)]
+    return tips, {name: external(f"{BETWEEN}{number}", library) for number, name in held}
+
+
+def _places_between(model: Model, rod: str) -> list[float]:
+    """Abscissae of the watched sections of a rod before its tip."""
+    places: list[float] = watched_sections(model.scene, rod)[:-1].tolist()
+    return places
+
+
 def _between(model: Model) -> dict[str, ca.Function]:
     """(x, inputs) ↦ positions, 3×k, and quaternions, 4×k, of the k watched sections before its tip, by their rod."""
     return kept_with(model, "_between_ends", lambda: _written_between(model))
@@ -114,9 +142,9 @@ def _written_between(model: Model) -> dict[str, ca.Function]:
     system = System(discrete, arguments)
     functions = {}
     for number, name in enumerate(discrete.rods):
-        sections = watched_sections(model.scene, name)[:-1]
-        if sections.size:
-            poses = SectionPoses(system, name, section_weights(discrete, name, sections.tolist()))
+        places = _places_between(model, name)
+        if places:
+            poses = SectionPoses(system, name, section_weights(discrete, name, places))
             outputs = [poses.positions, poses.quaternions]
             functions[name] = ca.Function(f"{BETWEEN}{number}", [arguments.x, arguments.inputs], outputs)
     return functions

@@ -16,11 +16,12 @@ import numpy as np
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.checkpoint import KEY
 from cosserat_casadi.motion.event_restart import ContactEvent
-from cosserat_casadi.motion.pose_series import Poses, evaluated
+from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry, rubbing_entries
 from cosserat_casadi.results.json_text import SCHEMA, csv_text, plain

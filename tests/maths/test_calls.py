@@ -1,0 +1,37 @@
+"""A function called at many arguments at once: as one call after the other gives it."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from cosserat_casadi.maths.calls import evaluated
+
+
+def mixed() -> ca.Function:
+    """(x, u) ↦ a dense vector, a matrix of which half is stored, and a matrix of zeros."""
+    x, u = ca.MX.sym("x", 3), ca.MX.sym("u", 2)
+    return ca.Function("mixed", [x, u], [x * u[0], ca.diag(x**2) + ca.tril(x @ x.T), ca.MX(2, 2)])
+
+
+@pytest.mark.parametrize("transposed", [False, True])
+def test_rows_are_those_of_one_call_after_the_other(transposed: bool) -> None:
+    draw = np.random.default_rng(7)
+    x = draw.normal(size=(3, 5)).T if transposed else draw.normal(size=(5, 3))
+    u = draw.normal(size=(5, 2))
+    vector, matrix, zeros = evaluated(mixed(), x, u)
+    for row in range(5):
+        outer = np.tril(np.outer(x[row], x[row]))
+        np.testing.assert_allclose(vector[row, :, 0], x[row] * u[row, 0], rtol=1e-15, atol=0.0)
+        np.testing.assert_allclose(matrix[row], outer + np.diag(x[row] ** 2), rtol=1e-15, atol=0.0)
+    np.testing.assert_array_equal(zeros, np.zeros((5, 2, 2)))
+
+
+def test_an_argument_may_be_empty_and_there_may_be_no_row() -> None:
+    x, nothing = ca.MX.sym("x", 2), ca.MX.sym("nothing", 0)
+    function = ca.Function("doubled", [x, nothing], [2.0 * x])
+    (doubled,) = evaluated(function, np.ones((3, 2)), np.zeros((3, 0)))
+    np.testing.assert_array_equal(doubled, np.full((3, 2, 1), 2.0))
+    (none,) = evaluated(function, np.zeros((0, 2)), np.zeros((0, 0)))
+    assert none.shape == (0, 2, 1)
