@@ -157,12 +157,17 @@ FOURS = Arithmetic({}, {}, "EACH({})", None)
 """Four numbers at once."""
 
 LANES_OF_ROWS = Arithmetic(
-    {ca.OP_SQRT: "lanes_sqrt", ca.OP_EXP: "lanes_exp", ca.OP_FABS: "lanes_fabs", ca.OP_FMAX: "lanes_fmax"},
+    {
+        ca.OP_SQRT: "lanes_sqrt", ca.OP_EXP: "lanes_exp", ca.OP_FABS: "lanes_fabs", ca.OP_FMAX: "lanes_fmax",
+        ca.OP_FMIN: "lanes_fmin", ca.OP_LT: "lanes_less", ca.OP_LE: "lanes_at_most", ca.OP_EQ: "lanes_equal",
+        ca.OP_NE: "lanes_unequal", ca.OP_NOT: "lanes_not", ca.OP_AND: "lanes_and", ca.OP_OR: "lanes_or",
+        ca.OP_IF_ELSE_ZERO: "lanes_if", ca.OP_SIGN: "lanes_sign",
+    },
     {},
     "IN_ALL({})",
     None,
-)
-"""Numbers of several rows at once, which have no comparison: lanes would answer it each in its own way."""
+)  # fmt: skip
+"""Numbers of several rows at once. Each lane answers a comparison in its own way, by 1 or 0: none branches."""
 
 
 def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None]) -> list[Statement]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import os
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,6 +22,7 @@ from cosserat_casadi.codegen.rows import RowLibrary, row_library
 from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.statements import LANES_OF_ROWS
 from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.codegen.texts import resource
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
 from tests.commands import cosserat
@@ -274,9 +277,7 @@ def test_a_folder_without_batches_holds_nothing_of_them(tmp_path: Path) -> None:
         (lambda x: x[0] * x[1] - x[0] / 3.0, True),
         (lambda x: ca.sqrt(x[0]) + ca.exp(x[1]), True),
         (lambda x: ca.fmax(x[0], ca.fabs(x[1])), True),
-        (lambda x: x[0] < x[1], False),
-        (lambda x: ca.if_else(x[0], x[1], 0.0), False),
-        (lambda x: ca.logic_not(x[0]), False),
+        (lambda x: ca.if_else(x[0] < 2.0, x[1], 0.0), True),
         (lambda x: ca.tanh(x[0]), False),
     ],
 )
@@ -288,6 +289,54 @@ def test_what_lanes_cannot_do_together_is_known(written: Callable[[ca.SX], ca.SX
         return
     with pytest.raises(UnknownOperationError):
         scalars_in_c(function, function, LANES_OF_ROWS)
+
+
+CHOICES = {
+    "less": lambda x, y: x < y,
+    "at_most": lambda x, y: x <= y,
+    "equal": lambda x, y: x == y,
+    "unequal": lambda x, y: x != y,
+    "not": lambda x, _: x == 0.0,
+    "and": lambda x, y: (x != 0.0) & (y != 0.0),
+    "or": lambda x, y: (x != 0.0) | (y != 0.0),
+    "if": lambda x, y: np.where(x != 0.0, y, 0.0),
+    "sign": lambda x, _: np.sign(x),
+    "fmax": lambda x, y: np.fmax(x, y),
+    "fmin": lambda x, y: np.fmin(x, y),
+}
+"""What numpy says of each choice in lanes, by its name behind ``lanes_``."""
+
+OF_ONE = ("not", "sign")
+
+
+def test_every_lane_chooses_for_itself() -> None:
+    numbers = [0.0, -0.0, 1.0, -2.5, 1e-300, np.inf, -np.inf, np.nan]
+    pairs = np.array([(x, y) for x in numbers for y in numbers])
+    functions = [
+        f"void {name}_of(const lanes *x, const lanes *y, lanes *z) {{ *z = lanes_{name}({operands}); (void)y; }}"
+        for name, operands in zip(CHOICES, ["*x" if name in OF_ONE else "*x, *y" for name in CHOICES], strict=True)
+    ]
+    source = "\n".join(["#include <math.h>", "#define LANES 4", '#include "lanes_arithmetic.h"', *functions])
+    texts = {"choices.c": source, "lanes_arithmetic.h": resource("c", "lanes_arithmetic.h")}
+    library = ctypes.CDLL(os.fspath(compiler.compiled_texts("choices", texts, compiler.find_compiler())))
+    for name, expected in CHOICES.items():
+        function = library[f"{name}_of"]
+        for first in range(0, len(pairs), 4):
+            x, y = np.ascontiguousarray(pairs[first : first + 4].T)
+            found = np.full(4, -7.0)
+            function(*[ctypes.c_void_p(array.ctypes.data) for array in (x, y, found)])
+            assert_array_equal(found, np.asarray(expected(x, y), dtype=float), err_msg=f"{name}({x}, {y})")
+
+
+def test_rows_in_smooth_contact_are_the_same() -> None:
+    """Some rows press with all of the rod, some with its tip, some with nothing."""
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, -0.1], "normal": [0, 0, 1], "width": 8e-2}
+    lying = rod("planar", base={"tangent": [1, 0, 0]})
+    library = libraries(scene(push(), rods=[lying], accuracy={"modes": 2, "nodes": 4}, obstacles=[floor]))
+    inputs = np.zeros((40, 3))
+    inputs[:, 2] = np.linspace(-1.0, 0.3, 40)
+    found = assert_same(library, inputs)
+    assert_array_equal(found[:, 0], CONVERGED)
 
 
 @pytest.mark.slow

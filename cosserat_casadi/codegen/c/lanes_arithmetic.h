@@ -45,9 +45,32 @@ IN_PLACE lanes lanes_sqrt(lanes x) { return (lanes)__builtin_ia32_sqrtpd256(x); 
 LANE_AFTER_LANE(sqrt)
 #endif
 
-/* As fmax does, a number beside what is none. */
-IN_PLACE lanes lanes_fmax(lanes x, lanes y) {
-  lanes larger;
-  for (int i = 0; i < LANES; i++) larger[i] = x[i] > y[i] || y[i] != y[i] ? x[i] : y[i];
-  return larger;
+/* Comparisons have all bits of a lane set where they hold. */
+typedef long long lane_marks __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+
+/* Numbers in the lanes that are marked, zero in the others, whatever their numbers there. */
+IN_PLACE lanes lanes_where(lane_marks marks, lanes x) { return (lanes)((lane_marks)x & marks); }
+
+IN_PLACE lanes lanes_chosen(lane_marks marks, lanes x, lanes y) {
+  return (lanes)(((lane_marks)x & marks) | ((lane_marks)y & ~marks));
+}
+
+/* As fmax and fmin do, a number beside what is none. */
+IN_PLACE lanes lanes_fmax(lanes x, lanes y) { return lanes_chosen((lane_marks)(x > y) | (lane_marks)(y != y), x, y); }
+IN_PLACE lanes lanes_fmin(lanes x, lanes y) { return lanes_chosen((lane_marks)(x < y) | (lane_marks)(y != y), x, y); }
+
+/* What C writes with operators: 1 where it holds, else 0. */
+#define HOLDS(marks) lanes_where((lane_marks)(marks), IN_ALL(1.0))
+IN_PLACE lanes lanes_less(lanes x, lanes y) { return HOLDS(x < y); }
+IN_PLACE lanes lanes_at_most(lanes x, lanes y) { return HOLDS(x <= y); }
+IN_PLACE lanes lanes_equal(lanes x, lanes y) { return HOLDS(x == y); }
+IN_PLACE lanes lanes_unequal(lanes x, lanes y) { return HOLDS(x != y); }
+IN_PLACE lanes lanes_not(lanes x) { return HOLDS(x == IN_ALL(0.0)); }
+IN_PLACE lanes lanes_and(lanes x, lanes y) { return HOLDS((x != IN_ALL(0.0)) & (y != IN_ALL(0.0))); }
+IN_PLACE lanes lanes_or(lanes x, lanes y) { return HOLDS((x != IN_ALL(0.0)) | (y != IN_ALL(0.0))); }
+
+/* condition ? x : 0, and x < 0 ? -1 : x > 0 ? 1 : x. */
+IN_PLACE lanes lanes_if(lanes condition, lanes x) { return lanes_where((lane_marks)(condition != IN_ALL(0.0)), x); }
+IN_PLACE lanes lanes_sign(lanes x) {
+  return lanes_chosen((lane_marks)(x < IN_ALL(0.0)), IN_ALL(-1.0), lanes_chosen((lane_marks)(x > IN_ALL(0.0)), IN_ALL(1.0), x));
 }
