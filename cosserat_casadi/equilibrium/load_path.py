@@ -86,39 +86,55 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     )
 
 
-def input_path(model: SystemFunctions, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
-    """The path from an equilibrium of the scene to other inputs, on the straight line between them.
+def input_path(
+    model: SystemFunctions,
+    start: FloatArray,
+    before: FloatArray,
+    after: FloatArray,
+    parameters: tuple[FloatArray, FloatArray] | None = None,
+) -> Path:
+    """The path from an equilibrium of the scene to other inputs and parameters, on the straight line between them.
 
     Args:
         model: what to solve.
         start: unknowns at or near the equilibrium at t = 0, shape (model.size,).
         before: stacked inputs at t = 0, shape (model.inputs.size,).
         after: stacked inputs at t = 1, likewise.
+        parameters: of a model that has them, at t = 0 and 1, shape (model.parameters.size,) each.
     """
     change = after - before
+    parameter_change = None if parameters is None else parameters[1] - parameters[0]
     load_factor = 1.0
     path_residual = model.path_residual
     path_jacobian = model.path_jacobian
 
-    def inputs_at(t: float) -> FloatArray:
-        # Exact at both ends, however far apart they are.
-        left = (1.0 - t) * before
-        return left + t * after
+    def given(t: float) -> list[FloatArray]:
+        inputs = between(before, after, t)
+        return [inputs] if parameters is None else [inputs, between(*parameters, t)]
 
     def residual(x: FloatArray, t: float) -> FloatArray:
-        g = path_residual(x, inputs_at(t), load_factor)
+        g = path_residual(x, *given(t), load_factor)
         return column(g)
 
     def jacobian(x: FloatArray, t: float) -> Jacobian:
-        sparse = path_jacobian(x, inputs_at(t), load_factor)
+        sparse = path_jacobian(x, *given(t), load_factor)
         return _solvable(model, sparse)
 
     def rate(x: FloatArray, t: float) -> FloatArray:
         load_factor_rate = 0.0
-        dg_dt = model.path_rate(x, inputs_at(t), load_factor, change, load_factor_rate)
-        return column(dg_dt)
+        arguments = given(t)
+        dg_dt = column(model.path_rate(x, *arguments, load_factor, change, load_factor_rate))
+        if parameter_change is not None and np.any(parameter_change):
+            dg_dt = dg_dt + column(model.parameter_jacobian(x, *arguments) @ parameter_change)
+        return dg_dt
 
     return Path(residual, jacobian, rate, start, step_weights=model.step_weights)
+
+
+def between(before: FloatArray, after: FloatArray, t: float) -> FloatArray:
+    """Values on the straight line between two, exact at both ends, however far apart they are."""
+    left = (1.0 - t) * before
+    return left + t * after
 
 
 def first_step(model: Model) -> float:

@@ -6,8 +6,8 @@ by their depth; here the straight way between them is. So it is with rods that p
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from math import isfinite
 
 import numpy as np
@@ -21,11 +21,13 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
     is_inside_between,
     seen_from,
 )
+from cosserat_casadi.equilibrium.load_path import between
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.numerics.continuation import Path, PathPoint
 
 EVERY = 2
 """Sections of rods that touch rods of which one is looked at."""
@@ -56,31 +58,38 @@ class SmoothBarriers:
         """Whether there is anything to watch."""
         return bool(self.watched or self.watched_bodies or self.model.discrete.pairs)
 
-    def are_between(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
+    def are_between(
+        self,
+        before: FloatArray,
+        after: FloatArray,
+        inputs: tuple[FloatArray, FloatArray],
+        earlier: SmoothBarriers | None = None,
+    ) -> bool:
         """Whether a rod or body is deep inside one on the straight way between two shapes, and at neither of its ends.
 
         Args:
             before: unknowns at the start, shape (model.size,).
             after: unknowns at the end, likewise.
             inputs: stacked inputs at start and end.
+            earlier: of the model with the parameters at the start; where they are other ones.
         """
+        at_start = earlier or self
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            start = self._looked_at[rod].positions(obstacle, before, inputs[0])
+            start = at_start._looked_at[rod].positions(obstacle, before, inputs[0])
             end = self._looked_at[rod].positions(obstacle, after, inputs[1])
             assert obstacle.width is not None
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
-        if any(self._is_inside_between(layer, before, after, inputs) for layer in self.watched_bodies):
-            return True
-        return self.rods_pass(before, after, inputs)
+        for layer in self.watched_bodies:
+            way = (at_start._place(layer, before, inputs[0]), self._place(layer, after, inputs[1]))
+            if self._is_inside_between(layer, *way):
+                return True
+        return self.rods_pass(before, after, inputs, earlier)
 
-    def _is_inside_between(
-        self, layer: ContactLayer, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]
-    ) -> bool:
-        """Whether the largest ball in a body or a disk is deep inside an obstacle on the way, as above."""
-        start, end = (self._place(layer, *state) for state in zip((before, after), inputs, strict=True))
+    def _is_inside_between(self, layer: ContactLayer, start: FloatArray, end: FloatArray) -> bool:
+        """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between two positions."""
         discrete = self.model.discrete
         if layer.body is not None:
             length = discrete.body_frame(layer.body).length
@@ -101,16 +110,29 @@ class SmoothBarriers:
         along = self._looked_at[layer.rod].positions(layer.obstacle, x, inputs)
         return np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T])
 
-    def rods_pass(self, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]) -> bool:
+    def rods_pass(
+        self,
+        before: FloatArray,
+        after: FloatArray,
+        inputs: tuple[FloatArray, FloatArray],
+        earlier: SmoothBarriers | None = None,
+    ) -> bool:
         """Whether rods pass through each other, or a rod through itself, on the straight way, as above."""
-        return any(self._pass_each_other(pair, before, after, inputs) for pair in self.model.discrete.pairs)
+        at_start = earlier or self
+        pairs = zip(at_start.model.discrete.pairs, self.model.discrete.pairs, strict=True)
+        return any(
+            self._pass_each_other(
+                pair,
+                section_positions(at_start.model, own, before, inputs[0]),
+                section_positions(self.model, pair, after, inputs[1]),
+            )
+            for own, pair in pairs
+        )
 
     def _pass_each_other(
-        self, pair: ContactPair, before: FloatArray, after: FloatArray, inputs: tuple[FloatArray, FloatArray]
+        self, pair: ContactPair, starts: tuple[FloatArray, FloatArray], ends: tuple[FloatArray, FloatArray]
     ) -> bool:
-        """Whether the axes of two rods come nearer than half their thickness on the way."""
-        starts = section_positions(self.model, pair, before, inputs[0])
-        ends = section_positions(self.model, pair, after, inputs[1])
+        """Whether the axes of two rods come nearer than half their thickness on the way of their sections."""
         moved = [end - start for start, end in zip(starts, ends, strict=True)]
         # Every other section: they are nearer each other than half the thickness.
         meets = pair.meets[::EVERY, ::EVERY]
@@ -128,3 +150,34 @@ class SmoothBarriers:
     def _looked_at(self) -> dict[str, LookedAt]:
         of_disks = {layer.rod for layer in self.watched_bodies if layer.rod is not None}
         return {rod: LookedAt(self.model, rod) for rod in {rod for rod, _ in self.watched} | of_disks}
+
+
+def past_no_obstacle(
+    path: Path,
+    model: Model,
+    inputs: tuple[FloatArray, FloatArray],
+    parameters: tuple[FloatArray, FloatArray] | None = None,
+) -> Path:
+    """A path without steps through smooth bars, balls and rods; the path itself in a scene that has none.
+
+    Args:
+        path: of a model on the straight line to other inputs, and perhaps parameters.
+        model: the model.
+        inputs: stacked inputs at t = 0 and 1.
+        parameters: of a model that has them, at t = 0 and 1.
+    """
+    barriers = SmoothBarriers(model)
+    if not barriers.any:
+        return path
+
+    # A step is looked at from the end of the last one.
+    @lru_cache(maxsize=2)
+    def barriers_at(t: float) -> SmoothBarriers:
+        return barriers if parameters is None else SmoothBarriers(model.at(between(*parameters, t)))
+
+    def admits(before: PathPoint, after: PathPoint) -> bool:
+        (first, t), (last, target) = before, after
+        at_ends = (between(*inputs, t), between(*inputs, target))
+        return not barriers_at(target).are_between(first, last, at_ends, barriers_at(t))
+
+    return replace(path, admits=admits)

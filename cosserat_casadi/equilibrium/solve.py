@@ -21,7 +21,7 @@ from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
@@ -29,7 +29,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.system_functions import SystemFunctions
-from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, PathPoint, follow
+from cosserat_casadi.numerics.continuation import ContinuationSettings, follow
 from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
@@ -293,26 +293,10 @@ def _continuation(task: _Task) -> _End:
         if corrected is not None:
             return _End(corrected.x, corrected.outcome, corrected.iterations)
         path = load_path(task.model, task.inputs)
-    path = _past_no_smooth_obstacle(task, path)
+    first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
+    path = past_no_obstacle(path, task.model, (first, task.inputs))
     result = follow(path, task.limits, task.progress)
     return _End(result.x, result.outcome, result.iterations, result.reached)
-
-
-def _past_no_smooth_obstacle(task: _Task, path: Path) -> Path:
-    """A path without steps through smooth bars and balls; the path itself in a scene that has none."""
-    barriers = SmoothBarriers(task.model)
-    if not barriers.any:
-        return path
-    first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
-
-    def inputs_at(t: float) -> FloatArray:
-        return np.asarray(first + t * (task.inputs - first))
-
-    def admits(before: PathPoint, after: PathPoint) -> bool:
-        inputs = (inputs_at(before[1]), inputs_at(after[1]))
-        return not barriers.are_between(before[0], after[0], inputs)
-
-    return replace(path, admits=admits)
 
 
 def _corrected_guess(task: _Task) -> NewtonResult | None:

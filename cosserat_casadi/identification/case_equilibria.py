@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import column, continuation_limits, load_path
+from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.continuation import Path, follow
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
@@ -72,13 +74,16 @@ class Equilibria:
         model: of the scene, with its parameters.
         cases: their number.
         sought: which cases are to be in equilibrium, shape (cases,); the others stay unloaded.
+        barred: cases of which a step was refused, for it led through a smooth bar, ball or rod, shape (cases,).
     """
 
     def __init__(self, model: AnyModel, cases: int, unloaded: Flags | None = None) -> None:
         self.model = model
         self.cases = cases
         self.sought: Flags = np.ones(cases, dtype=bool) if unloaded is None else ~unloaded
+        self.barred: Flags = np.zeros(cases, dtype=bool)
         self._tolerance = NewtonSettings()
+        self._barriers_at = None if isinstance(model, TubeFunctions) else _barriers_of(model)
 
     @cached_property
     def _residual(self) -> ca.Function:
@@ -181,7 +186,9 @@ class Equilibria:
             solution = solve_at(model.at(p), inputs)
             return solution.x, solution.outcome
         given = p if model.parameters.size else None
-        end = follow(load_path(model, inputs, given), continuation_limits(model))
+        path = load_path(model, inputs, given)
+        path = past_no_obstacle(path, model, (inputs, inputs), None if given is None else (given, given))
+        end = follow(path, continuation_limits(model, watched=True))
         return end.x, end.outcome
 
     def _inverses(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
@@ -259,9 +266,10 @@ class Equilibria:
         x, inverses, converged = self._newton(predicted, inputs, p, near.inverses)
         moved = np.linalg.norm((x - predicted)[:, self.model.shape_unknowns], axis=1)
         reached = converged & (moved <= MAX_DISTANCE)
+        reached &= ~self._barred(near, x, inputs, p, reached)
         astray = np.flatnonzero(~reached & far)
         for case in astray:
-            end = follow(self._path(near, int(case), inputs[case], p), continuation_limits(self.model))
+            end = follow(self._path(near, int(case), inputs[case], p), continuation_limits(self.model, watched=True))
             if end.outcome is Outcome.CONVERGED:
                 x[case] = end.x
                 reached[case] = True
@@ -301,34 +309,36 @@ class Equilibria:
         return x, inverses, norms <= self._tolerance.tolerance
 
     def _path(self, near: Point, case: int, inputs: FloatArray, p: FloatArray) -> Path:
-        """The path of one case on the straight line to other inputs and parameters."""
+        """The path of one case on the straight line to other inputs and parameters, past no obstacle."""
         model = self.model
-        inputs_change = inputs - near.inputs[case]
-        p_change = p - near.p
+        ends = (near.inputs[case], inputs)
+        parameters = (near.p, p) if model.parameters.size else None
+        path = input_path(model, near.x[case], *ends, parameters)
+        return path if isinstance(model, TubeFunctions) else past_no_obstacle(path, model, ends, parameters)
 
-        def given(t: float) -> list[FloatArray]:
-            values = [near.inputs[case] + t * inputs_change]
-            if model.parameters.size:
-                values.append(near.p + t * p_change)
-            return values
+    def _barred(self, near: Point, x: FloatArray, inputs: FloatArray, p: FloatArray, reached: Flags) -> Flags:
+        """Which of the cases reached would go through a smooth bar, ball or rod on the way, shape (cases,)."""
+        barred: Flags = np.zeros(self.cases, dtype=bool)
+        if self._barriers_at is None:
+            return barred
+        try:
+            before, after = (self._barriers_at(own.tobytes()) for own in (near.p, p))
+        except SceneError:
+            # The scene refuses such parameters: where its rods would be is not known.
+            return reached
+        for case in np.flatnonzero(reached & self.sought):
+            ends = (near.inputs[case], inputs[case])
+            barred[case] = after.are_between(near.x[case], x[case], ends, before)
+        self.barred |= barred
+        return barred
 
-        def residual(x: FloatArray, t: float) -> FloatArray:
-            return column(model.residual(x, *given(t)))
 
-        def jacobian(x: FloatArray, t: float) -> FloatArray:
-            dense: FloatArray = model.jacobian(x, *given(t))[0].full()
-            return dense
-
-        def rate(x: FloatArray, t: float) -> FloatArray:
-            arguments = given(t)
-            change = np.zeros(model.size)
-            if np.any(inputs_change):
-                change += column(model.input_jacobian(x, *arguments) @ inputs_change)
-            if np.any(p_change):
-                change += column(model.parameter_jacobian(x, *arguments) @ p_change)
-            return change
-
-        return Path(residual, jacobian, rate, near.x[case], step_weights=model.step_weights)
+def _barriers_of(model: Model) -> Callable[[bytes], SmoothBarriers] | None:
+    """Smooth bars, balls and rods at given parameters, as bytes; None in a scene that has none."""
+    if not SmoothBarriers(model).any:
+        return None
+    # A step leads between two sets of parameters.
+    return lru_cache(maxsize=2)(lambda p: SmoothBarriers(model.at(np.frombuffer(p))))
 
 
 def resolution_index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:

@@ -39,6 +39,7 @@ class Ending:
         beyond: cases that are beyond a limit of a path or a law, and which limit that is.
         joint_modes: measured modes of one frequency.
         kinks: contacts that come or go, or change, where the search ended.
+        barred: cases of which steps were refused that led through an obstacle or a rod.
         warnings: sentences on what looks wrong.
     """
 
@@ -50,6 +51,7 @@ class Ending:
     beyond: list[tuple[str, BeyondLimit]] = field(default_factory=list)
     joint_modes: list[JointModes] = field(default_factory=list)
     kinks: list[str] = field(default_factory=list)
+    barred: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     def without_equilibrium(self, *, stopped: bool) -> Identification:
@@ -180,6 +182,12 @@ class Ending:
             remarks.append(
                 f"The residuals are {rms:.3g} standard deviations (rms): the model does not explain the data to the "
                 "accuracy that sigma states."
+            )
+        if self.barred and (not found.converged or (rms is not None and rms > POOR)):
+            remarks.append(
+                f"Steps that led through an obstacle or a rod were refused in {named(self.barred)}: rods stay on the "
+                "side on which the scene has them. Check on which side they were measured, or begin nearer to the "
+                "answer."
             )
         if found.converged and found.statistics.unseen:
             directions = "; ".join(described(direction) for direction in found.statistics.unseen)

@@ -130,6 +130,7 @@ class Task:
         ending.unstable += misfit.unstable(fit.state)
         ending.unresolved += misfit.unresolved(fit.state)
         ending.beyond += misfit.beyond_limits(fit.state)
+        ending.barred += misfit.barred
         if fit.beyond is not None and fit.outcome is not FitOutcome.CONVERGED:
             ending.kinks += misfit.at_kink(fit.state, fit.beyond)
         else:

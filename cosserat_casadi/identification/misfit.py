@@ -172,6 +172,11 @@ class Misfit:
         """Changes in these cases, in words."""
         return []
 
+    @property
+    def barred(self) -> list[str]:
+        """Cases of which a step was refused, for it led through a smooth obstacle or a rod."""
+        return [case.where for case, barred in zip(self.cases, self.equilibria.barred, strict=True) if barred]
+
     def unstable(self, state: MisfitState) -> list[str]:
         """Cases whose equilibrium is unstable, where that has a meaning."""
         flags = self.equilibria.unstable(state.point)

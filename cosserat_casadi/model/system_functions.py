@@ -80,6 +80,10 @@ class SystemFunctions(OfScene, Protocol):
         """(x, inputs) ↦ its derivative with the inputs."""
 
     @property
+    def parameter_jacobian(self) -> ca.Function:
+        """(x, inputs, p) ↦ its derivative with the parameters, of a system that has some."""
+
+    @property
     def path_residual(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ residual."""
 

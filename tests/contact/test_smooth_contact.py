@@ -19,6 +19,7 @@ from cosserat_casadi import (
     discretise,
     export,
     follow,
+    identify,
     inverse,
     linearise,
     load,
@@ -616,6 +617,34 @@ def test_parameters_that_change_at_once_take_no_rod_through_a_wire() -> None:
     nearer = solve(model, parameters={name: 4.0}, start=above)
     assert nearer.converged
     assert nearer.pose(0.9).position[2] < above.pose(0.9).position[2]
+
+
+MEASURED_TIP = """
+[[measurements]]
+name = "tip"
+quantity = "position"
+file = "tip.csv"
+rod = "rod"
+columns = ["x", "y", "z"]
+sigma = 1e-3
+[[unknowns]]
+parameter = "rod.stiffness.bending_y"
+lower = 0.1
+upper = 20.0
+"""
+
+
+def test_a_fit_takes_no_rod_through_a_wire() -> None:
+    """A tip that hangs below the wire: no stiffness brings the rod there from above, and the fit says why."""
+    few = ["accuracy.modes=3", "accuracy.nodes=8"]
+    below = solve(build(parse_scene(ROD + PUSH, few))).tip().position
+    scene = parse_scene(ROD + PUSH + WIRE + MEASURED_TIP, [*few, "rod.stiffness.bending_y=2.0"])
+    model = build(scene.with_unknowns())
+    found = identify(model, {"tip": {axis: [place] for axis, place in zip("xyz", below, strict=True)}})
+    position, _, _ = model.at(found.shared).tip["rod"](found.unknowns_x[0], found.inputs[0])
+    assert -0.2 < float(position[2]) < -0.1
+    assert found.at_bounds == ("rod.stiffness.bending_y",)
+    assert any("through an obstacle or a rod were refused" in warning for warning in found.warnings)
 
 
 def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:
