@@ -28,8 +28,9 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
+from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.model.system_functions import SystemFunctions
-from cosserat_casadi.numerics.continuation import ContinuationSettings, follow
+from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
 from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
@@ -43,7 +44,7 @@ IN_CONTACT = " Rods in contact cannot be let settle to less energy."
 NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
 """Sentence in the message of a solution where no try led to a stable equilibrium."""
 
-AT_ONCE = " Parameters change at once, and rods would pass through an obstacle or a rod: change them by less."
+AT_ONCE = " The start has other parameters, and rods would pass through an obstacle or a rod: change them by less."
 """Sentence in the message where a solution with other parameters does not lead to one."""
 
 Start = Solution | FloatArray | None
@@ -56,6 +57,7 @@ class _Task:
 
     Attributes:
         model: what to solve.
+        parametric: the same with its parameters.
         inputs: stacked inputs, shape (model.inputs.size,).
         start: where to start.
         limits: limits of the continuation.
@@ -63,6 +65,7 @@ class _Task:
     """
 
     model: Model
+    parametric: Model
     inputs: FloatArray
     start: Start
     limits: ContinuationSettings
@@ -117,9 +120,10 @@ def solve(
         parameters: parameters by name, or all of them stacked, as :meth:`Model.at` takes them; the model of the
             solution is that one. By default the scene's values.
         start: where to start; by default the unloaded rod. From a solution of the same model, continuation follows
-            the inputs from those of the solution to the wanted ones, and so stays on its branch; of a scene with
-            obstacles, the contacts of the solution are tried first. From unknowns of
-            shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
+            the inputs from those of the solution to the wanted ones, and so stays on its branch. Other parameters
+            than those of the solution are taken at once and, where that fails, followed together with the inputs. Of a
+            scene with obstacles, the contacts of the solution are tried first. From unknowns of shape (size,), Newton
+            is tried at the wanted inputs, and the unloaded rod where that strays.
         method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
             at the full load and may find another branch, or none.
         stable: whether a stable equilibrium is wanted: where the method ends at an unstable one, or at none, the rod
@@ -136,7 +140,7 @@ def solve(
         SolveError: no equilibrium was found and ``raise_on_failure`` is set.
         ValueError: unknown method, or a start of another model.
     """
-    model = model.at(parameters)
+    parametric, model = model, model.at(parameters)
     limits = settings or continuation_limits(model, watched=True)
     if model.scene.touches_exactly:
         values = _values_in_contact(model, values)
@@ -150,7 +154,7 @@ def solve(
             raise SolveError(solution.message)
         return solution
     inputs = _stacked(model, values)
-    task = _Task(model, inputs, start, limits, progress)
+    task = _Task(model, parametric, inputs, start, limits, progress)
     unknowns = len(task.first_iterate)
     if unknowns != model.size:
         raise ValueError(f"the start has {unknowns} unknowns, the model {model.size}")
@@ -296,7 +300,26 @@ def _continuation(task: _Task) -> _End:
     first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
     path = past_no_obstacle(path, task.model, (first, task.inputs))
     result = follow(path, task.limits, task.progress)
+    if result.outcome is not Outcome.CONVERGED:
+        result = _with_parameters(task, result)
     return _End(result.x, result.outcome, result.iterations, result.reached)
+
+
+def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationResult:
+    """The end of the path on which parameters change with the inputs, where it leads to one; else that which failed."""
+    start, model = task.start, task.parametric
+    if not isinstance(start, Solution) or start.model is task.model or not model.parameters.size:
+        return failed
+    if start.model.discrete.nominal is not model.discrete.nominal:
+        return failed
+    named = model.scene.parameters
+    own = (one.scene.model_copy(update={"parameters": named}) for one in (start.model, task.model))
+    before, after = (parameter_layout(scene).pack() for scene in own)
+    path = input_path(model, start.x, start.inputs, task.inputs, (before, after))
+    path = past_no_obstacle(path, model, (start.inputs, task.inputs), (before, after))
+    result = follow(path, task.limits, task.progress)
+    iterations = failed.iterations + result.iterations
+    return replace(result if result.outcome is Outcome.CONVERGED else failed, iterations=iterations)
 
 
 def _corrected_guess(task: _Task) -> NewtonResult | None:

@@ -30,6 +30,7 @@ from cosserat_casadi import (
     solve,
 )
 from cosserat_casadi.control import embedded
+from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
 from cosserat_casadi.loads.load_trace import traced
@@ -603,20 +604,41 @@ def test_no_step_from_a_solution_passes_through_a_thin_wire() -> None:
 
 
 def test_parameters_that_change_at_once_take_no_rod_through_a_wire() -> None:
-    """A rod above a wire that becomes as soft as one below it stays where it is, and the message says what to do."""
+    """A rod above a wire that becomes as soft as one below it comes to lie on the wire, as parameters are followed.
+
+    From a solution of another model nothing can be followed: it stays where it is, and the message says what to do.
+    """
     name = "rod.stiffness.bending_y"
-    model = build(parse_scene(f'parameters = ["{name}"]' + ROD + PUSH + WIRE))
+    few = ["accuracy.modes=3", "accuracy.nodes=8"]
+    model = build(parse_scene(f'parameters = ["{name}"]' + ROD + PUSH + WIRE, few))
     above = solve(model, parameters={name: 5.0})
     assert above.converged and not above.contacts
-    below = solve(build(parse_scene(ROD + PUSH)))
+    below = solve(build(parse_scene(ROD + PUSH, few)))
     assert below.pose(0.9).position[2] < -0.15
-    jumped = solve(model, start=above)
+    held = solve(model, start=above)
+    assert held.converged
+    assert [contact.obstacle for contact in held.contacts] == ["wire"]
+    assert_allclose(held.tip().position, solve(model).tip().position, rtol=0, atol=1e-6)
+    jumped = solve(build(parse_scene(ROD + PUSH + WIRE, few)), start=above)
     assert jumped.outcome is Outcome.LOAD_STALLED
     assert "change them by less" in jumped.message
     assert_allclose(jumped.x, above.x, rtol=0, atol=0)
     nearer = solve(model, parameters={name: 4.0}, start=above)
     assert nearer.converged
     assert nearer.pose(0.9).position[2] < above.pose(0.9).position[2]
+
+
+def test_a_path_to_other_inputs_and_parameters_knows_its_rate() -> None:
+    """Against central differences of the residual, beside the wire, where all of them act."""
+    model = build(parse_scene('parameters = ["rod.stiffness.bending_y", "wire.width"]' + ROD + PUSH + WIRE))
+    assert model.parameters.size == 2
+    inputs = model.pack()
+    x = solve(model, estimate_error=False).x
+    ends = (inputs, inputs + 0.1 * np.arange(inputs.size)), (model.parameters.pack(), np.array([2.0, 1.5e-3]))
+    path = input_path(model, x, *ends[0], ends[1])
+    step = 1e-6
+    differences = (path.residual(x, 0.3 + step) - path.residual(x, 0.3 - step)) / (2 * step)
+    assert_allclose(path.rate(x, 0.3), differences, rtol=0, atol=1e-7 * np.abs(differences).max())
 
 
 MEASURED_TIP = """
