@@ -71,7 +71,10 @@ class _Record(ctypes.Structure):
         *((name, POINTER) for name in ("stage_times", "stage_x", "stage_v", "stage_a", "stage_results")),
         *((name, POINTER) for name in ("matrices", "linearised_at", "kept_at", "now", "before", "room")),
         *((name, POINTER) for name in ("facts", "ends", "stages", "tried_at")),
-        *((name, ctypes.c_double) for name in ("stop", "newton", "lasting", "longest_allowed", "shortest", "time")),
+        *(
+            (name, ctypes.c_double)
+            for name in ("stop", "newton", "lasting", "drifting", "longest_allowed", "shortest", "time")
+        ),
         *((name, ctypes.c_double) for name in ("linearised_time", "kept_time", "before_size", "longest", "wanted")),
         *((name, ctypes.c_double) for name in ("size", "last_size", "last_error", "factorised")),
         *((name, ctypes.c_int) for name in ("refused", "linearised", "kept", "fresh", "singular_steps", "reason")),
@@ -197,6 +200,7 @@ class CompiledSteps:
         self._share("stage_times", np.zeros(STAGES))
         self._share("room", np.zeros(self._library.steps_room(n, record.inputs)))
         record.lasting = run.settings.lasting
+        record.drifting = run.settings.drifting
         record.longest_allowed = control.longest
         record.reason = OUTCOMES.index(StepOutcome.STEP_TOO_SMALL)
         if run.before is not None:

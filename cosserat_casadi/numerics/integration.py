@@ -44,6 +44,8 @@ class StepSettings:
         shortest: shortest step, as a share of the piece.
         newton: error that Newton's method may leave, over the tolerance.
         lasting: time, s, over which the error of a shorter step acts: it counts by its quotient with the step.
+        drifting: time, s, below which Newton's method may leave less, as the step is shorter: its error over the step
+            is one of velocities, and what nothing holds keeps them.
     """
 
     tolerance: FloatArray
@@ -53,6 +55,7 @@ class StepSettings:
     shortest: float = 1e-9
     newton: float = 1e-3
     lasting: float = 0.0
+    drifting: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -184,7 +184,9 @@ class StepRun:
             self.factorisations += 1
         if self.matrices is None:
             return StepOutcome.SINGULAR
-        solution = solve_stages(self.equations, self.matrices, self.now, guess, self.bounds)
+        share = min(1.0, self.size / self.settings.drifting) if self.settings.drifting else 1.0
+        bounds = replace(self.bounds, error=share * self.bounds.error)
+        solution = solve_stages(self.equations, self.matrices, self.now, guess, bounds)
         self.iterations += solution.iterations
         if solution.outcome is StageOutcome.CONVERGED:
             return solution

@@ -112,6 +112,14 @@ def test_errors_of_short_steps_act_for_a_while() -> None:
     assert steps[1] > steps[0]
 
 
+def test_short_steps_are_solved_more_exactly() -> None:
+    iterations = []
+    for drifting in (0.0, 10.0):
+        taken = assert_same(run_of(DUFFING, [1.0], [0.3], 3.0, 1e-6, settings={"drifting": drifting}), atol=1e-8)
+        iterations.append(taken.statistics.iterations)
+    assert iterations[1] > iterations[0]
+
+
 def test_what_is_looked_at_after_each_step() -> None:
     times: list[float] = []
 

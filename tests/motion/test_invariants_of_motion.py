@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, Motion, simulate
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion import history
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.trajectory import MotionState
@@ -193,6 +194,19 @@ def test_impulse_of_loads_is_what_momentum_gains() -> None:
     # The linear density of the rod is 0.9 at its base and falls to 0.7 at its tip: 0.8 kg/m on average.
     last = len(motion.times) - 1
     assert_allclose(found[last] - drop, (impulse + weighing)[last], rtol=0, atol=2e-6)
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_what_flies_free_keeps_no_speed_of_short_steps(monkeypatch: pytest.MonkeyPatch, free: bool) -> None:
+    """Where more steps count as short Newton's method takes more iterations for them; what is held drifts nowhere."""
+    rod = undamped(base=FREE) if free else undamped()
+    scene = moving_scenes.scene(rod, loads=[moving_scenes.PUSH])
+    iterations = []
+    for share in (history.DRIFTING, 100.0):
+        monkeypatch.setattr(history, "DRIFTING", share)
+        motion = simulated(scene, start="unloaded", duration=0.02, tolerance=1e-3)
+        iterations.append(motion.statistics.iterations)
+    assert (iterations[1] > iterations[0]) == free
 
 
 def test_free_fall_is_a_parabola_without_strain() -> None:

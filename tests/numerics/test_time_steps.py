@@ -380,6 +380,28 @@ def test_a_blow_shorter_than_errors_of_position_tell_is_right_in_its_velocity() 
     assert errors[1] < 0.1 * errors[0]
 
 
+def test_short_steps_leave_no_speed_that_lasts() -> None:
+    """With a mass that is wrong in the Jacobian Newton's method stops where positions are right, and velocities not."""
+    width = 1e-6
+    signs = np.array([1.0, -1.0, 1.0, 2.0])
+
+    def blow(t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+        return signs * np.exp(-(((t - 3 * width) / width) ** 2)) / (width * np.sqrt(np.pi))
+
+    none = np.zeros((4, 4))
+    exact = explicit(blow, lambda t, x, v: none, lambda t, x, v: none, 4)
+    equations = replace(exact, jacobians=lambda t, x, v, a: (none, none, np.diag([1.3, 0.8, 0.6, 1.6])))
+    start = Instant(0.0, np.zeros(4), np.zeros(4), blow(0.0, np.zeros(4), np.zeros(4)))
+    errors = []
+    for drifting in (0.0, 1e-3, 1.0):
+        settings = StepSettings(np.full(4, 1e-6), first=1e-7, longest=2e-7, drifting=drifting)
+        motion = integrate(equations, start, 1e-5, radau(3), settings)
+        errors.append(np.abs(motion.end.v - 0.5 * (erf(7.0) + erf(3.0)) * signs).max())
+    assert errors[0] > 1e-3
+    assert errors[1] < 1e-5
+    assert errors[2] < 1e-8
+
+
 @pytest.mark.parametrize("until", [0.5, 0.6, 0.7])
 def test_equal_steps_that_go_on_from_within_a_step_are_as_long_as_they_say(until: float) -> None:
     """A parabola is met exactly: a step whose length differs from the time it is said to take leaves it."""

@@ -97,7 +97,8 @@ typedef struct {
   real *tried_at; /* time before each try */
   real stop;
   real newton; /* weighted error that Newton's method may leave */
-  real lasting; /* time over which the error of a shorter step acts */
+  real lasting;  /* time over which the error of a shorter step acts */
+  real drifting; /* time below which Newton's method may leave less, as the step is shorter */
   real longest_allowed;
   real shortest;
   real time;
@@ -606,7 +607,8 @@ static solver_motion_status not_solved(workspace *work) {
 
 static solver_motion_status solve_with_jacobian(real *contraction, workspace *work, solver_step_info *info) {
   const step_start start = {work->now, work->size};
-  const real allowed = larger(work->newton, STAGE_ROUNDING * weighted_length(work->now, 1, work));
+  const real share = work->size < work->drifting ? work->size / work->drifting : 1;
+  const real allowed = larger(share * work->newton, STAGE_ROUNDING * weighted_length(work->now, 1, work));
   const stage_factors factors = 0;
   guess_stages(work->iterate, work);
   if (!work->linearised) renew_jacobian(work->iterate, work);
