@@ -30,6 +30,8 @@ from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import RELAXED, WIDTH, refuse_obstacles
 from cosserat_casadi.motion.collocated_stage import algebraic_places, differential_places
@@ -42,8 +44,8 @@ class AcadosExpressions:
 
     Attributes:
         name: of the model, a C identifier.
-        x: states, SX symbols: the stacked inputs, shape (model.inputs.size,); in motion before them the differential
-            unknowns of the model and their velocities, 1/s.
+        x: states, symbols of SX, or of MX where rods touch rods: the stacked inputs, shape (model.inputs.size,); in
+            motion before them the differential unknowns of the model and their velocities, 1/s.
         xdot: their derivatives.
         u: controls: the rates of the inputs, units per second.
         z: algebraic states: the unknowns of the model, shape (model.size,); in motion the algebraic ones of them.
@@ -53,12 +55,12 @@ class AcadosExpressions:
     """
 
     name: str
-    x: ca.SX
-    xdot: ca.SX
-    u: ca.SX
-    z: ca.SX
-    p: ca.SX
-    f_impl_expr: ca.SX
+    x: Matrix
+    xdot: Matrix
+    u: Matrix
+    z: Matrix
+    p: Matrix
+    f_impl_expr: Matrix
 
     def assign(self, target: Any, *, parameters: str = "p") -> None:
         """Set these attributes of an ``AcadosModel``; costs and constraints are the user's, in x, u, z and p.
@@ -75,7 +77,7 @@ class AcadosExpressions:
 
 
 def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> AcadosExpressions:
-    """The model as an implicit DAE in SX.
+    """The model as an implicit DAE.
 
     Outputs for a cost in the same symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like;
     of a scene with parameters ``expressions.p`` is a third argument.
@@ -114,7 +116,7 @@ def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool =
         "fun_jac_x_xdot_u": ("fun", "jac_x", "jac_xdot", "jac_u"),
         "jac_x_xdot_u_z": ("jac_x", "jac_xdot", "jac_u", "jac_z"),
     }
-    symbols = [dae.x, dae.xdot, dae.u, dae.z, ca.SX.sym("t"), dae.p]
+    symbols = [dae.x, dae.xdot, dae.u, dae.z, type(dae.x).sym("t"), dae.p]
     words = ["x", "xdot", "u", "z", "t", "p"]
     functions = []
     for ending, outputs in wanted.items():
@@ -154,7 +156,7 @@ def write_acados(
     return folder
 
 
-Dae = tuple[AcadosExpressions, dict[str, ca.SX]]
+Dae = tuple[AcadosExpressions, dict[str, Matrix]]
 """An implicit DAE, and its derivatives with x, ẋ, u and z under the names that they have in acados' functions."""
 
 
@@ -165,36 +167,38 @@ def _dae(model: Model | RelaxedContact, name: str, moving: bool) -> Dae:
 
 
 def _dae_at_rest(model: Model | RelaxedContact, name: str) -> Dae:
+    kind = _kind(model.residual)
     count = model.inputs.size
-    x = ca.SX.sym("x", count)
-    xdot = ca.SX.sym("xdot", count)
-    u = ca.SX.sym("u", count)
-    z = ca.SX.sym("z", model.size)
-    p = ca.SX.sym("p", model.parameters.size)
+    x = kind.sym("x", count)
+    xdot = kind.sym("xdot", count)
+    u = kind.sym("u", count)
+    z = kind.sym("z", model.size)
+    p = kind.sym("p", model.parameters.size)
     at = [z, x, p] if model.parameters.size else [z, x]
     by_z, _ = model.jacobian(*at)
-    identity = ca.SX.eye(count)
+    identity = kind.eye(count)
     slopes = {
-        "jac_x": ca.vertcat(ca.SX(count, count), model.input_jacobian(*at)),
-        "jac_xdot": ca.vertcat(identity, ca.SX(model.size, count)),
-        "jac_u": ca.vertcat(-identity, ca.SX(model.size, count)),
-        "jac_z": ca.vertcat(ca.SX(count, model.size), by_z),
+        "jac_x": ca.vertcat(kind(count, count), model.input_jacobian(*at)),
+        "jac_xdot": ca.vertcat(identity, kind(model.size, count)),
+        "jac_u": ca.vertcat(-identity, kind(model.size, count)),
+        "jac_z": ca.vertcat(kind(count, model.size), by_z),
     }
     value = ca.vertcat(xdot - u, ca.cse(model.residual(*at)))
     return AcadosExpressions(name, x, xdot, u, z, p, value), slopes
 
 
 def _dae_in_motion(model: Model, name: str) -> Dae:
+    kind = _kind(model.inverse_dynamics)
     places = differential_places(model)
     held = algebraic_places(model)
     count = model.inputs.size
     size = places.shape[1]
     states = 2 * size + count
-    x = ca.SX.sym("x", states)
-    xdot = ca.SX.sym("xdot", states)
-    u = ca.SX.sym("u", count)
-    z = ca.SX.sym("z", held.shape[1])
-    p = ca.SX.sym("p", model.parameters.size)
+    x = kind.sym("x", states)
+    xdot = kind.sym("xdot", states)
+    u = kind.sym("u", count)
+    z = kind.sym("z", held.shape[1])
+    p = kind.sym("p", model.parameters.size)
     position, velocity, inputs = ca.vertsplit(x, [0, size, 2 * size, states])
     position_rate, acceleration, inputs_rate = ca.vertsplit(xdot, [0, size, 2 * size, states])
     steady = ca.DM(count, 1)
@@ -202,28 +206,41 @@ def _dae_in_motion(model: Model, name: str) -> Dae:
     at = [places @ position + held @ z, places @ velocity, places @ acceleration, *given, u, steady]
     residual = ca.cse(model.inverse_dynamics(*at))
     stiffness, damping, mass, _ = model.dynamics_jacobian(*at)
-    by_inputs = ca.jacobian(residual, inputs)
-    by_rate = ca.jacobian(residual, u)
+    by_inputs, by_rate = _by_inputs(model)(*at)
     value = ca.vertcat(position_rate - velocity, residual, inputs_rate - u)
     # Rows: the rates of the unknowns, the equations of motion, the rates of the inputs.
-    one = ca.SX.eye(size)
-    one_input = ca.SX.eye(count)
-    none = ca.SX(size, size)
+    one = kind.eye(size)
+    one_input = kind.eye(count)
+    none = kind(size, size)
     slopes = {
         "jac_x": ca.vertcat(
-            ca.horzcat(none, -one, ca.SX(size, count)),
+            ca.horzcat(none, -one, kind(size, count)),
             ca.horzcat(stiffness @ places, damping @ places, by_inputs),
-            ca.SX(count, states),
+            kind(count, states),
         ),
         "jac_xdot": ca.vertcat(
-            ca.horzcat(one, none, ca.SX(size, count)),
-            ca.horzcat(ca.SX(model.size, size), mass @ places, ca.SX(model.size, count)),
-            ca.horzcat(ca.SX(count, 2 * size), one_input),
+            ca.horzcat(one, none, kind(size, count)),
+            ca.horzcat(kind(model.size, size), mass @ places, kind(model.size, count)),
+            ca.horzcat(kind(count, 2 * size), one_input),
         ),
-        "jac_u": ca.vertcat(ca.SX(size, count), by_rate, -one_input),
-        "jac_z": ca.vertcat(ca.SX(size, z.numel()), stiffness @ held, ca.SX(count, z.numel())),
+        "jac_u": ca.vertcat(kind(size, count), by_rate, -one_input),
+        "jac_z": ca.vertcat(kind(size, z.numel()), stiffness @ held, kind(count, z.numel())),
     }
     return AcadosExpressions(name, x, xdot, u, z, p, value), slopes
+
+
+def _kind(equations: ca.Function) -> type[ca.SX] | type[ca.MX]:
+    """Scalars, or matrices of equations that leave out what they do not need, as rods that are apart."""
+    return ca.MX if chooses(equations) else ca.SX
+
+
+def _by_inputs(model: Model) -> ca.Function:
+    """Arguments of inverse dynamics ↦ its derivatives with the inputs and with their rates."""
+    function = model.inverse_dynamics
+    symbols = function.mx_in()
+    residual = function(*symbols)
+    wanted = [symbols[function.name_in().index(word)] for word in ("inputs", "inputs_rate")]
+    return ca.Function("by_inputs", symbols, [ca.jacobian(residual, symbol) for symbol in wanted])
 
 
 def _check(model: Model | RelaxedContact, name: str, moving: bool) -> None:

@@ -31,6 +31,7 @@ from cosserat_casadi.codegen.stage import (
     written,
     written_in_c,
 )
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
 
@@ -173,11 +174,12 @@ def _tangents(stage: MotionStage, name: str) -> ca.Function:
 def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂p, ∂F/∂inputs_rate of inverse dynamics at an instant."""
     plain = stage.model.inverse_dynamics
-    scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
-    # Of scalars only what reads an input is differentiated, of matrices all.
-    straight = _by_inputs(stage, scalars, name)
-    if straight.n_instructions() <= STRAIGHT:
-        return straight
+    if not chooses(plain):
+        scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
+        # Of scalars only what reads an input is differentiated, of matrices all.
+        straight = _by_inputs(stage, scalars, name)
+        if straight.n_instructions() <= STRAIGHT:
+            return straight
     return written(_by_inputs(stage, plain.mx_in()[:-1], name), name)
 
 

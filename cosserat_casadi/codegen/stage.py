@@ -22,6 +22,7 @@ from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import identifier, library_names
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem, refuse
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
@@ -112,14 +113,11 @@ def check_scalar(model: Model) -> None:
     """Refuse a model that cannot be written as scalar instructions.
 
     Raises:
-        ExportError: the rotation of a rod is integrated by the literal linear system, or rods touch rods.
+        ExportError: the rotation of a rod is integrated by the literal linear system.
     """
     literal = [rod for rod, chosen in model.discretisation.items() if chosen.transport == "permuted"]
     problem = "the literal linear system of the rotation is solved with pivoting, which has no scalar form"
     refuse([Problem(f"rods.{rod}", problem, "leave accuracy.rotation out") for rod in literal], ExportError)
-    if model.discrete.pairs:
-        problem = "contact of rods is computed where they are near, which has no scalar form"
-        raise ExportError(Problem("rod_contacts", problem, "leave it out"))
 
 
 def _check_wanted(model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]) -> None:
@@ -191,12 +189,22 @@ def adjoint_and_second(plain: ca.Function, slopes: ca.Function, curvature: bool)
 
 
 def written(function: ca.Function, name: str) -> ca.Function:
-    """A function as scalar instructions with common terms shared, or where they are too many for loops in C."""
+    """A function as scalar instructions with common terms shared, or where they are too many for loops in C.
+
+    One that leaves out what it does not need, as rods that are apart, stays as it is.
+    """
+    if chooses(function):
+        return _named(function, name)
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     results = ca.cse(list(function.call(symbols)))
     straight = ca.Function(name, symbols, results, function.name_in(), function.name_out())
     if straight.n_instructions() <= STRAIGHT:
         return straight
+    return _named(function, name)
+
+
+def _named(function: ca.Function, name: str) -> ca.Function:
+    """A function of matrices under a name."""
     if function.name() == name:
         # Around it a second function would have its name.
         return function

@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -291,7 +292,7 @@ def test_what_lanes_cannot_do_together_is_known(written: Callable[[ca.SX], ca.SX
         scalars_in_c(function, function, LANES_OF_ROWS)
 
 
-CHOICES = {
+CHOICES: dict[str, Callable[[FloatArray, FloatArray], Any]] = {
     "less": lambda x, y: x < y,
     "at_most": lambda x, y: x <= y,
     "equal": lambda x, y: x == y,

@@ -5,13 +5,17 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.linalg import eig
 
 from cosserat_casadi import Model, Solution, build, export, inverse, load, modes_of, read_scene, solve
+from cosserat_casadi.codegen.acados import acados_functions
 from cosserat_casadi.codegen.compiled import Compiled
+from cosserat_casadi.codegen.stage import stage_functions
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import Scene
 from tests.conftest import ROOT
 
@@ -104,3 +108,68 @@ def test_c_finds_the_equilibria_and_derivatives_of_python(tmp_path: Path) -> Non
     step = 1e-6 * np.eye(model.inputs.size)[1]
     moved = [solve(model, found.inputs + change, start=found).x for change in (step, -step)]
     assert_allclose(sensitivity[0][:, 1], (moved[0] - moved[1]) / 2e-6, rtol=1e-5, atol=1e-6)
+
+
+def test_a_stage_of_an_optimiser_has_the_equations_of_rods_that_touch() -> None:
+    """Values and Jacobians are those of the model, second derivatives those of differences."""
+    model, found = touching()
+    plain, slopes, adjoint, second = stage_functions(model, "fingers", curvature=True)
+    at = [found.x, found.inputs]
+    outputs = [0] * plain.n_out()
+    assert_allclose(plain(*at)[0].full(), model.residual(*at).full(), rtol=0, atol=1e-14)
+    assert_allclose(slopes(*at, *outputs)[0].full(), model.jacobian(*at)[0].full(), rtol=1e-12, atol=1e-12)
+    # Of the residual alone.
+    weights = np.random.default_rng(2).standard_normal(model.size)
+    multipliers = [weights, *[0] * (plain.n_out() - 1)]
+    by_hand = model.jacobian(*at)[0].full().T @ weights
+    assert_allclose(adjoint(*at, *outputs, *multipliers)[0].full()[:, 0], by_hand, rtol=1e-11, atol=1e-11)
+    hessian = second(*at, *outputs, *multipliers, 0, 0)[0].full()
+    step = 1e-6
+    ahead, behind = (
+        [
+            adjoint(found.x + sign * step * way, found.inputs, *outputs, *multipliers)[0].full()
+            for way in np.eye(model.size)
+        ]
+        for sign in (1.0, -1.0)
+    )
+    differences = (np.hstack(ahead) - np.hstack(behind)) / (2 * step)
+    assert_allclose(hessian, differences, rtol=0, atol=1e-8 * abs(differences).max())
+    # But for the contact no equation would have strains of both fingers.
+    half = model.size // 2
+    assert abs(hessian[:half, half:]).max() > 1e-2
+
+
+@pytest.mark.parametrize("moving", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["at rest", "in motion"])
+def test_acados_is_given_rods_that_touch(moving: bool) -> None:
+    """Jacobians of the DAE are those of its central differences, where the fingers press and rub each other."""
+    _, found = touching()
+    model = build(fingers("rod_contacts.0.friction=0.3"), moving=moving)
+    functions = acados_functions(model, "fingers", moving=moving)
+    count, size = model.inputs.size, model.size
+    random = np.random.default_rng(4)
+    rates = [0.1 * random.standard_normal(count), 0.1 * random.standard_normal(count)]
+    at = [found.inputs, *rates, found.x]
+    if moving:
+        velocity = 0.1 * random.standard_normal(size)
+        at = [np.concatenate([found.x, velocity, found.inputs]), np.zeros(2 * size + count), rates[1], np.zeros(0)]
+    whole = next(function for function in functions if function.name().endswith("fun_jac_x_xdot_u_z"))
+    value, *blocks = whole.call([*map(ca.DM, at), 0, ca.DM(0, 1)])
+    if not moving:
+        assert_allclose(value.full()[count:], model.residual(found.x, found.inputs).full(), rtol=0, atol=1e-14)
+    for i, block in enumerate(blocks):
+        assert_allclose(
+            block.full(), _differences(functions[0], at, i), rtol=1e-6, atol=1e-6 * abs(block.full()).max(initial=1.0)
+        )
+
+
+def _differences(function: ca.Function, at: list[FloatArray], i: int) -> FloatArray:
+    """Central differences of a function with one of its first arguments, column by column."""
+    columns = []
+    for way in np.eye(len(at[i])):
+        sides = []
+        for sign in (1e-6, -1e-6):
+            moved = [*at]
+            moved[i] = at[i] + sign * way
+            sides.append(function.call([*map(ca.DM, moved), 0, ca.DM(0, 1)])[0].full()[:, 0])
+        columns.append((sides[0] - sides[1]) / 2e-6)
+    return np.array(columns).reshape(-1, function.size1_out(0)).T
