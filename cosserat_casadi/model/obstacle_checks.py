@@ -32,11 +32,20 @@ def check_obstacles(discrete: DiscreteScene) -> None:
     refuse(_problems(discrete.nominal))
 
 
-WIDTH = "give each a width, m, for a contact that is smooth; or solve the scene, or leave them out"
+WIDTH = "give each {width}; or solve the scene, or leave them out"
 """Remedy where contact that is exact is not looked for."""
 
-RELAXED = "take relaxed_contact(model) for the model; or give each a width, m, for a contact that is smooth"
+RELAXED = "take relaxed_contact(model) for the model; or give each {width}"
 """The same in problems at rest."""
+
+SUGGESTED = 5e-3
+"""Width over the length of the shortest rod: thinner ones take more modes, and shorter steps of a load path."""
+
+
+def suggested_width(scene: scenes.Scene) -> str:
+    """What a remedy says of a width: an example, and what it does."""
+    width = SUGGESTED * min(float(rod.length) for rod in scene.rods)
+    return f"a width, such as {width:.1g} m: contact is smooth then, and rods at rest are off by about as much"
 
 
 def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> None:
@@ -45,14 +54,14 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
     Args:
         scene: the scene.
         what: the request in words, such as "a motion".
-        remedy: what to do about it.
+        remedy: what to do about it; ``{width}`` in it stands for what is said of a width.
 
     Raises:
         SceneError: the scene has obstacles without a width.
     """
     if scene.touches_exactly:
         problem = f"{what} does not look for contact that is exact: its rods would pass through them"
-        raise SceneError(Problem("obstacles", problem, remedy))
+        raise SceneError(Problem("obstacles", problem, remedy.format(width=suggested_width(scene))))
 
 
 def refuse_held_by_contact(scene: scenes.Scene) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import casadi as ca
@@ -29,7 +30,7 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
-from cosserat_casadi.control import embedded
+from cosserat_casadi.control import embedded, motion_stage
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
@@ -679,3 +680,15 @@ def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Soluti
     contact = fine.to_dict()["contact"]
     assert contact["widths"] == {"table": WIDTH}
     assert -1.0 < max(contact["depth"]) < 1.0
+
+
+def test_a_refusal_names_a_width_that_does_what_it_says() -> None:
+    """With the width of the sentence the rod is off by about as much: half of it to twice."""
+    example, loose = ROOT / "examples" / "rod_over_bar.toml", "accuracy.tolerance=1e-2"
+    exact = build(read_scene(example, [loose]))
+    with pytest.raises(SceneError, match=r"such as \S+ m: contact is smooth then") as refused:
+        motion_stage(exact, 1e-2)
+    (width,) = re.findall(r"such as (\S+) m:", str(refused.value))
+    smooth = build(read_scene(example, [loose, f"bar.width={width}"]))
+    tips = [solve(model).tip("rod").position for model in (exact, smooth)]
+    assert 0.5 < np.linalg.norm(tips[1] - tips[0]) / float(width) < 2.0

@@ -12,7 +12,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.obstacle_checks import held_by_contact
+from cosserat_casadi.model.obstacle_checks import held_by_contact, suggested_width
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
@@ -21,7 +21,7 @@ SENTENCES = {
 }
 """What a folder may hold of other scenes, and why not of these."""
 
-REMEDY = "leave it out, or give each obstacle a width, m, for a contact that is smooth"
+REMEDY = "leave it out, or give each obstacle {width}"
 
 
 def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
@@ -36,8 +36,9 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     """
     if not scene.touches_exactly:
         return
+    remedy = REMEDY.format(width=suggested_width(scene))
     problems = [
-        Problem(f"--{word}", SENTENCES[word], REMEDY) for word, wanted in asked.items() if wanted and word in SENTENCES
+        Problem(f"--{word}", SENTENCES[word], remedy) for word, wanted in asked.items() if wanted and word in SENTENCES
     ]
     problems += _refused_parameters(scene)
     for obstacle in scene.obstacles:
