@@ -16,7 +16,7 @@ import typer
 from doc_tables import put, table
 from row_cost import drawn_inputs, robot, wire
 
-from cosserat_casadi import Model, export
+from cosserat_casadi import Model, build, export, read_scene
 from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.compiled_results import AnswerInfo
 from cosserat_casadi.codegen.load import load
@@ -29,7 +29,27 @@ BEGIN, END = "<!-- batches: written by benchmarks/batch.py -->", "<!-- end of ba
 CASES = 2000
 REPEATS = 7
 
-SCENES = (("nitinol wire, three forces", wire), ("robot of two sections, tensions", robot))
+LEANS = [
+    'rod.strain="planar"',
+    "rod.stiffness={bending_y=0.5}",
+    "bar.to=[0.4,0.5,-0.12]",
+    "bar.width=0.04",
+    "accuracy.modes=4",
+    "accuracy.nodes=8",
+]
+"""What makes the rod over a bar planar, and its contact smooth."""
+
+
+def leaning() -> Model:
+    """A planar rod that is pushed over a bar with a width."""
+    return build(read_scene("examples/rod_over_bar.toml", LEANS))
+
+
+SCENES = (
+    ("nitinol wire, three forces", wire),
+    ("robot of two sections, tensions", robot),
+    ("planar rod over a bar with a width, three forces", leaning),
+)
 
 
 def microseconds(model: Model, *, batches: bool) -> float:
