@@ -39,11 +39,11 @@ RELAXED = "take relaxed_contact(model) for the model; or give each {width}"
 """The same in problems at rest."""
 
 SUGGESTED = 5e-3
-"""Width over the length of the shortest rod: thinner ones take more modes, and shorter steps of a load path."""
+"""Width over the length of the shortest rod: a thinner layer takes more modes and shorter steps of a load path."""
 
 
 def suggested_width(scene: scenes.Scene) -> str:
-    """What a remedy says of a width: an example, and what it does."""
+    """The sentence about a width in a remedy: an example, and its effect on rods at rest."""
     width = SUGGESTED * min(float(rod.length) for rod in scene.rods)
     return f"a width, such as {width:.1g} m: contact is smooth then, and rods at rest are off by about as much"
 
@@ -54,7 +54,7 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
     Args:
         scene: the scene.
         what: the request in words, such as "a motion".
-        remedy: what to do about it; ``{width}`` in it stands for what is said of a width.
+        remedy: what to do about it; ``{width}`` in it stands for the sentence of :func:`suggested_width`.
 
     Raises:
         SceneError: the scene has obstacles without a width.
