@@ -1,8 +1,9 @@
 """How smooth contact becomes exact as the width of the obstacles shrinks, and what it costs.
 
 Solves the examples in contact exactly, and with widths, and prints for each width how far the tip is off, relative to
-the length of the rod; how far the resultant of the forces of contact is off, relative to it; the smallest gap in
-widths; the processor time; and the rate of the tip, log₂ of its error over that of half the width.
+the length of the rod, with the rate, log₂ of its error over that of half the width; by how much it is turned; what the
+answer tells of both, without the exact one; how far the resultant of the forces of contact is off, relative to it; the
+smallest gap in widths; and the processor time.
 
     python benchmarks/smooth_contact.py [--page]      # writes the table of docs/contact.md anew
 """
@@ -44,6 +45,8 @@ class Row:
     Attributes:
         width: m.
         tip: error of the tip over the length.
+        turn: angle by which the tip is off, rad.
+        told: what the answer tells of the larger one of both.
         force: error of the resultant over the resultant.
         gap: smallest gap over the width.
         seconds: processor time of the solve.
@@ -51,6 +54,8 @@ class Row:
 
     width: float
     tip: float
+    turn: float
+    told: float
     force: float
     gap: float
     seconds: float
@@ -75,9 +80,13 @@ def rows_of(scene: str) -> list[Row]:
         if not smooth.converged:
             raise SystemExit(f"{scene} with the width {width} m: {smooth.message}")
         gap = min(contact.gap for contact in smooth.contacts if contact.gap is not None)
-        tip = np.linalg.norm(smooth.tip().position - exact.tip().position) / length
+        poses = smooth.tip(), exact.tip()
+        tip = np.linalg.norm(poses[0].position - poses[1].position) / length
+        turn = 2 * np.arcsin(np.linalg.norm(poses[0].rotation - poses[1].rotation) / np.sqrt(8))
+        told = smooth.layer_error_estimate
+        assert told is not None, "of an equilibrium in smooth contact"
         force = np.linalg.norm(resultant(smooth) - resultant(exact)) / np.linalg.norm(resultant(exact))
-        rows.append(Row(width, float(tip), float(force), gap / width, seconds))
+        rows.append(Row(width, float(tip), float(turn), told, float(force), gap / width, seconds))
         print(scene, rows[-1], flush=True)
     return rows
 
@@ -97,12 +106,24 @@ def main() -> None:
                     f"{1e3 * row.width:g}",
                     f"{row.tip:.1e}",
                     rate,
+                    f"{row.turn:.1e}",
+                    f"{row.told:.1e}",
                     f"{100 * row.force:.1f}",
                     f"{row.gap:.2f}",
                     f"{row.seconds:.0f}",
                 ]
             )
-    headings = ("example", "width, mm", "tip, of the length", "rate", "force, %", "smallest gap, widths", "s")
+    headings = (
+        "example",
+        "width, mm",
+        "tip, of the length",
+        "rate",
+        "turn, rad",
+        "told",
+        "force, %",
+        "smallest gap, widths",
+        "s",
+    )
     text = table(headings, cells)
     print(text)
     if arguments.page:

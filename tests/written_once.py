@@ -62,7 +62,7 @@ def equations_of(discrete: DiscreteScene) -> Hashable | None:
             return None
         grids = tuple((rod, constants.discretisation) for rod, constants in discrete.rods.items())
         inputs = tuple(discrete.layout.slices)
-        vars(discrete)[name] = (_without_values(discrete), grids, inputs, discrete.moving, scaling)
+        vars(discrete)[name] = (_without_values(discrete), grids, inputs, discrete.moving, discrete.layers, scaling)
     key: Hashable = vars(discrete)[name]
     return key
 

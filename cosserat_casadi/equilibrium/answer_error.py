@@ -309,7 +309,7 @@ def _watched_numbers(solution: Solution, poses: FloatArray) -> WatchedNumbers:
     return WatchedNumbers.of_column(poses, len(watched_cables(solution.model.discrete)))
 
 
-def _watched_at(solution: Solution, x: FloatArray) -> WatchedNumbers:
+def watched_at(solution: Solution, x: FloatArray) -> WatchedNumbers:
     """Watched poses and lengths at some unknowns of the answer's model."""
     return _watched_numbers(solution, column(solution.model.watched(x, solution.inputs)))
 
@@ -319,8 +319,8 @@ def change_with_following(solution: Solution, balance: RicherBalance, following:
 
     What the step moves is taken on the answer's own modes and grid: the difference to richer ones is of second order.
     """
-    before = _watched_at(solution, solution.x)
-    after = _watched_at(solution, solution.x + following)
+    before = watched_at(solution, solution.x)
+    after = watched_at(solution, solution.x + following)
     return change_size(balance.poses.moved(before, after).change_from(before))
 
 
@@ -347,7 +347,7 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
 def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
     """A correction with the largest change of a watched pose or length; infinite where one of them is not finite."""
     poses = richer_balance(solution, known, missing).poses
-    change = change_size(poses.change_from(_watched_at(solution, solution.x)))
+    change = change_size(poses.change_from(watched_at(solution, solution.x)))
     return Correction(known, missing, change, contracts)
 
 

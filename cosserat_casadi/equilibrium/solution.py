@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import casadi as ca
@@ -200,6 +201,18 @@ class Solution(Equilibrium[Model]):
     shape_error_estimate: float | None = None
     wrench_error_estimate: float | None = None
     contacts: tuple[Contact, ...] = ()
+
+    @cached_property
+    def layer_error_estimate(self) -> float | None:
+        """Estimated distance to the equilibrium whose contacts have no widths, as the error estimate counts it.
+
+        None where it is no equilibrium, and in a scene without smooth contact. It is computed when it is first asked
+        for, from the Jacobian.
+        """
+        # Imported here, because it is of solutions.
+        from cosserat_casadi.equilibrium.layer_error import layer_error
+
+        return layer_error(self)
 
     @property
     def judged_error(self) -> float | None:

@@ -78,6 +78,13 @@ class ContactLayer(ObstacleLoadRecord):
         """Whether it takes energy in motion."""
         return bool(self.obstacle.damping > 0.0 or self.obstacle.rubs)
 
+    def widened(self, ratio: float) -> ContactLayer:
+        """The layer with a width so many times as large, which pushes as hard where the gap is zero."""
+        if ratio == 1.0:
+            return self
+        obstacle = self.obstacle.model_copy(update={"width": ratio * self.obstacle.width})
+        return self.model_copy(update={"obstacle": obstacle, "stiffness": self.stiffness / ratio})
+
 
 @final
 class ContactLayerLoad(ObstacleLoad[ContactLayer]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import ceil, inf, sqrt
 from typing import Any
@@ -72,6 +72,10 @@ class ContactPair:
     length: float
     friction: float
     slip_speed: float
+
+    def widened(self, ratio: float) -> ContactPair:
+        """The pair with a width so many times as large, which pushes about as hard where the gap is zero."""
+        return self if ratio == 1.0 else replace(self, width=ratio * self.width, stiffness=self.stiffness / ratio)
 
     @property
     def itself(self) -> bool:

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
+from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -143,6 +144,7 @@ class DiscreteScene:
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
         moving: whether it is for a motion, in which stress that relaxes has flows.
         memory: grids of the rods at whose nodes loads remember sections along a path; None for those of this scene.
+        layers: widths of smooth contact over those of the scene.
     """
 
     scene: scenes.Scene
@@ -152,9 +154,12 @@ class DiscreteScene:
     scaling: DiscreteScene | None = None
     moving: bool = False
     memory: Mapping[str, Grid] | None = None
+    layers: float = 1.0
 
     def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
         """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
+        if self.layers != 1.0:
+            return DiscreteScene.with_layers, (self.with_layers(1.0), self.layers)
         if self.scaling is None:
             discretisation = {name: rod.discretisation for name, rod in self.rods.items()}
             return discrete_scene, (self.scene, self.layout, discretisation, self.moving)
@@ -205,7 +210,8 @@ class DiscreteScene:
     @cached_property
     def loads(self) -> tuple[scenes.LoadRecord, ...]:
         """The loads of the scene, then what its obstacles with a width press with."""
-        return (*self.scene.loads, *contact_layers(self.scene, self.nominal.rods))
+        layers = contact_layers(self.scene, self.nominal.rods)
+        return (*self.scene.loads, *(layer.widened(self.layers) for layer in layers))
 
     @property
     def remembered(self) -> Mapping[str, Grid]:
@@ -233,7 +239,17 @@ class DiscreteScene:
         """Pairs of rods that push each other."""
         if not self.scene.rod_contacts:
             return ()
-        return tuple(contact_pairs(self.scene, self.nominal.rods, self.rods))
+        pairs = contact_pairs(self.scene, self.nominal.rods, self.rods)
+        return tuple(pair.widened(self.layers) for pair in pairs)
+
+    @property
+    def has_layers(self) -> bool:
+        """Whether obstacles or rods push from a width on."""
+        return bool(self.pairs) or any(isinstance(load, ContactLayer) for load in self.loads)
+
+    def with_layers(self, ratio: float) -> DiscreteScene:
+        """The same scene with other widths, which push as hard where gaps are zero."""
+        return replace(self, layers=ratio)
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:

@@ -55,6 +55,8 @@ def solution_result(solution: Solution) -> dict[str, Any]:
         data["joints"] = {name: solution.joint(name) for name in solution.model.joint}
     if scene.has_contact:
         data["contacts"] = [_contact_entry(contact) for contact in solution.contacts]
+    if solution.model.discrete.has_layers:
+        data["layer_error_estimate"] = solution.layer_error_estimate
     return data
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from cosserat_casadi import Model, Outcome, build, follow, parse_scene, simulate, solve
+from cosserat_casadi.equilibrium.answer_error import SAFETY
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.rod_contact import GROUP, PANEL, SectionPairs, SectionsInContact, coefficient
@@ -156,6 +159,24 @@ def test_crossed_cantilevers_bend_as_beams_do() -> None:
     # The clamps bear the push, and nothing of the contact.
     borne = sum(solution.base_wrench(rod).force for rod in ("lower", "upper"))
     assert_allclose(borne, [0, 0, push], rtol=0, atol=1e-9)
+
+
+def test_the_error_of_the_layer_is_that_of_beams_that_touch() -> None:
+    """Without a width the gap is zero: the pushed middle of a cantilever moves by g, its tip turns by 3/2 g/L."""
+    found = [solve(crossed(-1.0, more), estimate_error=False) for more in ("", "stiffness = 1e6")]
+    for solution in found:
+        (contact,) = solution.contacts
+        assert contact.gap is not None
+        assert solution.layer_error_estimate is not None
+        # Forces grow as the gap falls: the closed form is of small ones.
+        assert_allclose(solution.layer_error_estimate, SAFETY * 1.5 * contact.gap / 0.3, rtol=0.03, atol=0)
+    apart = found[0].tip("upper").position[2] - found[1].tip("upper").position[2]
+    told = sum(solution.layer_error_estimate or 0.0 for solution in found)
+    assert 0.001 * 0.3 < apart < 0.3 * told
+    assert solve(crossed(-0.1), estimate_error=False).layer_error_estimate == 0.0
+    # Layers are part of the equations that are stored.
+    thinner = pickle.loads(pickle.dumps(found[0].model.discrete.with_layers(0.5)))
+    assert (thinner.layers, thinner.pairs[0].width) == (0.5, 0.5 * WIDTH)
 
 
 CARRIED = """

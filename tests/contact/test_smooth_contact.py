@@ -259,6 +259,27 @@ def test_smooth_contact_becomes_exact_as_the_width_shrinks() -> None:
     assert with_exact_contact(smooth.model.scene) == scene
 
 
+@pytest.mark.parametrize("example", ["rod_over_bar", pytest.param("rod_on_table", marks=pytest.mark.slow)])
+def test_the_error_of_the_layer_is_told(example: str) -> None:
+    """Against exact contact: at a point and a line, outside of the obstacle and, on the table, inside."""
+    name = example.split("_")[-1]
+    modes = ["accuracy.modes=6", "accuracy.nodes=20"]
+    path = EXAMPLES / f"{example}.toml"
+    exact = solve(build(read_scene(path, modes)), estimate_error=False)
+    assert exact.layer_error_estimate is None
+    true = []
+    for width in (0.02, 0.01):
+        smooth = solve(build(read_scene(path, [*modes, f"{name}.width={width}"])), estimate_error=False)
+        tips = smooth.tip(), exact.tip()
+        moved = np.linalg.norm(tips[0].position - tips[1].position) / smooth.model.scene.rods[0].length
+        turned = 2 * np.arcsin(np.linalg.norm(tips[0].rotation - tips[1].rotation) / np.sqrt(8))
+        true.append(max(moved, turned))
+        assert smooth.layer_error_estimate is not None
+        assert 1.0 < smooth.layer_error_estimate / true[-1] < 1.7
+    # The rod on the table sinks in less and less, so that its error falls faster than the width.
+    assert true[1] < 0.7 * true[0]
+
+
 def test_a_rod_that_is_pushed_through_is_no_equilibrium(pressed: Solution) -> None:
     soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
     through = solve(soft)

@@ -203,3 +203,5 @@ def _errors(solution: Solution) -> Iterator[str]:
             yield f"estimated {what} {error_words(error, within, accuracy.tolerance)}"
     if solution.wrench_error_estimate is not None:
         yield f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative"
+    if solution.layer_error_estimate is not None:
+        yield f"the widths of contact move tips by {solution.layer_error_estimate:.1e}"

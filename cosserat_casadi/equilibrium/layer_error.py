@@ -1,0 +1,44 @@
+"""How far an answer in smooth contact is from one whose contacts have no width (docs/contact.md, smooth contact).
+
+Layers push by a law F(g/w) of the gap over the width. Thinner ones with the same law, the stiffness growing as 1/w, let
+a rod that is pressed alike have a gap that is less in proportion: to first order the answer moves in proportion to the
+width. So its derivative with the logarithm of all widths is how far it is from that of no width. It follows from the
+equations at the answer, dx = −J⁻¹ ∂r/∂(log w) by the implicit function theorem, without a solve.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.answer_error import SAFETY, watched_at
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.pose_change import change_size
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
+from cosserat_casadi.numerics.neutral import regular_inverse
+
+THINNER = 1e-3
+"""Share by which widths are changed for a difference of residuals, whose second order is as small."""
+
+WAY = 1e-3
+"""Share of the change of the unknowns at which poses are compared: all of it may bend rods far."""
+
+
+def layer_error(solution: Solution) -> float | None:
+    """Estimated change of the watched poses and lengths to contacts without widths; None without smooth contact.
+
+    Args:
+        solution: an equilibrium; of another end it is None, and of one whose friction remembers a path.
+    """
+    model = solution.model
+    if not solution.converged or not model.discrete.has_layers or model.inputs.memory is not None:
+        return None
+    thinner = kept_with(model, "_thinner_layers", lambda: Model(model.discrete.with_layers(1.0 - THINNER)))
+    arguments = (solution.x, solution.inputs, 1.0)
+    left = column(thinner.path_residual(*arguments)) - column(model.path_residual(*arguments))
+    jacobian = model.path_jacobian(*arguments).full()
+    change = -regular_inverse(jacobian) @ left / THINNER
+    before, after = (watched_at(solution, x) for x in (solution.x, solution.x + WAY * change))
+    estimate = SAFETY * change_size(after.change_from(before)) / WAY
+    return float(estimate) if np.isfinite(estimate) else np.inf
