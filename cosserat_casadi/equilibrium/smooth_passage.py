@@ -157,6 +157,7 @@ def past_no_obstacle(
     model: Model,
     inputs: tuple[FloatArray, FloatArray],
     parameters: tuple[FloatArray, FloatArray] | None = None,
+    before_it: Model | None = None,
 ) -> Path:
     """A path without steps through smooth bars, balls and rods; the path itself in a scene that has none.
 
@@ -165,6 +166,7 @@ def past_no_obstacle(
         model: the model.
         inputs: stacked inputs at t = 0 and 1.
         parameters: of a model that has them, at t = 0 and 1.
+        before_it: the model with the parameters that the start of the path is an equilibrium of, where it is another.
     """
     barriers = SmoothBarriers(model)
     if not barriers.any:
@@ -178,6 +180,9 @@ def past_no_obstacle(
     def admits(before: PathPoint, after: PathPoint) -> bool:
         (first, t), (last, target) = before, after
         at_ends = (between(*inputs, t), between(*inputs, target))
-        return not barriers_at(target).are_between(first, last, at_ends, barriers_at(t))
+        earlier = barriers_at(t)
+        if before_it is not None and t == target == 0.0:
+            earlier = SmoothBarriers(before_it)
+        return not barriers_at(target).are_between(first, last, at_ends, earlier)
 
     return replace(path, admits=admits)

@@ -72,6 +72,14 @@ class _Task:
     progress: Progress | None
 
     @property
+    def model_of_start(self) -> Model | None:
+        """The model of a solution to start from, where it is this one with other parameters."""
+        if not isinstance(self.start, Solution) or self.start.model is self.model:
+            return None
+        same = self.start.model.discrete.nominal is self.model.discrete.nominal
+        return self.start.model if same else None
+
+    @property
     def first_iterate(self) -> FloatArray:
         """Unknowns that the start stands for, shape (n,)."""
         if self.start is None:
@@ -298,7 +306,7 @@ def _continuation(task: _Task) -> _End:
             return _End(corrected.x, corrected.outcome, corrected.iterations)
         path = load_path(task.model, task.inputs)
     first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
-    path = past_no_obstacle(path, task.model, (first, task.inputs))
+    path = past_no_obstacle(path, task.model, (first, task.inputs), before_it=task.model_of_start)
     result = follow(path, task.limits, task.progress)
     if result.outcome is not Outcome.CONVERGED:
         result = _with_parameters(task, result)
@@ -307,13 +315,11 @@ def _continuation(task: _Task) -> _End:
 
 def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationResult:
     """The end of the path on which parameters change with the inputs, where it leads to one; else that which failed."""
-    start, model = task.start, task.parametric
-    if not isinstance(start, Solution) or start.model is task.model or not model.parameters.size:
-        return failed
-    if start.model.discrete.nominal is not model.discrete.nominal:
+    start, model, model_of_start = task.start, task.parametric, task.model_of_start
+    if not isinstance(start, Solution) or model_of_start is None or not model.parameters.size:
         return failed
     named = model.scene.parameters
-    own = (one.scene.model_copy(update={"parameters": named}) for one in (start.model, task.model))
+    own = (one.scene.model_copy(update={"parameters": named}) for one in (model_of_start, task.model))
     before, after = (parameter_layout(scene).pack() for scene in own)
     path = input_path(model, start.x, start.inputs, task.inputs, (before, after))
     path = past_no_obstacle(path, model, (start.inputs, task.inputs), (before, after))

@@ -15,6 +15,7 @@ from cosserat_casadi import Model, Outcome, build, follow, parse_scene, simulate
 from cosserat_casadi.equilibrium.answer_error import SAFETY
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import SceneError
+from cosserat_casadi.identification.case_equilibria import Equilibria
 from cosserat_casadi.loads.rod_contact import GROUP, PANEL, SectionPairs, SectionsInContact, coefficient
 from cosserat_casadi.maths.calls import chooses, functions_within
 from cosserat_casadi.maths.typing import FloatArray
@@ -177,6 +178,25 @@ def test_the_error_of_the_layer_is_that_of_beams_that_touch() -> None:
     # Layers are part of the equations that are stored.
     thinner = pickle.loads(pickle.dumps(found[0].model.discrete.with_layers(0.5)))
     assert (thinner.layers, thinner.pairs[0].width) == (0.5, 0.5 * WIDTH)
+
+
+def test_a_base_that_moves_takes_no_rod_through_a_rod() -> None:
+    """The clamp of the upper rod is set below the lower one, where it would be as it was: it takes that one along."""
+    name, low = "upper.base.position", [0, -0.15, -0.011]
+    scene = parse_scene(
+        f'parameters = ["{name}"]' + CROSSED.format(push=-0.1, more=""), ["accuracy.modes=1", "accuracy.nodes=5"]
+    )
+    model = build(scene)
+    above = solve(model, estimate_error=False)
+    assert above.converged and not above.contacts
+    below = solve(model, parameters={name: low}, start=above, estimate_error=False)
+    assert below.converged and below.contacts
+    assert below.tip("lower").position[2] < -0.02
+    equilibria = Equilibria(model, 1)
+    start, _ = equilibria.loaded(above.inputs[None], model.parameters.pack())
+    _, reached = equilibria.tracked(start, start.x, start.inputs, np.array([0, -0.15, -0.014]), far=False)
+    assert not reached[0]
+    assert equilibria.barred[0]
 
 
 CARRIED = """
