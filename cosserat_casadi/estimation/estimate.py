@@ -17,13 +17,14 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.choose import choose
-from cosserat_casadi.accuracy.refine import solve_rods
+from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.codegen.estimator import (
     ENDINGS,
     Estimates,
     Knowledge,
     MeasuredCases,
 )
+from cosserat_casadi.equilibrium.stability import second_variation, variations
 from cosserat_casadi.estimation.beforehand import (
     cases_within_reach,
     check_ranges,
@@ -124,11 +125,29 @@ def estimate_model(
         shared=shared,
         consistency=_consistency(found, told.determined, table, layout, shared, sensors),
     )
+    # In exact contact the forces of contacts would be needed too.
+    if not model.scene.touches_exactly:
+        report("Judging stability", 0, 0)
+        result = replace(result, stable=tuple(_stability(result)))
     remarks = list(_remarks(result, known, drawn))
     if isinstance(solver, RowsInContact) and drawn is None:
         report("Looking for contacts that change", 0, 0)
         remarks += _on_contacts(result.cases, solver.contact_changes(table, inputs[:, indices], covariance, known))
     return replace(result, warnings=tuple(remarks))
+
+
+def _stability(result: Estimate) -> Iterator[bool | None]:
+    """Whether the equilibrium of each row is stable; None where no estimate is, or the loads have no potential."""
+    model = result.model
+    allowed = variations(model)
+    for row, found in enumerate(result.found.tolist()):
+        inputs = result.inputs[row]
+        if not found or not model.has_potential(inputs):
+            yield None
+            continue
+        parameters = [result.parameters[row]] if model.parameters.size else []
+        jacobian, _ = model.jacobian(result.x[row], inputs, *parameters)
+        yield second_variation(jacobian.full(), allowed).stable
 
 
 def _on_contacts(cases: Sequence[str], changes: Mapping[int, str]) -> Iterator[str]:
@@ -363,10 +382,10 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
     for done, row in enumerate(rows):
         report("Checking rows", done, len(rows))
         model = result.model
-        scene = model.scene
-        if model.parameters.size:
-            scene = model.parameters.set_in(scene, model.parameters.unpack(result.parameters[row]))
-        solution = solve_rods(scene, model.inputs.unpack(result.inputs[row]))
+        # From the estimate: the unloaded rod may lead to another equilibrium, whose error says nothing of this one.
+        start = None if model.scene.touches_exactly else result.x[row]
+        parameters = result.parameters[row] if model.parameters.size else None
+        solution = solve(model, result.inputs[row], parameters=parameters, start=start)
         yield row, solution.error_estimate if solution.converged else None
 
 
@@ -377,6 +396,14 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
         if rows:
             yield f"{len(rows)} of {len(result.cases)} rows not found: {named(rows)}. {reason}"
     seen = max(1, int(np.count_nonzero(np.isfinite(result.values[:, 0]))))
+    unstable = [
+        case for case, stable in zip(result.cases, result.stable, strict=bool(result.stable)) if stable is False
+    ]
+    if unstable:
+        yield (
+            f"{len(unstable)} of {seen} rows are explained by an equilibrium that is not stable: {named(unstable)}. "
+            "A real rod leaves it. Do not believe what was found there; give priors near what is felt, or measure more."
+        )
     for direction, count in list(result.unseen.items())[:TOLD]:
         yield f"The data do not see {direction} in {count} of {seen} rows: there the prior alone speaks."
     at_bound = (result.values <= known.lower) | (result.values >= known.upper)

@@ -15,6 +15,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
         {
             "row": case,
             "outcome": outcome,
+            "stable": found.stable[i] if found.stable else None,
             "value": found.values[i],
             "sigma": found.sigma[i],
             "covariance": found.covariance[i],

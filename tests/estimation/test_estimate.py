@@ -149,6 +149,23 @@ def test_what_nothing_determines_is_told() -> None:
     assert csv_of(found).splitlines()[1].endswith(",not_determined,,,,,,")
 
 
+def test_rows_that_only_an_unstable_equilibrium_explains_are_named() -> None:
+    """A rod whose tip comes nearer by more than its bending allows is buckled: no stable one has its tip there."""
+    at_tip = markers((1.0,), SIGMA)
+    model = build(felt(prior=False, strain="kirchhoff", measurements=at_tip).with_unknowns())
+    columns = {"x0": [0.04, 0.16], "y0": [0.0, 0.0], "z0": [0.796, 0.781]}
+    found = estimate(model, {"shapes": {name: np.array(values) for name, values in columns.items()}})
+    assert found.stable == (False, True)
+    tables = [row["stable"] for row in found.to_dict()["rows"]]
+    assert tables == [False, True]
+    (warning,) = (warning for warning in found.warnings if "not stable" in warning)
+    assert found.cases[0] in warning
+    assert found.cases[1] not in warning
+    # The rod that is loaded from nothing ends elsewhere, whose error says nothing of this row.
+    felt_force = {"push.force": found.values[0]}
+    assert abs(solve(model, felt_force).tip().position[2] - 0.796) > 0.1
+
+
 def test_a_load_along_the_rod_is_felt_from_its_shape() -> None:
     """Two Legendre coefficients of a made-up load, within deviations that are narrower than those of the prior."""
     sigma = 2.0
