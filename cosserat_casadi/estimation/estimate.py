@@ -125,10 +125,8 @@ def estimate_model(
         shared=shared,
         consistency=_consistency(found, told.determined, table, layout, shared, sensors),
     )
-    # In exact contact the forces of contacts would be needed too.
-    if not model.scene.touches_exactly:
-        report("Judging stability", 0, 0)
-        result = replace(result, stable=tuple(_stability(result)))
+    report("Judging stability", 0, 0)
+    result = replace(result, stable=tuple(_stability(result)))
     remarks = list(_remarks(result, known, drawn))
     if isinstance(solver, RowsInContact) and drawn is None:
         report("Looking for contacts that change", 0, 0)
@@ -142,7 +140,8 @@ def _stability(result: Estimate) -> Iterator[bool | None]:
     allowed = variations(model)
     for row, found in enumerate(result.found.tolist()):
         inputs = result.inputs[row]
-        if not found or not model.has_potential(inputs):
+        # In exact contact the forces of contacts would be needed too.
+        if not found or model.scene.touches_exactly or not model.has_potential(inputs):
             yield None
             continue
         parameters = [result.parameters[row]] if model.parameters.size else []
@@ -396,9 +395,7 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
         if rows:
             yield f"{len(rows)} of {len(result.cases)} rows not found: {named(rows)}. {reason}"
     seen = max(1, int(np.count_nonzero(np.isfinite(result.values[:, 0]))))
-    unstable = [
-        case for case, stable in zip(result.cases, result.stable, strict=bool(result.stable)) if stable is False
-    ]
+    unstable = [result.cases[row] for row, stable in enumerate(result.stable) if stable is False]
     if unstable:
         yield (
             f"{len(unstable)} of {seen} rows are explained by an equilibrium that is not stable: {named(unstable)}. "

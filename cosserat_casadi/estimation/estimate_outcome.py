@@ -59,7 +59,7 @@ class Estimate(Result):
         unseen: directions that the data do not see, in words, with the number of cases in which that is so.
         consistency: how well data, priors and model go together.
         shared: what all rows share; None where nothing of that is unknown.
-        stable: of each case whether its equilibrium is stable; None where that has no meaning; empty in exact contact.
+        stable: of each case whether its equilibrium is stable; None where that has no meaning, and in exact contact.
         checked: cases solved again on a finer discretisation: number of the case, estimated error.
         warnings: sentences on what looks wrong.
     """
