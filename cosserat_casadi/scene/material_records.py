@@ -125,8 +125,11 @@ def _curve_faults(name: str, curve: Any) -> Iterator[Fault]:
             problem = f"must be >= {shown(before[1])}, the stress before it, got {shown(point[1])}"
             yield Fault((name, i, 1), problem, "a rod whose stress falls with strain buckles by itself")
             return
-    if name == "bending" and points[0][0] < 0.0:
+    if name == "bending" and points and points[0][0] < 0.0:
         yield Fault((name, 0, 0), f"must be >= 0, got {shown(points[0][0])}", "all directions of bending are alike")
+        return
+    if not points or points[-1][0] <= 0.0:
+        yield Fault((name,), "has no point of a strain above 0", "give strain and stress, as in [[5, 0.12], [10, 0.2]]")
         return
     through_zero = [0.0, 0.0] in points
     if points[0][0] < 0.0 and not through_zero:
