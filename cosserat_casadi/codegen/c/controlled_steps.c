@@ -4,9 +4,12 @@
    cosserat_casadi/numerics holds the same algorithm in Python, which runs where there is no compiler: time_steps.py,
    step_run.py, step_matrices.py, step_control.py; and stage_newton.c is Newton's method. */
 
+/* The loops that take most of the time are compiled for speed, the rest so that the first motion waits for it less. */
 #if defined(__GNUC__) && !defined(__clang__)
-/* Rows of matrices are added two entries at a time. */
-#pragma GCC optimize("O3")
+#pragma GCC optimize("O1")
+#define FAST __attribute__((optimize("O3")))
+#else
+#define FAST
 #endif
 #ifdef __clang__
 /* A product and a sum are rounded one after the other, as by CasADi's virtual machine. */
@@ -254,7 +257,7 @@ static void motion_in(real size, real share, const real *values, const real *int
   }
 #endif
 
-static void run_lines(const int *program, int lines, real *slots) {
+FAST static void run_lines(const int *program, int lines, real *slots) {
   for (const int *line = program; line < program + 5 * lines; line += 5) {
     real *to = slots + LANES * line[1];
     const real *a = slots + LANES * line[2];
@@ -344,13 +347,13 @@ static void swap(real *a, int stride, real *b, int count) {
 }
 
 /* A row less a multiple of another one. */
-static void subtract_real_row(real *restrict row, real factor, const real *restrict other, int n) {
+FAST static void subtract_real_row(real *restrict row, real factor, const real *restrict other, int n) {
   for (int j = 0; j < n; j++) row[j] -= factor * other[j];
 }
 
 /* The same of complex numbers, whose imaginary parts are a plane behind. */
-static void subtract_complex_row(real *restrict row, real *restrict imaginary, real factor, real factor_imaginary,
-                                 const real *restrict other, const real *restrict other_imaginary, int n) {
+FAST static void subtract_complex_row(real *restrict row, real *restrict imaginary, real factor, real factor_imaginary,
+                                      const real *restrict other, const real *restrict other_imaginary, int n) {
   for (int j = 0; j < n; j++) {
     row[j] -= factor * other[j] - factor_imaginary * other_imaginary[j];
     imaginary[j] -= factor * other_imaginary[j] + factor_imaginary * other[j];
@@ -358,7 +361,7 @@ static void subtract_complex_row(real *restrict row, real *restrict imaginary, r
 }
 
 /* The rows of a matrix less multiples of the row of a pivot, which is the identity's then. */
-static void eliminate_real(real *a, int k, int n) {
+FAST static void eliminate_real(real *a, int k, int n) {
   real *own = a + k * n;
   const real inverse = 1 / own[k];
   own[k] = 1;
@@ -372,7 +375,7 @@ static void eliminate_real(real *a, int k, int n) {
   }
 }
 
-static void eliminate_complex(real *a, int k, int n) {
+FAST static void eliminate_complex(real *a, int k, int n) {
   const int plane = n * n;
   real *own = a + k * n;
   real *own_imaginary = own + plane;
@@ -399,7 +402,7 @@ static void eliminate_complex(real *a, int k, int n) {
 }
 
 /* Largest sum of the sizes of the entries of a column. */
-static real norm_of_columns(const real *a, int plane, int n, real *sums) {
+FAST static real norm_of_columns(const real *a, int plane, int n, real *sums) {
   real largest = 0;
   memset(sums, 0, (size_t)n * sizeof *sums);
   for (int i = 0; i < n; i++) {
@@ -413,7 +416,7 @@ static real norm_of_columns(const real *a, int plane, int n, real *sums) {
 
 /* The inverse of a matrix, in place, by Gauss-Jordan elimination with partial pivoting, of the matrix whose largest entry
    of every row and column is one. Zero where that one is singular to rounding. */
-static int invert(real *a, int is_complex, workspace *work) {
+FAST static int invert(real *a, int is_complex, workspace *work) {
   const int n = N;
   const int plane = is_complex ? n * n : 0;
   real *rows = work->vectors;
