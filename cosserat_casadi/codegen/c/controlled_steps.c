@@ -334,7 +334,7 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
 
 /* ---- Linear systems: step_matrices.py ---- */
 
-static real size_of(const real *entry, int plane) {
+FAST static real size_of(const real *entry, int plane) {
   return plane ? sqrt(entry[0] * entry[0] + entry[plane] * entry[plane]) : fabs(entry[0]);
 }
 
@@ -499,7 +499,7 @@ static int factorise_step(real size, workspace *work) {
 }
 
 /* Of stage_newton.c, which asks for what stands here. */
-static real inner_product(const real *a, const real *b, int count);
+FAST static real inner_product(const real *a, const real *b, int count);
 
 /* Rows of a matrix times a vector. */
 static void multiply(const real *a, const real *b, real *result, int n) {
