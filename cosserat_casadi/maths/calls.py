@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+
+MOST_MAPPED = 64
+"""Maps of functions over many arguments that are kept: those of a few searches for modes."""
 
 
 def called_functions(function: ca.Function, codes: Iterable[int] | None = None) -> dict[int, ca.Function]:
@@ -65,7 +69,7 @@ def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]
     if count == 0:
         return [np.zeros((0, *sparsity.shape)) for sparsity in sparsities]
     # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
-    buffer, evaluate = function.map(count).buffer()
+    buffer, evaluate = _mapped(function, count).buffer()
     given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
     results = [np.zeros(count * sparsity.nnz()) for sparsity in sparsities]
     for number, array in enumerate(given):
@@ -74,6 +78,12 @@ def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]
         buffer.set_res(number, array.data)
     evaluate()
     return [_dense(entries.reshape(count, -1), sparsity) for entries, sparsity in zip(results, sparsities, strict=True)]
+
+
+@lru_cache(maxsize=MOST_MAPPED)
+def _mapped(function: ca.Function, count: int) -> ca.Function:
+    """A function at so many arguments: CasADi makes it anew unless it is kept, which may take longer than its call."""
+    return function.map(count)
 
 
 def _dense(entries: FloatArray, sparsity: ca.Sparsity) -> FloatArray:

@@ -89,15 +89,12 @@ class Piece:
 
     def at(self, t: float) -> InputState:
         """The inputs at a time; at start and end their limits from within, beyond them as they would go on."""
-        value = self._constant.copy()
-        rate = np.zeros_like(value)
-        acceleration = np.zeros_like(value)
+        # Every stage of a step asks for them.
+        orders = np.zeros((3, len(self._constant)))
+        orders[0] = self._constant
         for span, path in self._paths:
-            contribution = path.at(t)
-            value[span] += contribution.value
-            rate[span] += contribution.rate
-            acceleration[span] += contribution.acceleration
-        return InputState(value, rate, acceleration)
+            orders[:, span] += path.at(t)
+        return InputState(*orders)
 
     @cached_property
     def remembered(self) -> Callable[[float], InputState]:
@@ -224,8 +221,8 @@ class _Path(ABC):
         """The path with its limits from within at both ends of a span of time without break inside."""
 
     @abstractmethod
-    def at(self, t: float) -> InputState:
-        """Value, rate and acceleration at a time, each of shape (entries,)."""
+    def at(self, t: float) -> FloatArray:
+        """Value, rate and acceleration at a time, shape (3, entries)."""
 
     @abstractmethod
     def values_at(self, times: FloatArray) -> FloatArray:
@@ -249,13 +246,13 @@ class _Wave(_Path):
     def within(self, start: float, end: float) -> _Wave:
         return self
 
-    def at(self, t: float) -> InputState:
+    def at(self, t: float) -> FloatArray:
         omega = self.angular_frequency
         sine = np.sin(omega * t + self.phase)
         cosine = np.cos(omega * t + self.phase)
         varying = sine * self.sine + cosine * self.cosine
         rate = omega * (cosine * self.sine - sine * self.cosine)
-        return InputState(self.constant + varying, rate, -(omega**2) * varying)
+        return np.array([self.constant + varying, rate, -(omega**2) * varying])
 
     def values_at(self, times: FloatArray) -> FloatArray:
         angles = self.angular_frequency * times + self.phase
@@ -299,14 +296,14 @@ class _Table(_Path):
         last = int(np.searchsorted(self.knots, end, side="left"))
         return replace(self, first=first, last=max(first, last))
 
-    def at(self, t: float) -> InputState:
+    def at(self, t: float) -> FloatArray:
         # At a break the segment of the span is asked for, not that beyond it.
         segment = bisect_right(self.knots, t)
         segment = min(max(segment, self.first), self.last)
         s = t - float(self.origins[segment])
         # Value, rate and acceleration of 1, s, s², s³.
         powers = np.array([[1.0, s, s**2, s**3], [0.0, 1.0, 2.0 * s, 3.0 * s**2], [0.0, 0.0, 2.0, 6.0 * s]])
-        return InputState(*(powers @ self.coefficients[segment]))
+        return np.asarray(powers @ self.coefficients[segment])
 
     def values_at(self, times: FloatArray) -> FloatArray:
         segments = np.clip(np.searchsorted(self.knots, times, side="right"), self.first, self.last)

@@ -9,6 +9,7 @@ Equations II*, 2nd ed., Springer 1996, sections IV.5 and IV.8.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -89,6 +90,7 @@ class Collocation:
         return np.asarray(powers @ self.polynomials)
 
 
+@cache
 def radau(stages: int) -> Collocation:
     """Radau IIA: order 2s − 1, L-stable, its last stage is the end of the step.
 
@@ -103,6 +105,7 @@ def radau(stages: int) -> Collocation:
     return _collocation(f"Radau IIA, stages {stages}", nodes, order=2 * stages - 1)
 
 
+@cache
 def gauss(stages: int) -> Collocation:
     """Gauss: order 2s, symmetric and symplectic; it does not damp, and suits no equations with constraints.
 
