@@ -63,7 +63,10 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
         return None
     values = [seen[0]]
     for number, time in enumerate(times[1:], start=1):
-        values.append(seen[number] if number in seen else guards(step.at(float(time))))
+        # A place that guards follow may seem lost where it is looked at from afar: it is looked at again from nearby.
+        known = seen.get(number)
+        is_lost = known is not None and bool(np.any(known < -THROUGH))
+        values.append(guards(step.at(float(time))) if known is None or is_lost else known)
         if np.any(values[-1] < -THROUGH):
             break
     # The looks are at even distances, and what turns between two of them is steep between one of them and the next.

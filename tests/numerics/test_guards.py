@@ -170,6 +170,23 @@ def test_guards_far_from_zero_are_looked_at_three_times_and_others_all_along() -
         assert level < 1.0 or len(looked_at) == len(looks)
 
 
+def test_a_place_that_seems_lost_from_afar_is_looked_at_again_from_nearby() -> None:
+    """A guard that follows a place tells -1 where it jumped: by half a step it did, by an eighth it slides."""
+    flight = until(FLIGHT, np.array([0.3, 0.0, 0.0]), np.array([0.4, 0.5, 0.0]), lambda _: np.ones(1), radau(3), 0.5)
+    (step, *_) = flight.steps
+    last = step.start.time
+
+    def followed(instant: Instant) -> FloatArray:
+        nonlocal last
+        if abs(instant.time - last) > 0.2 * step.size:
+            return np.array([-1.0])
+        last = instant.time
+        return np.array([1.0])
+
+    assert crossing(step, followed) is None
+    assert last == step.end.time
+
+
 def test_the_end_of_a_step_is_not_looked_at_again_as_the_start_of_the_next() -> None:
     calls: list[Instant] = []
     guards = remembering(lambda instant: calls.append(instant) or sag(instant))  # type: ignore[func-returns-value]
