@@ -17,6 +17,7 @@ from cosserat_casadi.numerics.consistent_start import (
     ConsistentStart,
     Saddle,
     consistent_start,
+    least_change,
     response,
     shortly_after,
 )
@@ -125,10 +126,7 @@ class Onset:
         """
         if not touches:
             return self
-        gradients = self._gradients(touches)
-        answers = response(self.saddle, gradients.T)
-        impulses, *_ = np.linalg.lstsq(gradients @ answers, self.rates(touches), rcond=None)
-        return self.at(self.before.v - answers @ impulses)
+        return self.at(self.before.v + least_change(self.saddle, self._gradients(touches), self.rates(touches)))
 
     def struck(self, touching: Touches) -> Struck | None:
         """The state after an impact at sections without a gap; None where no impulses settle it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
@@ -16,6 +17,10 @@ Phases = TypeVar("Phases")
 
 HeldPhases = TypeVar("HeldPhases", covariant=True)
 """The same, of what only holds and does not take it."""
+
+
+Settling = Callable[[Instant], Instant]
+"""The end of a step, in the unknowns of the model and the forces of contacts ↦ the same put right."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,9 @@ class Switching(Protocol[Phases]):
 
     def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
         """The equations of motion in these phases, and guards that stay at zero or above while the equations hold."""
+
+    def settling(self, plain: MotionEquations, piece: Piece, phases: Phases) -> Settling | None:
+        """What puts the end of a step in these phases right; None for ends as they are."""
 
     def restarted(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float

@@ -36,7 +36,7 @@ from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
-from cosserat_casadi.numerics.consistent_start import saddle_at
+from cosserat_casadi.numerics.consistent_start import least_change, saddle_at
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -51,6 +51,12 @@ It has left, or has come to rest, to rounding: without that it would be back in 
 
 LEVEL = 1e-9
 """Slope of a gap that tells no way in which a rod rolls."""
+
+CLOSED = 1e-13
+"""Gap, over the length, that counts as closed at the end of a step."""
+
+CLOSINGS = 3
+"""Most changes of the positions that close it: the first leaves its square."""
 
 MOST_IN_A_MOMENT = 8
 """Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
@@ -99,6 +105,37 @@ class ExactContacts:
         if not phases.touches:
             return plain, guards
         return with_touches(plain, phases.follower, piece), guards
+
+    def settled(self, plain: MotionEquations, piece: Piece, phases: ContactPhase, at: Instant) -> Instant:
+        """The end of a step, whose gaps are closed and stay so: by the smallest changes in the metric of the mass.
+
+        Stages of steps close gaps and leave their rates open, by as much as the steps are inexact. The next step takes
+        such a rate away: the force that does so is its quotient with the size of that step, and may pull where a step
+        is short. Steps that are cut where a guard vanishes leave gaps open too.
+
+        Args:
+            plain: equations of the model.
+            piece: of its inputs.
+            phases: what touches.
+            at: the end of the step, with the forces of the contacts.
+        """
+        size = plain.size
+        inputs = piece.at(at.time)
+        follower = phases.follower
+        x, v = at.x[:size], at.v[:size]
+        saddle = saddle_at(plain, Instant(at.time, x, v, at.a[:size]))
+        contacts = follower.state(x, inputs.value)
+        gradients = np.array(contacts.gradients)
+        open_by = np.array(follower.open_by(contacts.gaps))
+        for _ in range(CLOSINGS):
+            if np.abs(open_by).max() <= CLOSED:
+                break
+            x = x + least_change(saddle, gradients, open_by)
+            _, gaps = follower.gaps(x, inputs.value)
+            open_by = np.array(follower.open_by(gaps))
+        rates, _ = follower.rates(x, v, inputs)
+        v = v + least_change(saddle, gradients, rates)
+        return replace(at, x=np.append(x, at.x[size:]), v=np.append(v, at.v[size:]))
 
     def restarted(
         self,

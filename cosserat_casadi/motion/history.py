@@ -21,7 +21,7 @@ from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_forces import Follower
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
-from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Switching
+from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Settling, Switching
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free, functions_of_momentum
 from cosserat_casadi.motion.moving_inputs import Piece
@@ -34,7 +34,7 @@ from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
-from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
+from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
@@ -369,6 +369,10 @@ class FreeFlight:
         """A restart whose state is as the steps have it, from one in the unknowns of the model."""
         return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
 
+    def settled_in_steps(self, settling: Settling) -> Settle:
+        """What puts the end of a step right, from what does in the unknowns of the model."""
+        return lambda step: self.to_steps(settling(self.to_model(step.end)))
+
     def in_steps(self, equations: MotionEquations, guards: Guards | None) -> tuple[MotionEquations, Guards | None]:
         """Equations and guards as the steps have them, from those in the unknowns of the model."""
         if self.coordinates is None:
@@ -522,6 +526,9 @@ def _switched(
             # What touches an obstacle keeps no momentum.
             free = keeper is not None and equations.size == model.size
             settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
+            settling = switching.settling(plain, piece, phases)
+            if settling is not None:
+                settled = flight.settled_in_steps(settling)
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin), plain))
                 return History(model, tuple(legs), method, asked, flight)

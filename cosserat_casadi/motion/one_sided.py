@@ -166,6 +166,10 @@ class OneSided:
         """The equations of motion with these pairs closed, and guards that stay at zero or above while they hold."""
         return self.equations(plain, piece, phases), self.guards(piece, phases)
 
+    def settling(self, plain: MotionEquations, piece: Piece, phases: Closed) -> None:
+        """Nothing puts the ends of steps right: pairs stay as far closed as the steps are exact."""
+        return
+
     def guards(self, piece: Piece, phases: Closed) -> Guards | None:
         """Gaps of open pairs and pushes of closed ones, which stay at zero or above; None without pairs."""
         if not self.pairs:

@@ -9,14 +9,14 @@ would make pull is left.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_guards import ContactPhase
-from cosserat_casadi.motion.event_restart import Restart
+from cosserat_casadi.motion.event_restart import Restart, Settling
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import Closed, OneSided
@@ -63,6 +63,12 @@ class SidedContacts:
             return equations, of_contacts
         pairs = of_pairs
         return equations, lambda instant: np.concatenate([pairs(instant), of_contacts(instant)])
+
+    def settling(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> Settling | None:
+        """What closes the gaps of these contacts at the end of a step; None where nothing touches."""
+        if not phases.touches:
+            return None
+        return partial(self.contacts.settled, self.sided.equations(plain, piece, phases.closed), piece, phases)
 
     def restarted(
         self,

@@ -178,6 +178,24 @@ def response(saddle: Saddle, directions: FloatArray) -> FloatArray:
     return np.where(saddle.differential[:, None], inverse @ forced, 0.0)
 
 
+def least_change(saddle: Saddle, gradients: FloatArray, values: FloatArray) -> FloatArray:
+    """The change of unknowns, or of their rates, that takes values from some gaps, or from the rates of these.
+
+    It is the smallest in the metric of the mass that keeps all constraints: of rates, one by impulses along the gaps.
+
+    Args:
+        saddle: the linear system.
+        gradients: of the gaps, shape (m, n).
+        values: to be taken from each, shape (m,).
+
+    Returns:
+        the change, shape (n,).
+    """
+    answers = response(saddle, gradients.T)
+    impulses, *_ = np.linalg.lstsq(gradients @ answers, values, rcond=None)
+    return np.asarray(-answers @ impulses)
+
+
 def shortly_after(
     equations: MotionEquations, instant: Instant, horizon: float, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:

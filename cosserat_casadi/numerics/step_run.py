@@ -325,4 +325,7 @@ class StepRun:
             if not cut.start.time < following < latest or following == time:
                 break
             time = following
-        self.steps.append(stands)
+        if stands is cut:
+            self.add(cut)
+        else:
+            self.steps.append(stands)

@@ -266,6 +266,71 @@ def test_a_place_that_slides_over_an_end_of_an_element_goes_on_in_the_next_one()
     assert_allclose(times[0], times[1], rtol=0, atol=3e-5)
 
 
+def test_ends_of_steps_in_contact_close_gaps_and_leave_them_no_rates() -> None:
+    """Stages leave rates of 1e-2 a second, of which a shorter step made forces that pull; cut steps left gaps open."""
+    scene = read_scene("examples/rod_hits_floor.toml", ["simulation.duration=0.401"])
+    model = build(scene.with_motion_inputs(), moving=True)
+    assert scene.simulation is not None
+    history = Simulator(model, scene.simulation, started(model, scene.simulation, None)).controlled(3e-3)
+    contacts = ExactContacts(model)
+    seen = 0
+    for leg in history.legs:
+        phases = leg.restart.phases
+        assert isinstance(phases, ContactPhase)
+        if not phases.touches:
+            continue
+        follower = Follower(contacts.facings, phases.touches)
+        for step in leg.integration.steps:
+            end = history.of_model(step.end)
+            inputs = leg.piece.at(end.time)
+            gaps = follower.follow(end.x, inputs.value).gaps
+            rates, _ = follower.rates(end.x, end.v, inputs)
+            assert_allclose(follower.open_by(gaps), 0.0, rtol=0, atol=1e-12)
+            assert_allclose(rates, 0.0, rtol=0, atol=1e-8)
+            seen += 1
+    assert seen > 15
+
+
+def test_a_step_in_contact_is_put_right_by_the_smallest_change_in_the_metric_of_the_mass() -> None:
+    model = free_rod(tangent="1, 0, -0.1")
+    contacts = ExactContacts(model)
+    (piece,) = moving_inputs(model).pieces(0.1)
+    inputs = piece.at(0.0).value
+    ((_, pose),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
+    quaternion = slice(pose.start + 3, pose.stop)
+    x = model.unloaded()
+    x[model.discrete.unknowns.strain("rod")] = [-0.2, 0.1]
+    (frame,) = model.discrete.frames.values()
+    (facing,) = contacts.facings
+    (lowest,) = facing.minima(facing.nodes(x, inputs), 1.0)[:1]
+    touches = (MovingContact(0, lowest.place, lowest.inside, lowest.gap - 1e-7),)
+    phases = ContactPhase(touches, follower=Follower(contacts.facings, touches))
+    v = np.random.default_rng(1).normal(size=model.size)
+    norm = np.zeros(model.size)
+    norm[quaternion] = np.asarray(frame.start.quaternion) + x[quaternion]
+    v -= norm * (norm @ v) / (norm @ norm)
+    follower = phases.follower
+    (rate,), _ = follower.rates(x, v, piece.at(0.0))
+    gradient = follower.state(x, inputs).gradients[0]
+
+    def kinetic(speeds: FloatArray) -> float:
+        return float(model.energies(x, speeds, inputs, 0.0 * inputs)[0])
+
+    at = Instant(0.0, np.append(x, 0.3), np.append(v, 0.0), np.zeros(model.size + 1))
+    settled = contacts.settled(equations_of(model, piece), piece, phases, at)
+    # The mass by the kinetic energy, which is quadratic; the change by the conditions of a least energy.
+    axes = np.eye(model.size)
+    mass = np.array([[kinetic(p + q) - kinetic(p) - kinetic(q) for p in axes] for q in axes])
+    rows = np.vstack([gradient, norm])
+    conditions = np.block([[mass / mass.max(), rows.T], [rows, np.zeros((2, 2))]])
+    for change, wanted in ((settled.x[:-1] - x, -1e-7), (settled.v[:-1] - v, -rate)):
+        least, *_ = np.linalg.lstsq(conditions, np.concatenate([np.zeros(model.size), [wanted, 0.0]]), rcond=1e-13)
+        assert_allclose(change, least[: model.size], rtol=1e-5, atol=1e-9 * float(np.abs(change).max()))
+    assert abs(rate) > 0.1
+    assert kinetic(settled.v[:-1]) < kinetic(v)
+    assert settled.x[-1] == 0.3
+
+
 def test_a_free_rod_that_would_be_held_in_contact_has_no_start() -> None:
     text = FREE.format(modes=2, along=0.0, duration=0.1, strain="planar", stuff=THIN, tangent="1, 0, 0")
     floor = FLOOR.replace("-0.05", "-0.001")
