@@ -247,7 +247,7 @@ STRUCK: dict[str, tuple[dict[str, Any], float, float]] = {
     "stiff rubber": (dropped((5e8, 1100.0, 8e-3), 0.0, 0.3, 0.02, 0.12), 1e-2, 1e-4),
     "soft rubber": (dropped(SOFT, 1e-3, 0.2, 0.04, 0.2), 1e-2, 1e-5),
     "aluminium": (dropped((7e10, 2700.0, 3e-3), 1e-5, -0.4, 0.18, 0.2), 10.0**-3.5, 1e-6),
-    "bouncing": (dropped(STEEL, 1e-4, 0.2, 0.05, 0.3, restitution=0.5), 1e-2, 1e-5),
+    "bouncing": (dropped(STEEL, 1e-4, 0.2, 0.05, 0.3, restitution=0.5), 10.0**-2.25, 1e-5),
 }
 """Scenes by name, with the step tolerances of the first of two motions and of a far more exact one."""
 
