@@ -20,7 +20,7 @@ HeldPhases = TypeVar("HeldPhases", covariant=True)
 
 
 Settling = Callable[[Instant], Instant]
-"""The end of a step, in the unknowns of the model and the forces of contacts ↦ the same put right."""
+"""The end of a step, in the unknowns of the model and the forces of contacts ↦ the corrected end."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Switching(Protocol[Phases]):
         """The equations of motion in these phases, and guards that stay at zero or above while the equations hold."""
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: Phases) -> Settling | None:
-        """What puts the end of a step in these phases right; None for ends as they are."""
+        """The correction of the ends of steps in these phases; None for ends as they are."""
 
     def restarted(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float

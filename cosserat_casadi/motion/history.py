@@ -370,7 +370,7 @@ class FreeFlight:
         return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
 
     def settled_in_steps(self, settling: Settling) -> Settle:
-        """What puts the end of a step right, from what does in the unknowns of the model."""
+        """The correction of the ends of steps, from that in the unknowns of the model."""
         return lambda step: self.to_steps(settling(self.to_model(step.end)))
 
     def in_steps(self, equations: MotionEquations, guards: Guards | None) -> tuple[MotionEquations, Guards | None]:

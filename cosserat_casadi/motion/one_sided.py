@@ -167,7 +167,7 @@ class OneSided:
         return self.equations(plain, piece, phases), self.guards(piece, phases)
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: Closed) -> None:
-        """Nothing puts the ends of steps right: pairs stay as far closed as the steps are exact."""
+        """No correction of the ends of steps: pairs stay closed as far as the steps are exact."""
         return
 
     def guards(self, piece: Piece, phases: Closed) -> Guards | None:

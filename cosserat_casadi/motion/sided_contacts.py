@@ -65,7 +65,7 @@ class SidedContacts:
         return equations, lambda instant: np.concatenate([pairs(instant), of_contacts(instant)])
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: ContactPhase) -> Settling | None:
-        """What closes the gaps of these contacts at the end of a step; None where nothing touches."""
+        """The correction that closes the gaps of these contacts at the end of a step; None without contacts."""
         if not phases.touches:
             return None
         return partial(self.contacts.settled, self.sided.equations(plain, piece, phases.closed), piece, phases)
