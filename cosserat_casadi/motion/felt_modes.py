@@ -29,6 +29,9 @@ REST = SAFETY / UNKNOWN_ORDER
 LAST = 3
 """One of so many coefficients counts as one of the last."""
 
+BENDING = (0, 1)
+"""Numbers of the curvatures: they move places by two integrals, so that their fronts make no kinks."""
+
 TINY = float(np.finfo(float).tiny)
 """Keeps the share of no acceleration finite."""
 
@@ -85,6 +88,23 @@ def lacking(history: History, duration: float, moved_by: ByStrain | None = None)
     # A motion that goes on had waves before: its lateness adds up.
     late = out_of_phase(history) * duration / (duration - history.begin)
     return max((REST * len(moved) * last_of(moved) for moved in strains), default=0.0) + late
+
+
+def lacking_at_fronts(history: History, duration: float) -> float:
+    """Largest displacement over the length that a wave with a front would make which coefficients lack.
+
+    A sudden load sends fronts along a rod by its twist, its stretch and its shear. Where one arrives at the tip, turn
+    or place has a kink, which any polynomials meet with the first power of their number: what two motions differ by
+    there says little, for their kinks err at different times.
+    """
+    moved_by = felt(history, duration)
+    fronts = [
+        REST * len(moved) * last_of(moved)
+        for name, rod in history.model.discrete.rods.items()
+        for strain, moved in zip(rod.admitted, moved_by[name], strict=True)
+        if strain not in BENDING
+    ]
+    return max(fronts, default=0.0)
 
 
 def out_of_phase(history: History) -> float:

@@ -27,6 +27,7 @@ from cosserat_casadi.motion.felt_modes import (
     UNKNOWN_ORDER,
     felt,
     lacking,
+    lacking_at_fronts,
     last_of,
     most_modes,
     told_by_modes,
@@ -59,6 +60,7 @@ from cosserat_casadi.motion.simulate import (
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
 from cosserat_casadi.motion.step_kernels import KernelSource
+from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -110,6 +112,9 @@ MOST_RUNGS = 3
 ORDER_OF_WAVES = 2.3
 """Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
+ORDER_OF_FRONTS = 1.0
+"""The same where a front arrives, on any elements."""
+
 BLOWS = ("impact", "stop_hit")
 """Kinds of events that are blows, whatever energy they take."""
 
@@ -141,6 +146,15 @@ UNDAMPED = (
 """Sentence for a motion that more modes do not bring near to a limit."""
 
 
+WAVES = (
+    "What comes at once sends waves of all lengths along a rod without damping: on {fewer} and {more} modes the paths "
+    "are {distance:.2g} of the length apart. The tolerance is foreseen to ask for some {wanted:.0f} modes, and no more "
+    "than {most} are tried. Give loads the time that they take, the rod damping.retardation_time, or a larger "
+    "tolerance. Modes that accuracy.modes fixes are kept."
+)
+"""Sentence for a motion whose waves ask for more modes than there are."""
+
+
 CHATTERS = (
     "It strikes over and over: on {fewer} and {more} modes there are {before} and {after} impacts, and the paths are "
     "{distance:.2g} of the length apart; on as many modes as the tolerance asks for there would be some "
@@ -164,6 +178,7 @@ class ResolvedMotion:
             modes enough.
         unseen: displacement over the length by coefficients that strains lack, as their last ones tell: of strains that
             have no more modes than on the level before the distance tells nothing.
+        fronts: displacement over the length that fronts of undamped waves lack, which sudden loads send.
     """
 
     simulator: Simulator
@@ -173,6 +188,7 @@ class ResolvedMotion:
     modes: int = 0
     distance: float = float("inf")
     unseen: float = 0.0
+    fronts: float = 0.0
 
 
 @dataclass
@@ -239,7 +255,17 @@ class _Search:
         left_now = self.last.unseen
         if self.last.distance > 0.0:
             left_now = max(left_now, self.last.distance * self.left_over_distance(order))
-        return float(left_now * (modes / self.last.modes) ** -order)
+        finer = modes / self.last.modes
+        return float(max(left_now * finer**-order, self.last.fronts * finer**-self.order_of_fronts))
+
+    @property
+    def order_of_fronts(self) -> float:
+        """Power with which what fronts lack falls, from the last two levels."""
+        fronts = [level.fronts for level in self.levels[-2:]]
+        if len(fronts) < 2 or min(fronts) == 0.0:
+            return ORDER_OF_FRONTS
+        order = np.log(fronts[0] / fronts[1]) / np.log(self.last.modes / self.levels[-2].modes)
+        return float(np.clip(order, ORDER_OF_FRONTS, FASTEST))
 
     def left_over_distance(self, order: float) -> float:
         """Error of the paths that the modes of the last level leave, over their distance from the level before."""
@@ -267,14 +293,31 @@ class _Search:
         return all(rod.damping is not None for rod in self.scene.rods)
 
     @property
-    def hopeless(self) -> bool:
-        """Whether waves without damping that impacts sent out keep motions on more modes far apart.
+    def hopeless(self) -> str | None:
+        """Why waves without damping keep motions on more modes far apart; None where they do not.
 
-        They have all lengths, so that errors fall slowly on any number of modes.
+        Those of impacts and of sudden loads have all lengths, so that errors fall slowly on any number of modes.
         """
-        if self.is_damped or not is_struck(self.last.history) or len(self.levels) < 2:
-            return False
-        return self.foreseen(self.ladder[-1], ORDER_OF_WAVES) > self.tolerance
+        if self.is_damped or len(self.levels) < 2:
+            return None
+        most = self.ladder[-1]
+        if is_struck(self.last.history):
+            far = self.foreseen(most, ORDER_OF_WAVES) > self.tolerance
+            return UNDAMPED.format(**self.told, most=most) if far else None
+        # Of sudden loads two distances tell the power. It grows no more, as it does where modes begin to see a pulse.
+        order = max(self.order, ORDER_OF_WAVES)
+        if len(self.levels) < 3 or self.foreseen(most, order) <= self.tolerance or not is_sudden(self.last):
+            return None
+        return WAVES.format(
+            **self.told, most=most, wanted=self.last.modes * self.finer_modes(max(self.order, ORDER_OF_FRONTS))
+        )
+
+    def finer_modes(self, order: float) -> float:
+        """Modes that the tolerance asks for, over those of the last level, if errors fall with this power of them."""
+        allowed = SPACE_SHARE * self.tolerance
+        by_distance = self.foreseen(self.last.modes, order) / allowed
+        at_fronts = self.last.fronts / allowed
+        return float(max(by_distance ** (1.0 / order), at_fronts ** (1.0 / self.order_of_fronts), 1.0))
 
     @property
     def foreseen_impacts(self) -> float:
@@ -287,8 +330,7 @@ class _Search:
         before, after = (impacts_of(level.history) for level in self.levels[-2:])
         finer = self.last.modes / self.levels[-2].modes
         growth = float(np.clip(np.log(max(after, 1) / max(before, 1)) / np.log(finer), 0.0, FASTEST_GROWTH))
-        wanted = max(self.space_error / (SPACE_SHARE * self.tolerance), 1.0) ** (1.0 / self.order)
-        return float(after * min(wanted, self.ladder[-1] / self.last.modes) ** growth)
+        return float(after * min(self.finer_modes(self.order), self.ladder[-1] / self.last.modes) ** growth)
 
     @property
     def told(self) -> dict[str, float]:
@@ -429,9 +471,13 @@ def _with_tolerance(search: _Search) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        search.levels.append(ResolvedMotion(simulator, history, found, rung, modes, distance, unseen))
-        if search.hopeless:
-            return _given_up(search, UNDAMPED.format(**search.told, most=search.ladder[-1]))
+        level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen)
+        if not search.is_damped and is_sudden(level):
+            level = replace(level, fronts=lacking_at_fronts(history, search.simulation.duration))
+        search.levels.append(level)
+        hopeless = search.hopeless
+        if hopeless is not None:
+            return _given_up(search, hopeless)
         # Motions on two sets of modes that are near each other do not hang on rounding.
         if len(search.levels) == 2 and distance > FAR_APART * search.tolerance and _is_erratic(search):
             return _erratic(search)
@@ -451,6 +497,12 @@ def _with_tolerance(search: _Search) -> Motion:
     if len(search.levels) > 1 and search.last.distance > 0.0:
         companions.append(Companion(search.levels[-2].history, search.left_over_distance(search.order)))
     return _judged(search, finest, search.space_error + timed.error, companions)
+
+
+def is_sudden(level: ResolvedMotion) -> bool:
+    """Whether loads of a motion act at once at its start, or jump."""
+    simulator = level.simulator
+    return bool(warnings(level.history, simulator.start, simulator.moving, simulator.simulation.duration))
 
 
 def _is_erratic(search: _Search) -> bool:
