@@ -23,7 +23,7 @@ from cosserat_casadi.accuracy.cost import TOGETHER
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec, expressions_of
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
@@ -46,8 +46,8 @@ class ColumnForm:
     """A Jacobian, or some entries of one, by the columns of one rod.
 
     Attributes:
-        function: (arguments, …, columns, turns) ↦ (jacobian, column). The column follows from the turns,
-            and the Jacobian from the matrix of all columns, one row of it after the other.
+        function: (arguments, …, columns, turns) ↦ (results, …, column). The column follows from the turns,
+            and the results from the matrix of all columns, one row of it after the other.
         turns: constant turns of all columns, shape (entries, stride), with zeros behind the last one.
         rows: rows of the matrix of columns.
         turns_behind: None, or number of constants behind which the turns stand in the argument before the columns,
@@ -75,6 +75,19 @@ class ColumnForm:
         """Number of the argument with the turns of one column."""
         number: int = self.function.n_in() - 1
         return number
+
+
+@dataclass(frozen=True)
+class ColumnedFunction:
+    """A function by columns, and what it is called in C.
+
+    Attributes:
+        form: the function.
+        signature: a function with the name, arguments and results that it has in C.
+    """
+
+    form: ColumnForm
+    signature: ca.Function
 
 
 def in_groups(turns: FloatArray) -> FloatArray:
@@ -105,9 +118,15 @@ class RodColumns:
     @property
     def padded_turns(self) -> FloatArray:
         """The turns with zeros behind the last column."""
-        padded = np.zeros((self.turns.shape[0], self.stride))
-        padded[:, : self.turns.shape[1]] = self.turns
-        return padded
+        return _padded(self.turns)
+
+
+def _padded(turns: FloatArray) -> FloatArray:
+    """Turns with zeros behind the last column, up to a multiple of LANES columns."""
+    entries, count = turns.shape
+    padded = np.zeros((entries, -(-count // LANES) * LANES))
+    padded[:, :count] = turns
+    return padded
 
 
 @dataclass(frozen=True)
@@ -239,7 +258,7 @@ class ColumnPart:
     def form(self, name: str) -> ColumnForm:
         """Both as one scalar function, with common terms shared."""
         shared = ca.cse([self.entries, self.column])
-        words = [*self.given, "columns", "turns"]
+        words = [*self.given, *_words_of_columns(name)]
         function = ca.Function(name, self.symbols, shared, words, ["jacobian", "column"])
         return ColumnForm(function, self.turns, self.column.numel())
 
@@ -271,6 +290,50 @@ def in_columns(written: WrittenJacobian, name: str, most: int | None = None) -> 
         return None
     _, _, entries = jacobian.scalars
     return jacobian.part(ca.densify(entries), rod).form(name)
+
+
+def pose_in_columns(model: Model, spec: FunctionSpec, owner: str, name: str) -> ColumnForm | None:
+    """Derivatives of a pose on the rod of a scene with all arguments, by columns; None where it has no such form.
+
+    A column with an angular strain coordinate follows from its turns alone; the others have no columns.
+
+    Args:
+        model: whose function it is.
+        spec: its entry in the table of functions; the first result is the derivative with x.
+        owner: of the function.
+        name: of the form.
+    """
+    discrete = model.discrete
+    if len(discrete.rods) != 1:
+        return None
+    ((rod, discrete_rod),) = discrete.rods.items()
+    if discrete_rod.discretisation.transport == "permuted" or not discrete_rod.angular:
+        return None
+    written = expressions_of(model, tuple(spec.arguments_of(discrete)), owner)
+    turns = written.system.pose_variations(rod).turn_matrix.unfolded.full()
+    turn = ca.MX.sym("turns", turns.shape[0])
+    of_one = replace(written.system, turns={rod: turn})
+    derivatives = spec.write(model, replace(written, known={System: of_one}))
+    assert derivatives is not None, "every section has a pose"
+    by_unknowns, *others = derivatives
+    first = discrete.unknowns.strain(rod).start
+    padded = _padded(turns)
+    rows, stride = by_unknowns.shape[0], padded.shape[1]
+    columns = ca.MX.sym("columns", rows * stride)
+    every = ca.reshape(columns, stride, rows).T[:, : turns.shape[1]]
+    whole = ca.horzcat(by_unknowns[:, :first], every, by_unknowns[:, first + 1 :])
+    results = [*map(ca.densify, [whole, *others]), by_unknowns[:, first]]
+    plain = ca.Function(name, [*written.symbols.values(), columns, turn], results).expand()
+    symbols = [ca.SX.sym("given", plain.sparsity_in(i)) for i in range(plain.n_in())]
+    words = [*written.symbols, *_words_of_columns(name)]
+    results_by_name = [f"result_{i}" for i in range(len(results))]
+    function = ca.Function(name, symbols, ca.cse(plain.call(symbols)), words, results_by_name)
+    return ColumnForm(function, padded, rows)
+
+
+def _words_of_columns(name: str) -> list[str]:
+    """Names of the last two arguments of a form, which no other form has: functions share arguments of one name."""
+    return [f"{name}_columns", f"{name}_turns"]
 
 
 def _parts(columns: Columns) -> list[Matrix]:

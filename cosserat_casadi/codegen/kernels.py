@@ -11,7 +11,15 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT, STRAIGHT_BESIDE_INTERVALS, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.columns import SHARED_AT_MOST, WrittenJacobian, in_columns, on_path
+from cosserat_casadi.codegen.columns import (
+    SHARED_AT_MOST,
+    ColumnedFunction,
+    ColumnForm,
+    WrittenJacobian,
+    in_columns,
+    on_path,
+    pose_in_columns,
+)
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, differentiable_functions, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.motion_parts import MotionInC
@@ -33,6 +41,9 @@ RATE = "path_rate"
 
 SELDOM = ("igm", "energies", "momentum")
 """Functions that no iteration calls: where they are long, they are in loops, whose C is shorter."""
+
+OF_SECTIONS = ("tip_jacobian",)
+"""Derivatives of the pose of a section, by columns where that is shorter than straight-line code."""
 
 MOST_BESIDE_STEPS = 20_000
 """Statements up to which a Jacobian of statics is written by columns where a folder has steps of motions, too.
@@ -107,24 +118,28 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
     Functions in straight-line code call kernels of the values that they share (shared_values.py).
     """
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
-    straight: dict[tuple[int, bool], list[ca.Function]] = defaultdict(list)
+    straight: dict[tuple[int, bool], list[ca.Function | ColumnedFunction]] = defaultdict(list)
     for one in written.values():
-        if isinstance(one, ca.Function) and one.is_a("SXFunction") and one.name_in()[:COMMON] == ["x", "inputs"]:
+        if isinstance(one, PrintedKernel):
+            continue
+        function = one.form.function if isinstance(one, ColumnedFunction) else one
+        if function.is_a("SXFunction") and function.name_in()[:COMMON] == ["x", "inputs"]:
             # To the solver parameters are further inputs.
-            straight[one.size1_in(1), one.n_instructions() <= SHORT].append(one)
+            straight[function.size1_in(1), function.n_instructions() <= SHORT].append(one)
+    finished: dict[str, Kernel] = {}
     for number, functions in enumerate(straight.values()):
         with suppress(UnknownOperationError):
             for shared in with_shared_kernels(functions, names.kernel(f"shared_{number}")):
-                written[shared.name()] = shared
-    return list(written.values())
+                finished[shared.name()] = shared
+    return [finished.get(name) or one for name, one in written.items()]
 
 
-def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
+def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel | ColumnedFunction:
     """One function of a scene that has no parts: by columns, in straight-line code, or in loops."""
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
-        columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
+        columned = _columned(on_path(model), entry.function, entry.kernel, most_in_columns)
         if columned is not None:
             return columned
         return kernel(model, entry.function, entry.kernel)
@@ -135,6 +150,10 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel:
         straight.n_instructions() > STRAIGHT and isinstance(with_calls_in_fours(straight), ca.Function)
     ):
         return dense(entry.function, entry.kernel)
+    if entry.spec.name in OF_SECTIONS:
+        form = pose_in_columns(model, entry.spec, entry.owner or "", entry.kernel)
+        columned = None if form is None else _within(form, straight, straight.n_instructions())
+        return straight if columned is None else columned
     return straight
 
 
@@ -149,15 +168,23 @@ def by_columns(
         name: its name in C.
         most: statements up to which it is not a long one, MOST_IN_COLUMNS by default.
     """
-    within = MOST_IN_COLUMNS if most is None else most
-    form = in_columns(written, name, within)
-    if form is None:
-        return None
+    columned = _columned(written, function, name, MOST_IN_COLUMNS if most is None else most)
+    return None if columned is None else columns_in_fours(columned.form, columned.signature)
+
+
+def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: int) -> ColumnedFunction | None:
+    """As :func:`by_columns`, before it is C."""
+    form = in_columns(written, name, most)
+    return None if form is None else _within(form, dense(function, name), most)
+
+
+def _within(form: ColumnForm, signature: ca.Function, most: int) -> ColumnedFunction | None:
+    """A form under a signature; None where it takes more statements, or an operation has no form in fours."""
     try:
-        columned = columns_in_fours(form, dense(function, name))
+        statements = columns_in_fours(form, signature).n_instructions()
     except UnknownOperationError:
         return None
-    return columned if columned.n_instructions() <= within else None
+    return ColumnedFunction(form, signature) if statements <= most else None
 
 
 def _literal(model: Model) -> bool:

@@ -92,17 +92,20 @@ def with_calls_in_fours(kernel: ca.Function) -> Kernel:
         return kernel
 
 
-def columns_in_fours(form: ColumnForm, signature: ca.Function) -> PrintedKernel:
+def columns_in_fours(
+    form: ColumnForm, signature: ca.Function, kernels: Mapping[int, PrintedKernel] | None = None
+) -> PrintedKernel:
     """A Jacobian by columns as C.
 
     Args:
         form: the Jacobian.
         signature: a function with the name, arguments and result that it has in C.
+        kernels: as for :func:`scalars_in_c`.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    return _Writing(Listing(form.function), signature, form, SINGLE, {}).result()
+    return _Writing(Listing(form.function), signature, form, SINGLE, kernels or {}).result()
 
 
 @dataclass(frozen=True)
@@ -480,7 +483,7 @@ class _Writing:
                 if not isinstance(value, Computed):
                     raise UnknownOperationError("a call in a column")
                 statements.append(FOURS.operation(value.operation, value.operands, number))
-        entries = self.listing.outputs[1]
+        entries = self.listing.outputs[-1]
         for row in range(form.rows):
             place = row * form.stride
             made = entries.get(row)

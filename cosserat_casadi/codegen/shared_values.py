@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import accumulate, pairwise
 
 import casadi as ca
 
+from cosserat_casadi.codegen.columns import ColumnedFunction
 from cosserat_casadi.codegen.listing import Called, Computed, Constant, Listing, Read
 from cosserat_casadi.codegen.printed_kernels import PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import scalars_in_c, shared_in_c
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c, shared_in_c
 from cosserat_casadi.codegen.streams import call_of_entries
 
 FEWEST_SHARED = 100
@@ -25,17 +27,40 @@ COMMON = 2
 """Number of arguments that all functions begin with: unknowns and inputs."""
 
 
-def with_shared_kernels(functions: Sequence[ca.Function], name: str) -> list[PrintedKernel]:
+def with_shared_kernels(written: Sequence[ca.Function | ColumnedFunction], name: str) -> list[PrintedKernel]:
     """Functions in C, which call kernels of the values that they share.
 
     Args:
-        functions: of scalars, with dense results, and with the same first two arguments.
+        written: functions of scalars, with dense results, and with the same first two arguments. Further arguments of
+            one name are the same up to the first whose names differ.
         name: of the kernels, before their numbers.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    return _Sharing(functions, name).printed()
+    scalars = [one.form.function if isinstance(one, ColumnedFunction) else one for one in written]
+    functions, kernels = _Sharing(scalars, name).functions_and_kernels()
+    printed = []
+    for one, function in zip(written, functions, strict=True):
+        if isinstance(one, ColumnedFunction):
+            printed.append(columns_in_fours(replace(one.form, function=function), one.signature, kernels))
+        else:
+            printed.append(scalars_in_c(function, function, kernels=kernels))
+    return printed
+
+
+def _arguments_of(function: ca.Function, known: dict[tuple[str, ...], ca.SX]) -> list[ca.SX]:
+    """Symbols of the arguments of a function: those of another one as long as both have the same names.
+
+    Args:
+        function: the function.
+        known: symbols of other functions by the names of the arguments up to theirs; new ones are added.
+    """
+    names = function.name_in()
+    symbols = []
+    for i, name in enumerate(names):
+        symbols.append(known.setdefault(tuple(names[: i + 1]), ca.SX.sym(name, function.sparsity_in(i))))
+    return symbols
 
 
 class _Sharing:
@@ -47,13 +72,12 @@ class _Sharing:
     def __init__(self, functions: Sequence[ca.Function], name: str) -> None:
         self._functions = functions
         self._name = name
-        first = functions[0]
-        self._common = [ca.SX.sym(first.name_in(i), first.sparsity_in(i)) for i in range(COMMON)]
-        self._further = [[ca.SX.sym("further", f.sparsity_in(i)) for i in range(COMMON, f.n_in())] for f in functions]
-        symbols = [*self._common, *(symbol for further in self._further for symbol in further)]
+        known: dict[tuple[str, ...], ca.SX] = {}
+        self._arguments = [_arguments_of(function, known) for function in functions]
         results = []
-        for function, further in zip(functions, self._further, strict=True):
-            results.append(ca.vertcat(*map(ca.vec, function.call([*self._common, *further]))))
+        for function, arguments in zip(functions, self._arguments, strict=True):
+            results.append(ca.vertcat(*map(ca.vec, function.call(arguments))))
+        symbols = list(known.values())
         self._listing = Listing(ca.Function("joint", symbols, ca.cse(results)))
         self._entries = [symbol.nonzeros() for symbol in symbols]
         self._homes = self._homes_of_values()
@@ -61,13 +85,12 @@ class _Sharing:
         self._kernels: dict[int, ca.Function] = {}
         self._printed: dict[int, PrintedKernel] = {}
 
-    def printed(self) -> list[PrintedKernel]:
-        """The functions, which call the kernels."""
+    def functions_and_kernels(self) -> tuple[list[ca.Function], dict[int, PrintedKernel]]:
+        """The functions, which call the kernels, and these in C by the hash of their functions."""
         for home in sorted(self._handed_over, key=lambda home: (-home.bit_count(), home)):
             self._add_kernel(home)
         kernels = {hash(kernel): self._printed[home] for home, kernel in self._kernels.items()}
-        functions = [self._function(i) for i in range(len(self._functions))]
-        return [scalars_in_c(function, function, kernels=kernels) for function in functions]
+        return [self._function(i) for i in range(len(self._functions))], kernels
 
     def _homes_of_values(self) -> list[int]:
         """For each value the set of functions whose kernel computes it; 0 if each function computes it itself."""
@@ -86,7 +109,7 @@ class _Sharing:
                     users[result] = users[results[0]]
             for operand in listing.operands(number):
                 users[operand] |= users[number]
-        # Arguments beyond those that all functions have are symbols of one function, and so is what depends on them.
+        # What depends on an argument that one function has alone is computed by that function alone.
         homes = []
         for number, value in enumerate(listing.values):
             shared = users[number].bit_count() > 1 and isinstance(value, Computed | Called)
@@ -112,7 +135,7 @@ class _Sharing:
         entries = [symbol.nonzeros() for symbol in symbols]
         wanted = self._handed_over[home]
         expressions = self._expressions(wanted, dict(zip(self._larger(home), entries, strict=True)))
-        arguments = [*self._common, *symbols]
+        arguments = [*self._common(home), *symbols]
         words = [f"given_{i}" for i in range(len(arguments))]
         results = [ca.vertcat(*[expressions[number] for number in wanted])]
         name = f"{self._name}_{len(self._kernels)}"
@@ -121,6 +144,16 @@ class _Sharing:
         first = max((printed.reals for printed in self._printed.values()), default=0)
         self._printed[home] = shared_in_c(kernel, earlier, first)
         self._kernels[home] = kernel
+
+    def _common(self, home: int) -> list[ca.SX]:
+        """The arguments that all functions of a set begin with: its kernel reads them in their places."""
+        first, *others = [arguments for i, arguments in enumerate(self._arguments) if home >> i & 1]
+        common = list[ca.SX]()
+        for places in zip(first, *others, strict=False):
+            if any(symbol is not places[0] for symbol in places):
+                break
+            common.append(places[0])
+        return common
 
     def _larger(self, users: int) -> list[int]:
         """The kernels of sets that hold this one, in the order in which they are called."""
@@ -132,7 +165,7 @@ class _Sharing:
         results: dict[int, ca.SX] = {}
         for home, kernel in self._kernels.items():
             if home >> i & 1:
-                arguments = [*self._common, *(results[other] for other in self._larger(home))]
+                arguments = [*self._common(home), *(results[other] for other in self._larger(home))]
                 (results[home],) = kernel.call(arguments, False, True)
         outputs = self._listing.outputs[i]
         handed_over = {home: result.nonzeros() for home, result in results.items()}
@@ -144,8 +177,7 @@ class _Sharing:
         ends = accumulate((pattern.nnz() for pattern in patterns), initial=0)
         vectors = [ca.vertcat(*entries[begin:end]) for begin, end in pairwise(ends)]
         shaped = list(map(ca.SX, patterns, vectors))
-        symbols = [*self._common, *self._further[i]]
-        return ca.Function(function.name(), symbols, shaped, function.name_in(), function.name_out())
+        return ca.Function(function.name(), self._arguments[i], shaped, function.name_in(), function.name_out())
 
     def _expressions(self, wanted: Sequence[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
         """Expressions of values, and of the values that they are computed from, by number.

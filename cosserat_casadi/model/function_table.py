@@ -220,7 +220,7 @@ class FunctionSpec:
         """
         discrete: DiscreteScene = model.discrete
         arguments = self.arguments_of(discrete)
-        written = _expressions(model, tuple(arguments), owner)
+        written = expressions_of(model, tuple(arguments), owner)
         symbols = written.symbols
         results = self.write(model, written)
         if results is None:
@@ -231,7 +231,7 @@ class FunctionSpec:
         return ca.Function(name, list(symbols.values()), list(results), arguments, names)
 
 
-def _expressions(model: Any, arguments: tuple[str, ...], owner: str) -> Expressions:
+def expressions_of(model: Any, arguments: tuple[str, ...], owner: str) -> Expressions:
     """Expressions in arguments, which functions of a model share."""
     discrete: DiscreteScene = model.discrete
     kept: dict[Any, Expressions] = model.__dict__.setdefault("_expressions", {})

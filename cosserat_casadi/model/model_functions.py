@@ -482,18 +482,20 @@ def _section_in_world(written: Expressions, rod: str, node: int) -> Pose:
 def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pose | None = None) -> list[Matrix]:
     """Derivatives of the pose of a section, or of a body that it carries at this pose in its axes, with all symbols.
 
-    From the variations of the rod's fields where its base rests: δr of the section, and δQ = ½ (0, δθ) ⊗ Q.
+    From the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base adds its own.
     """
     discrete = written.discrete
     section = _section_in_world(written, rod, node)
     pose = _stacked(section if carried is None else section.then(carried))
-    floats = discrete.unloaded.floating_base(rod) is not None
-    literal = discrete.rods[rod].discretisation.transport == "permuted"
-    # A floating base moves with unknowns of its own, and the literal system has no variations.
-    if floats or literal:
+    # The literal linear system has no variations.
+    if discrete.rods[rod].discretisation.transport == "permuted":
         by_unknowns = ca.jacobian(pose, written["x"])
     else:
-        by_unknowns = _by_strains(written, rod, node)
+        floats = discrete.unloaded.floating_base(rod) is not None
+        by_base = _by_base(written, rod, node) if floats else ca.DM(7, discrete.size)
+        strains = discrete.unknowns.strain(rod)
+        by_own_strains = _by_strains(written, rod, node)
+        by_unknowns = ca.horzcat(by_base[:, : strains.start], by_own_strains, by_base[:, strains.stop :])
         if carried is not None:
             own = ca.MX.sym("section", 7)
             by_section = ca.jacobian(_stacked(Pose(own[:3], own[3:]).then(carried)), own)
@@ -507,25 +509,31 @@ def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pos
     return derivatives
 
 
+def _by_base(written: Expressions, rod: str, node: int) -> Matrix:
+    """Derivative of a section's position and quaternion with the unknowns that move the base of its rod, 7×size."""
+    own = ca.MX.sym("section", 7)
+    pose = _stacked(written.system.base(rod).then(Pose(own[:3], own[3:])))
+    by_unknowns: Matrix = ca.substitute(
+        ca.jacobian(pose, written["x"]), own, _stacked(written.system.section(rod, node))
+    )
+    return by_unknowns
+
+
 def _stacked(pose: Pose) -> Matrix:
     return ca.vertcat(pose.position, pose.quaternion)
 
 
 def _by_strains(written: Expressions, rod: str, node: int) -> Matrix:
-    """Derivative of a section's position and quaternion with x, 7×size: zero but for the strains of its rod."""
+    """Derivative of a section's position and quaternion with the strains of its rod, a column for each."""
     system = written.system
-    tangent = system.tangents[rod]
+    tangent = system.pose_variations(rod)
     base = system.base(rod)
-    count = written.discrete.rods[rod].size
+    turned = ca.densify(tangent.rotation_of(node))
+    count = turned.shape[1]
     quaternions = ca.repmat(ca.densify(system.section(rod, node).quaternion), 1, count)
     # One column a strain coordinate: δQ = ½ (0, δθ) ⊗ Q in the base, then turned into the world.
-    spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(node)))
-    turned = quaternion_product(spin, quaternions) / 2
+    spin = ca.vertcat(ca.DM.zeros(1, count), turned)
     base_quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
-    turned_in_world = quaternion_product(base_quaternions, turned)
+    turned_in_world = quaternion_product(base_quaternions, quaternion_product(spin, quaternions) / 2)
     moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(node)
-    by_own_strains = ca.vertcat(moved_in_world, turned_in_world)
-    strains = written.discrete.unknowns.strain(rod)
-    before = ca.DM(7, strains.start)
-    after = ca.DM(7, written.discrete.size - strains.stop)
-    return ca.horzcat(before, by_own_strains, after)
+    return ca.vertcat(moved_in_world, turned_in_world)

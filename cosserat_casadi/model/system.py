@@ -97,12 +97,15 @@ class System:
         discrete: constant matrices of the scene.
         arguments: symbols or numbers that the expressions are written in.
         columns: columns of the variations of rods that are known already, by rod.
+        turns: turns of the intervals of a rod, by rod, in place of those by all of its angular coordinates; for
+            :meth:`pose_variations`.
         friction: [force; moment] on what rubs, as :attr:`rubbing` tells it, by name; computed where it is left out.
     """
 
     discrete: DiscreteScene
     arguments: Arguments
     columns: Mapping[str, Columns] = field(default_factory=dict)
+    turns: Mapping[str, Matrix] = field(default_factory=dict)
     friction: Mapping[str, Sequence[Matrix]] = field(default_factory=dict)
 
     @cached_property
@@ -122,6 +125,10 @@ class System:
         # In motion there is so much more of it that it is loops.
         in_loops = self.arguments.motion is not None
         return {name: Tangent(igm, in_loops, given=self.columns.get(name)) for name, igm in self.rods.items()}
+
+    def pose_variations(self, rod: str) -> Tangent:
+        """Variations of a rod's sections, without those of what acts on it."""
+        return Tangent(InverseGeometricModel(Statics(self.shapes[rod], ())), turns=self.turns.get(rod))
 
     @cached_property
     def riding(self) -> dict[str, RidingBody]:

@@ -152,17 +152,24 @@ class Tangent:
         """A, V, H of :attr:`IntervalKernels.variation` of every interval as operators on stacked fields."""
         kernel = self.kernels.variation
         moment = self.igm.pulled.interval_moment
-        if moment is None:
-            moment = ca.DM.zeros(3, self.intervals)
+        assert moment is not None, "asked for where moments pass"
         blocks = kernel.map(self.intervals)(*self.shape.interval_arguments, moment)
         a, v, h = (block_diagonal(block, kernel.sparsity_out(i)) for i, block in enumerate(blocks))
         return a, v, h
 
+    @property
+    def _turning(self) -> Matrix:
+        """A of every interval as an operator, which needs no moment."""
+        if self.igm.pulled.interval_moment is not None:
+            return self.interval_operators[0]
+        kernel = self.kernels.turning
+        block = kernel.map(self.intervals)(*self.shape.interval_arguments)
+        return block_diagonal(block, kernel.sparsity_out(0))
+
     @cached_property
     def interval_variation(self) -> Matrix:
         """δθ that each interval adds, base frame, (3·intervals)×n_a, rad."""
-        turning = self.interval_operators[0]
-        return turning @ self._turns
+        return self._turning @ self._turns
 
     @cached_property
     def section_rotation(self) -> Matrix:

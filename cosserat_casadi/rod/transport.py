@@ -113,8 +113,6 @@ class IntervalKernels:
         """
         a = self.symbols
         omega = self.rotation_vector
-        rates = ca.jacobian(omega, a.turn)
-        turning = (a.rotation @ a.increment.tangent) @ rates
         # V is that of the increment seen from the base: Ω turned by R.
         turned = replace(a.increment, omega=a.rotation @ a.increment.omega)
         stiffness = turned.stiffness(a.moment)
@@ -124,8 +122,21 @@ class IntervalKernels:
         upper = ca.triu(ca.jacobian(force, a.turn))
         moment = a.rotation.T @ a.moment
         second = ca.substitute(ca.triu2symm(upper), pulled, a.increment.pulled(moment))
-        outputs = [ca.sparsify(output) for output in ca.cse([turning, stiffness, second])]
+        outputs = [ca.sparsify(output) for output in ca.cse([self._turning, stiffness, second])]
         return ca.Function("variation", a.listed, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
+
+    @cached_property
+    def turning(self) -> ca.Function:
+        """A of :attr:`variation` alone: (turn, omega, factors, rotation) ↦ A."""
+        turning = ca.sparsify(ca.cse(self._turning))
+        return ca.Function("turning", self.symbols.listed[:-1], [turning], ARGUMENTS[:-1], ["A"], KEPT)
+
+    @property
+    def _turning(self) -> ca.SX:
+        """R T ∂Ω/∂turn."""
+        a = self.symbols
+        rates = ca.jacobian(self.rotation_vector, a.turn)
+        return (a.rotation @ a.increment.tangent) @ rates
 
     @cached_property
     def symbols(self) -> IntervalSymbols:

@@ -5,7 +5,7 @@
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and
    turn section coordinates into world coordinates. The unknowns x and the residual are without unit; q are the strain
-   coordinates of one rod. Functions need at most 9.5 kB of stack.
+   coordinates of one rod. Functions need at most 8.5 kB of stack.
 
    The scene asks for a tip pose within 0.0001 of the length. The discretisation was judged at the scene's own inputs:
    estimated error 8.5e-05. Far larger loads need it judged anew.
@@ -162,7 +162,7 @@ typedef struct {
   follower_reissner_real balance[2 * FOLLOWER_REISSNER_UNKNOWNS + 18 + 7];
   follower_reissner_real watched[7];
   follower_reissner_real watched_after[7];
-  follower_reissner_real kernel_reals[1500];
+  follower_reissner_real kernel_reals[1602];
   int kernel_integers[1];
 } follower_reissner_workspace;
 

@@ -11,17 +11,17 @@ int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, cas
 #define follower_reissner_k_residual_SZ_ARG 3
 #define follower_reissner_k_residual_SZ_RES 1
 #define follower_reissner_k_residual_SZ_IW 0
-#define follower_reissner_k_residual_SZ_W 462
+#define follower_reissner_k_residual_SZ_W 469
 int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_jacobian_SZ_ARG 3
 #define follower_reissner_k_jacobian_SZ_RES 1
 #define follower_reissner_k_jacobian_SZ_IW 0
-#define follower_reissner_k_jacobian_SZ_W 1499
+#define follower_reissner_k_jacobian_SZ_W 1601
 int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_rate_SZ_ARG 5
 #define follower_reissner_k_rate_SZ_RES 1
 #define follower_reissner_k_rate_SZ_IW 0
-#define follower_reissner_k_rate_SZ_W 695
+#define follower_reissner_k_rate_SZ_W 662
 int follower_reissner_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tangent_SZ_ARG 1
 #define follower_reissner_k_tangent_SZ_RES 1
@@ -61,7 +61,7 @@ int follower_reissner_k_tip_jacobian(const casadi_real** arg, casadi_real** res,
 #define follower_reissner_k_tip_jacobian_SZ_ARG 2
 #define follower_reissner_k_tip_jacobian_SZ_RES 2
 #define follower_reissner_k_tip_jacobian_SZ_IW 0
-#define follower_reissner_k_tip_jacobian_SZ_W 749
+#define follower_reissner_k_tip_jacobian_SZ_W 720
 int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_shape_SZ_ARG 3
 #define follower_reissner_k_shape_SZ_RES 2

@@ -11,7 +11,7 @@ int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
 #define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 509
+#define nitinol_wire_k_residual_SZ_W 502
 int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_jacobian_SZ_ARG 3
 #define nitinol_wire_k_jacobian_SZ_RES 1
@@ -21,7 +21,7 @@ int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* 
 #define nitinol_wire_k_rate_SZ_ARG 5
 #define nitinol_wire_k_rate_SZ_RES 1
 #define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 716
+#define nitinol_wire_k_rate_SZ_W 709
 int nitinol_wire_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tangent_SZ_ARG 1
 #define nitinol_wire_k_tangent_SZ_RES 1
@@ -61,7 +61,7 @@ int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define nitinol_wire_k_tip_jacobian_SZ_ARG 2
 #define nitinol_wire_k_tip_jacobian_SZ_RES 2
 #define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 752
+#define nitinol_wire_k_tip_jacobian_SZ_W 760
 int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_shape_SZ_ARG 3
 #define nitinol_wire_k_shape_SZ_RES 2

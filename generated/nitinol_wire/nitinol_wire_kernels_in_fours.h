@@ -254,6 +254,69 @@ static void MADE(nitinol_wire_kernels_fwd1_pulls)(const casadi_real *given, casa
     EVERY_LANE(MADE(nitinol_wire_kernels_fwd1_pulls_turn)(given + lane, made + lane))
 }
 
+static void MADE(nitinol_wire_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16;
+  b0 = LOAD(given + 40) * LOAD(given + 32);
+  b1 = b0 * LOAD(given + 32);
+  b2 = LOAD(given + 40) * LOAD(given + 28);
+  b3 = b2 * LOAD(given + 28);
+  b4 = EACH(1.0) - (b1 + b3);
+  b5 = LOAD(given + 36) * LOAD(given + 36) / EACH(2.0);
+  b6 = b5 * LOAD(given + 32);
+  b7 = LOAD(given + 40) * LOAD(given + 24);
+  b8 = b6 + b7 * LOAD(given + 28);
+  b9 = b5 * LOAD(given + 28);
+  b10 = b7 * LOAD(given + 32) - b9;
+  b11 = LOAD(given + 44) * b4 + LOAD(given + 56) * b8 + LOAD(given + 68) * b10;
+  b6 = b2 * LOAD(given + 24) - b6;
+  b7 = b7 * LOAD(given + 24);
+  b1 = EACH(1.0) - (b1 + b7);
+  b5 = b5 * LOAD(given + 24);
+  b2 = b5 + b2 * LOAD(given + 32);
+  b12 = LOAD(given + 44) * b6 + LOAD(given + 56) * b1 + LOAD(given + 68) * b2;
+  b13 = EACH(0.08333333333333333) * LOAD(given + 20);
+  b9 = b9 + b0 * LOAD(given + 24);
+  b5 = b0 * LOAD(given + 28) - b5;
+  b7 = EACH(1.0) - (b3 + b7);
+  b3 = LOAD(given + 44) * b9 + LOAD(given + 56) * b5 + LOAD(given + 68) * b7;
+  b0 = EACH(0.08333333333333333) * LOAD(given + 16);
+  b14 = LOAD(given + 48) * b4 + LOAD(given + 60) * b8 + LOAD(given + 72) * b10;
+  b15 = LOAD(given + 48) * b6 + LOAD(given + 60) * b1 + LOAD(given + 72) * b2;
+  b16 = LOAD(given + 48) * b9 + LOAD(given + 60) * b5 + LOAD(given + 72) * b7;
+  b10 = LOAD(given + 52) * b4 + LOAD(given + 64) * b8 + LOAD(given + 76) * b10;
+  b2 = LOAD(given + 52) * b6 + LOAD(given + 64) * b1 + LOAD(given + 76) * b2;
+  b7 = LOAD(given + 52) * b9 + LOAD(given + 64) * b5 + LOAD(given + 76) * b7;
+  b5 = EACH(0.08333333333333333) * LOAD(given + 12);
+  b9 = EACH(0.08333333333333333) * LOAD(given + 8);
+  b1 = EACH(0.08333333333333333) * LOAD(given + 4);
+  b6 = EACH(0.08333333333333333) * LOAD(given + 0);
+  STORE(made + 0, b11 - b12 * b13 + b3 * b0);
+  STORE(made + 4, b14 - b15 * b13 + b16 * b0);
+  STORE(made + 8, b10 - b2 * b13 + b7 * b0);
+  STORE(made + 12, b11 * b13 + b12 - b3 * b5);
+  STORE(made + 16, b14 * b13 + b15 - b16 * b5);
+  STORE(made + 20, b10 * b13 + b2 - b7 * b5);
+  STORE(made + 24, b12 * b5 - b11 * b0 + b3);
+  STORE(made + 28, b15 * b5 - b14 * b0 + b16);
+  STORE(made + 32, b2 * b5 - b10 * b0 + b7);
+  STORE(made + 36, b12 * b9 - b3 * b1);
+  STORE(made + 40, b15 * b9 - b16 * b1);
+  STORE(made + 44, b2 * b9 - b7 * b1);
+  STORE(made + 48, b3 * b6 - b11 * b9);
+  STORE(made + 52, b16 * b6 - b14 * b9);
+  STORE(made + 56, b7 * b6 - b10 * b9);
+  STORE(made + 60, b11 * b1 - b12 * b6);
+  STORE(made + 64, b14 * b1 - b15 * b6);
+  STORE(made + 68, b10 * b1 - b2 * b6);
+}
+
+static void MADE(nitinol_wire_kernels_turnings)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 80, made += 72)
+    EVERY_LANE(MADE(nitinol_wire_kernels_turnings_turn)(given + lane, made + lane))
+}
+
 static void MADE(nitinol_wire_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
   FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
@@ -591,5 +654,122 @@ static void MADE(nitinol_wire_k_jacobian_columns)(const casadi_real *w, const ca
     EVERY_LANE(MADE(nitinol_wire_k_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
     EVERY_LANE(MADE(nitinol_wire_k_jacobian_columns_1)(w, turns + lane, columns + lane, passed + lane))
     EVERY_LANE(MADE(nitinol_wire_k_jacobian_columns_2)(w, turns + lane, columns + lane, passed + lane))
+  }
+}
+
+static void MADE(nitinol_wire_k_tip_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7;
+  b0 = EACH(w[239]) * LOAD(turns + 72);
+  b1 = EACH(w[251]) * LOAD(turns + 96);
+  b1 = EACH(w[203]) * LOAD(turns + 0) + EACH(w[215]) * LOAD(turns + 24) + EACH(w[227]) * LOAD(turns + 48) + b0 + b1;
+  b1 = b1 + EACH(w[263]) * LOAD(turns + 120);
+  STORE(passed + 4, b1);
+  b0 = EACH(w[240]) * LOAD(turns + 76);
+  b2 = EACH(w[252]) * LOAD(turns + 100);
+  b2 = EACH(w[204]) * LOAD(turns + 4) + EACH(w[216]) * LOAD(turns + 28) + EACH(w[228]) * LOAD(turns + 52) + b0 + b2;
+  b2 = b1 + (b2 + EACH(w[264]) * LOAD(turns + 124));
+  STORE(passed + 8, b2);
+  b0 = EACH(w[241]) * LOAD(turns + 80);
+  b3 = EACH(w[253]) * LOAD(turns + 104);
+  b3 = EACH(w[205]) * LOAD(turns + 8) + EACH(w[217]) * LOAD(turns + 32) + EACH(w[229]) * LOAD(turns + 56) + b0 + b3;
+  b3 = b2 + (b3 + EACH(w[265]) * LOAD(turns + 128));
+  STORE(passed + 12, b3);
+  b0 = EACH(w[242]) * LOAD(turns + 84);
+  b0 = EACH(w[206]) * LOAD(turns + 12) + EACH(w[218]) * LOAD(turns + 36) + EACH(w[230]) * LOAD(turns + 60) + b0;
+  b0 = b3 + (b0 + EACH(w[254]) * LOAD(turns + 108) + EACH(w[266]) * LOAD(turns + 132));
+  STORE(passed + 16, b0);
+  b4 = EACH(w[311]) * LOAD(turns + 88);
+  b4 = EACH(w[275]) * LOAD(turns + 16) + EACH(w[287]) * LOAD(turns + 40) + EACH(w[299]) * LOAD(turns + 64) + b4;
+  b4 = b0 + (b4 + EACH(w[323]) * LOAD(turns + 112) + EACH(w[335]) * LOAD(turns + 136));
+  STORE(passed + 20, b4);
+  b5 = EACH(w[312]) * LOAD(turns + 92);
+  b5 = EACH(w[276]) * LOAD(turns + 20) + EACH(w[288]) * LOAD(turns + 44) + EACH(w[300]) * LOAD(turns + 68) + b5;
+  b5 = b4 + (b5 + EACH(w[324]) * LOAD(turns + 116) + EACH(w[336]) * LOAD(turns + 140));
+  STORE(passed + 24, b5);
+  b5 = EACH(w[544]) * b5;
+  b6 = EACH(w[243]) * LOAD(turns + 72);
+  b7 = EACH(w[255]) * LOAD(turns + 96);
+  b7 = EACH(w[207]) * LOAD(turns + 0) + EACH(w[219]) * LOAD(turns + 24) + EACH(w[231]) * LOAD(turns + 48) + b6 + b7;
+  b7 = b7 + EACH(w[267]) * LOAD(turns + 120);
+  STORE(passed + 28, b7);
+  b5 = EACH(w[509]) * b1 + EACH(w[516]) * b2 + EACH(w[523]) * b3 + EACH(w[530]) * b0 + EACH(w[537]) * b4 + b5;
+  b4 = EACH(w[244]) * LOAD(turns + 76);
+  b0 = EACH(w[256]) * LOAD(turns + 100);
+  b0 = EACH(w[208]) * LOAD(turns + 4) + EACH(w[220]) * LOAD(turns + 28) + EACH(w[232]) * LOAD(turns + 52) + b4 + b0;
+  b0 = b7 + (b0 + EACH(w[268]) * LOAD(turns + 124));
+  STORE(passed + 32, b0);
+  b4 = EACH(w[245]) * LOAD(turns + 80);
+  b3 = EACH(w[257]) * LOAD(turns + 104);
+  b3 = EACH(w[209]) * LOAD(turns + 8) + EACH(w[221]) * LOAD(turns + 32) + EACH(w[233]) * LOAD(turns + 56) + b4 + b3;
+  b3 = b0 + (b3 + EACH(w[269]) * LOAD(turns + 128));
+  STORE(passed + 36, b3);
+  b4 = EACH(w[246]) * LOAD(turns + 84);
+  b4 = EACH(w[210]) * LOAD(turns + 12) + EACH(w[222]) * LOAD(turns + 36) + EACH(w[234]) * LOAD(turns + 60) + b4;
+  b4 = b3 + (b4 + EACH(w[258]) * LOAD(turns + 108) + EACH(w[270]) * LOAD(turns + 132));
+  STORE(passed + 40, b4);
+  b2 = EACH(w[315]) * LOAD(turns + 88);
+  b2 = EACH(w[279]) * LOAD(turns + 16) + EACH(w[291]) * LOAD(turns + 40) + EACH(w[303]) * LOAD(turns + 64) + b2;
+  b2 = b4 + (b2 + EACH(w[327]) * LOAD(turns + 112) + EACH(w[339]) * LOAD(turns + 136));
+  STORE(passed + 44, b2);
+  b1 = EACH(w[316]) * LOAD(turns + 92);
+  b1 = EACH(w[280]) * LOAD(turns + 20) + EACH(w[292]) * LOAD(turns + 44) + EACH(w[304]) * LOAD(turns + 68) + b1;
+  b1 = b2 + (b1 + EACH(w[328]) * LOAD(turns + 116) + EACH(w[340]) * LOAD(turns + 140));
+  STORE(passed + 48, b1);
+  b2 = b5 - EACH(w[551]) * b7 - EACH(w[558]) * b0 - EACH(w[565]) * b3 - EACH(w[572]) * b4 - EACH(w[579]) * b2;
+  STORE(passed + 0, b2 - EACH(w[586]) * b1);
+}
+
+static void MADE(nitinol_wire_k_tip_jacobian_columns_1)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7;
+  b0 = EACH(w[235]) * LOAD(turns + 72);
+  b1 = EACH(w[247]) * LOAD(turns + 96);
+  b1 = EACH(w[199]) * LOAD(turns + 0) + EACH(w[211]) * LOAD(turns + 24) + EACH(w[223]) * LOAD(turns + 48) + b0 + b1;
+  b1 = b1 + EACH(w[259]) * LOAD(turns + 120);
+  b0 = EACH(w[236]) * LOAD(turns + 76);
+  b2 = EACH(w[248]) * LOAD(turns + 100);
+  b2 = EACH(w[200]) * LOAD(turns + 4) + EACH(w[212]) * LOAD(turns + 28) + EACH(w[224]) * LOAD(turns + 52) + b0 + b2;
+  b2 = b1 + (b2 + EACH(w[260]) * LOAD(turns + 124));
+  b0 = EACH(w[237]) * LOAD(turns + 80);
+  b3 = EACH(w[249]) * LOAD(turns + 104);
+  b3 = EACH(w[201]) * LOAD(turns + 8) + EACH(w[213]) * LOAD(turns + 32) + EACH(w[225]) * LOAD(turns + 56) + b0 + b3;
+  b3 = b2 + (b3 + EACH(w[261]) * LOAD(turns + 128));
+  b0 = EACH(w[238]) * LOAD(turns + 84);
+  b0 = EACH(w[202]) * LOAD(turns + 12) + EACH(w[214]) * LOAD(turns + 36) + EACH(w[226]) * LOAD(turns + 60) + b0;
+  b0 = b3 + (b0 + EACH(w[250]) * LOAD(turns + 108) + EACH(w[262]) * LOAD(turns + 132));
+  b4 = EACH(w[307]) * LOAD(turns + 88);
+  b4 = EACH(w[271]) * LOAD(turns + 16) + EACH(w[283]) * LOAD(turns + 40) + EACH(w[295]) * LOAD(turns + 64) + b4;
+  b4 = b0 + (b4 + EACH(w[319]) * LOAD(turns + 112) + EACH(w[331]) * LOAD(turns + 136));
+  b5 = EACH(w[308]) * LOAD(turns + 92);
+  b5 = EACH(w[272]) * LOAD(turns + 20) + EACH(w[284]) * LOAD(turns + 44) + EACH(w[296]) * LOAD(turns + 68) + b5;
+  b5 = b4 + (b5 + EACH(w[320]) * LOAD(turns + 116) + EACH(w[332]) * LOAD(turns + 140));
+  b6 = EACH(w[586]) * b5;
+  b6 = EACH(w[551]) * b1 + EACH(w[558]) * b2 + EACH(w[565]) * b3 + EACH(w[572]) * b0 + EACH(w[579]) * b4 + b6;
+  b6 = b6 - EACH(w[623]) * LOAD(passed + 4) - EACH(w[624]) * LOAD(passed + 8) - EACH(w[625]) * LOAD(passed + 12);
+  b6 = b6 - EACH(w[626]) * LOAD(passed + 16) - EACH(w[627]) * LOAD(passed + 20) - EACH(w[628]) * LOAD(passed + 24);
+  b7 = EACH(w[544]) * b5;
+  b7 = EACH(w[509]) * b1 + EACH(w[516]) * b2 + EACH(w[523]) * b3 + EACH(w[530]) * b0 + EACH(w[537]) * b4 + b7;
+  b7 = EACH(w[623]) * LOAD(passed + 28) - b7 + EACH(w[624]) * LOAD(passed + 32) + EACH(w[625]) * LOAD(passed + 36);
+  b4 = (b5 * EACH(w[139]) + LOAD(passed + 24) * EACH(w[136]) + LOAD(passed + 48) * EACH(w[137])) / EACH(2.0);
+  b0 = (LOAD(passed + 24) * EACH(w[138]) - b5 * EACH(w[137]) + LOAD(passed + 48) * EACH(w[139])) / EACH(2.0);
+  b3 = (b5 * EACH(w[138]) + LOAD(passed + 24) * EACH(w[137]) - LOAD(passed + 48) * EACH(w[136])) / EACH(2.0);
+  b5 = (b5 * EACH(w[136]) - LOAD(passed + 24) * EACH(w[139]) + LOAD(passed + 48) * EACH(w[138])) / EACH(2.0);
+  STORE(columns + 0, EACH(2.220446049250313e-16) * LOAD(passed + 0) + b6);
+  b7 = b7 + EACH(w[626]) * LOAD(passed + 40) + EACH(w[627]) * LOAD(passed + 44) + EACH(w[628]) * LOAD(passed + 48);
+  STORE(columns + 8, b7);
+  STORE(columns + 16, EACH(2.220446049250313e-16) * b6 - LOAD(passed + 0));
+  STORE(columns + 24, EACH((-1.0)) * (EACH(0.7071067811865476) * b4 + EACH(0.7071067811865475) * b0));
+  STORE(columns + 32, EACH(0.7071067811865476) * b3 + EACH(0.7071067811865475) * b5);
+  STORE(columns + 40, EACH(0.7071067811865476) * b0 - EACH(0.7071067811865475) * b4);
+  STORE(columns + 48, EACH(0.7071067811865476) * b5 - EACH(0.7071067811865475) * b3);
+}
+
+static void MADE(nitinol_wire_k_tip_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed, int groups) {
+  int group;
+  for (group = 0; group < groups; group++, turns += 144, columns += 4) {
+    EVERY_LANE(MADE(nitinol_wire_k_tip_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
+    EVERY_LANE(MADE(nitinol_wire_k_tip_jacobian_columns_1)(w, turns + lane, columns + lane, passed + lane))
   }
 }

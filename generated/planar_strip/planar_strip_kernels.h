@@ -61,7 +61,7 @@ int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define planar_strip_k_tip_jacobian_SZ_ARG 2
 #define planar_strip_k_tip_jacobian_SZ_RES 2
 #define planar_strip_k_tip_jacobian_SZ_IW 0
-#define planar_strip_k_tip_jacobian_SZ_W 224
+#define planar_strip_k_tip_jacobian_SZ_W 168
 int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_shape_SZ_ARG 3
 #define planar_strip_k_shape_SZ_RES 2

@@ -76,6 +76,16 @@ static void MADE(planar_strip_kernels_fwd1_pulls)(const casadi_real *given, casa
     EVERY_LANE(MADE(planar_strip_kernels_fwd1_pulls_turn)(given + lane, made + lane))
 }
 
+static void MADE(planar_strip_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
+  STORE(made + 0, LOAD(given + 24));
+}
+
+static void MADE(planar_strip_kernels_turnings)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 36, made += 4)
+    EVERY_LANE(MADE(planar_strip_kernels_turnings_turn)(given + lane, made + lane))
+}
+
 static void MADE(planar_strip_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
   FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9;
@@ -116,5 +126,37 @@ static void MADE(planar_strip_k_jacobian_columns)(const casadi_real *w, const ca
   int group;
   for (group = 0; group < groups; group++, turns += 24, columns += 4) {
     EVERY_LANE(MADE(planar_strip_k_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
+  }
+}
+
+static void MADE(planar_strip_k_tip_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7;
+  b0 = EACH(w[40]) * LOAD(turns + 0);
+  b1 = b0 + EACH(w[41]) * LOAD(turns + 4);
+  b2 = b1 + EACH(w[42]) * LOAD(turns + 8);
+  b3 = b2 + EACH(w[43]) * LOAD(turns + 12);
+  b4 = b3 + EACH(w[44]) * LOAD(turns + 16);
+  b5 = b4 + EACH(w[45]) * LOAD(turns + 20);
+  b6 = EACH(w[131]) * b5;
+  b6 = EACH(w[121]) * b0 + EACH(w[123]) * b1 + EACH(w[125]) * b2 + EACH(w[127]) * b3 + EACH(w[129]) * b4 + b6;
+  b7 = EACH(w[137]) * b5;
+  b7 = EACH(w[132]) * b0 + EACH(w[133]) * b1 + EACH(w[134]) * b2 + EACH(w[135]) * b3 + EACH(w[136]) * b4 + b7;
+  b4 = b5 * EACH(w[138]) / EACH(2.0);
+  b5 = b5 * EACH(w[139]) / EACH(2.0);
+  STORE(columns + 0, EACH(2.220446049250313e-16) * b6 - b7);
+  FILL(columns + 4, 0);
+  STORE(columns + 8, EACH((-1.0)) * (b6 + EACH(2.220446049250313e-16) * b7));
+  STORE(columns + 12, EACH((-1.0)) * (EACH(0.7071067811865476) * b4 + EACH(0.7071067811865475) * b5));
+  FILL(columns + 16, 0);
+  STORE(columns + 20, EACH(0.7071067811865476) * b5 - EACH(0.7071067811865475) * b4);
+  FILL(columns + 24, 0);
+}
+
+static void MADE(planar_strip_k_tip_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed, int groups) {
+  int group;
+  for (group = 0; group < groups; group++, turns += 24, columns += 4) {
+    EVERY_LANE(MADE(planar_strip_k_tip_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
   }
 }

@@ -159,7 +159,7 @@ typedef struct {
   precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9 + 7];
   precurved_tube_real watched[7];
   precurved_tube_real watched_after[7];
-  precurved_tube_real kernel_reals[1692];
+  precurved_tube_real kernel_reals[1771];
   int kernel_integers[1];
 } precurved_tube_workspace;
 

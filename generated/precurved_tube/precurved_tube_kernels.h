@@ -11,17 +11,17 @@ int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_residual_SZ_ARG 3
 #define precurved_tube_k_residual_SZ_RES 1
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 510
+#define precurved_tube_k_residual_SZ_W 544
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_jacobian_SZ_ARG 3
 #define precurved_tube_k_jacobian_SZ_RES 1
 #define precurved_tube_k_jacobian_SZ_IW 0
-#define precurved_tube_k_jacobian_SZ_W 1691
+#define precurved_tube_k_jacobian_SZ_W 1770
 int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_rate_SZ_ARG 5
 #define precurved_tube_k_rate_SZ_RES 1
 #define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 744
+#define precurved_tube_k_rate_SZ_W 753
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tangent_SZ_ARG 1
 #define precurved_tube_k_tangent_SZ_RES 1
@@ -61,7 +61,7 @@ int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, ca
 #define precurved_tube_k_tip_jacobian_SZ_ARG 2
 #define precurved_tube_k_tip_jacobian_SZ_RES 2
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 837
+#define precurved_tube_k_tip_jacobian_SZ_W 893
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_shape_SZ_ARG 3
 #define precurved_tube_k_shape_SZ_RES 2

@@ -131,32 +131,32 @@ int six_rod_platform_k_tip_jacobian_leg_1(const casadi_real** arg, casadi_real**
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 1083
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 839
 int six_rod_platform_k_tip_jacobian_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 1083
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 839
 int six_rod_platform_k_tip_jacobian_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 1083
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 839
 int six_rod_platform_k_tip_jacobian_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 1083
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 839
 int six_rod_platform_k_tip_jacobian_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 1083
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 839
 int six_rod_platform_k_tip_jacobian_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_ARG 2
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_RES 2
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 1083
+#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 839
 int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_shape_leg_1_SZ_ARG 3
 #define six_rod_platform_k_shape_leg_1_SZ_RES 2

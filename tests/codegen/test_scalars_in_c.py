@@ -15,7 +15,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cosserat_casadi import Discretisation, Model, build, export, load, scene_from_dict
 from cosserat_casadi.codegen import kernel_files, kernels
 from cosserat_casadi.codegen import scalars_in_c as printer
-from cosserat_casadi.codegen.columns import LANES, in_columns, on_path
+from cosserat_casadi.codegen.columns import LANES, in_columns, on_path, pose_in_columns
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
 from cosserat_casadi.codegen.names import library_names, scene_names
@@ -23,6 +23,7 @@ from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.printed_kernels import PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.operations import operations
 from tests.codegen.libraries import gcc, run
 
@@ -77,6 +78,30 @@ def test_columns_make_the_jacobian(strain: str, elements: int, loads: str) -> No
     found = by_columns(model, x, 0.7)
     expected = model.path_jacobian(x, model.pack(), 0.7).full()
     assert_allclose(found, expected, rtol=0, atol=1e-14 * abs(expected).max())
+
+
+@pytest.mark.parametrize("strain", ["kirchhoff", "reissner"])
+def test_columns_make_the_derivatives_of_a_tip(strain: str) -> None:
+    model = model_of(strain, "dead force and couple at the tip", elements=2)
+    form = pose_in_columns(model, ModelFunctions.tip_jacobian.spec, "rod", "tip")
+    assert form is not None
+    given = [np.random.default_rng(1).normal(scale=0.4, size=model.size), model.pack()]
+    nothing = np.zeros(form.rows * form.stride)
+    columns = np.hstack([form.function(*given, nothing, turns)[-1].full() for turns in form.turns.T])
+    found = form.function(*given, columns.ravel(), form.turns[:, 0])[:-1]
+    for one, other in zip(found, model.tip_jacobian["rod"](*given), strict=True):
+        assert_allclose(one.full(), other.full(), rtol=0, atol=1e-15)
+
+
+def test_derivatives_of_a_tip_are_by_columns() -> None:
+    scene = model_of("kirchhoff", "dead force and couple at the tip").scene
+    model = build(scene, {"rod": Discretisation((8, 8, 8), 10)})
+    every = kernels.kernels(model, scene_names("rod", model.scene), None)
+    (printed,) = [kernel for kernel in every if kernel.name().endswith("_tip_jacobian")]
+    straight = scalar(model.tip_jacobian["rod"], "tip_jacobian", 100_000)
+    assert isinstance(printed, PrintedKernel)
+    assert printed.columns
+    assert straight is not None and printed.n_instructions() < straight.n_instructions()
 
 
 def test_rows_of_columns_that_are_zero(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -97,6 +97,25 @@ def test_functions_that_call_what_they_share(inputs_size: int) -> None:
     assert_same_numbers(plain, texts)
 
 
+def test_kernels_read_further_arguments_that_all_their_functions_have() -> None:
+    """Two functions share what depends on the load factor; a third one has another argument in its place."""
+    x, inputs, load_factor, abscissa = (ca.SX.sym(word, size) for word, size in zip("xiab", (3, 2, 1, 1), strict=True))
+    alike = [ca.sin(x[0] * load_factor + inputs[1])]
+    apart = [ca.sin(x[0] * abscissa + inputs[1])]
+    for k in range(LONG):
+        alike.append(ca.cos(alike[-1]) + x[k % 3])
+        apart.append(ca.cos(apart[-1]) + x[k % 3])
+    names = ["x", "inputs"]
+    plain = [
+        ca.Function("one", [x, inputs, load_factor], [alike[-1] * x[1]], [*names, "load_factor"], ["a"]),
+        ca.Function("two", [x, inputs, load_factor], [alike[-1] + alike[7]], [*names, "load_factor"], ["b"]),
+        ca.Function("other", [x, inputs, abscissa], [apart[-1]], [*names, "X"], ["c"]),
+    ]
+    printed = with_shared_kernels(plain, "shared")
+    assert [[kernel.name() for kernel in function.kernels] for function in printed] == [["shared_0"], ["shared_0"], []]
+    assert_same_numbers(plain, external_sources(printed, "shared", "long long int"))
+
+
 @pytest.mark.parametrize("longest", [LONGEST_OF_NUMBERS, 40])
 def test_kernels_in_one_piece_and_in_several_that_pass_values_on(longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cosserat_casadi.codegen.scalars_in_c.LONGEST_OF_NUMBERS", longest)
