@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 REAL, INTEGER = 8, 4
 """Bytes of a number in double precision, of an int."""
 
-FRAMES = 2000
+FRAMES = 1800
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
@@ -76,8 +76,8 @@ def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
 
 def _locals(function: str) -> int:
     """Numbers in the local variables of a function; a variable that is four numbers counts as such."""
-    single = re.findall(r"^  casadi_real (a\d.*);$", function, flags=re.M)
-    fours = re.findall(r"^  FOUR (b\d.*);$", function, flags=re.M)
+    single = re.findall(r"^ +casadi_real (a\d.*);$", function, flags=re.M)
+    fours = re.findall(r"^ +FOUR (b\d.*);$", function, flags=re.M)
     return _variables(single) + 4 * _variables(fours)
 
 

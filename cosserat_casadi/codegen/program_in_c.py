@@ -51,25 +51,19 @@ WIDEST_TURN = 120
 LEAST_SAVED = 4
 """Numbers that a table must be shorter by where entries become another group."""
 
-LOOP_IN_FOURS = """static void MADE({name}_turn)(casadi_real *w, int i) {{
+LOOP_IN_FOURS = """static void MADE({name})(casadi_real *w) {{
+  FOR_FOURS(i, {count}) {{
 {lines}
-}}
-static void MADE({name})(casadi_real *w) {{
-  const int last = {count} - 4;
-  int i;
-  for (i = 0; i < last; i += 4)
-    EVERY_LANE(MADE({name}_turn)(w, i + lane))
-  EVERY_LANE(MADE({name}_turn)(w, last + lane))
+  }}
 }}
 """
 """A loop over entries, four at a time: the last four may compute some once more."""
 
-LOOP = """static void MADE({name}_turn)(casadi_real *w, int i) {{
-{lines}
-}}
-static void MADE({name})(casadi_real *w) {{
+LOOP = """static void MADE({name})(casadi_real *w) {{
   int i;
-  for (i = 0; i < {count}; i++) MADE({name}_turn)(w, i);
+  for (i = 0; i < {count}; i++) {{
+{lines}
+  }}
 }}
 """
 """The same, one entry at a time: not all its operations have a form in fours."""
@@ -385,7 +379,7 @@ class _Writing:
             return operands[value.entry] if isinstance(value, Read) else None
 
         name = f"{self.name}_loop_{len(self.loops) + len(self.functions)}"
-        lines = "\n".join(block.lines(text))
+        lines = "\n".join(f"  {line}" for line in block.lines(text))
         if in_fours:
             self.loops[name] = LOOP_IN_FOURS.format(name=name, count=count, lines=lines)
         else:

@@ -2,7 +2,8 @@
    lane. What one of the four is comes out the same either way. Included anew for each of the two.
 
    Arrays of fours are arrays of numbers, four for each. EACH makes a number one that stands for four alike, FILL stores
-   such a number, and SPREAD makes a four of one. EVERY_LANE calls what computes four, once or for each lane. */
+   such a number, and SPREAD makes a four of one. EVERY_LANE calls what computes four, once or for each lane. FOR_FOURS
+   goes through so many entries of arrays, four at least: the last four may be some once more. */
 #undef FOUR
 #undef EACH
 #undef SPREAD
@@ -10,6 +11,7 @@
 #undef STORE
 #undef FILL
 #undef EVERY_LANE
+#undef FOR_FOURS
 
 #define EACH(number) ((casadi_real)(number))
 
@@ -28,6 +30,8 @@ typedef casadi_real vector_of_four
     enum { lane = 0 };   \
     call;                \
   }
+#define FOR_FOURS(i, count) \
+  for (int i = 0; i < (count); i += (count) % 4 == 0 || i + 8 <= (count) || i + 4 == (count) ? 4 : (count) - 4 - i)
 #else
 #define FOUR casadi_real
 #define SPREAD(number) EACH(number)
@@ -39,4 +43,5 @@ typedef casadi_real vector_of_four
     int lane;                              \
     for (lane = 0; lane < 4; lane++) call; \
   }
+#define FOR_FOURS(i, count) for (int i = 0; i < (count); i++)
 #endif
