@@ -482,7 +482,8 @@ def _section_in_world(written: Expressions, rod: str, node: int) -> Pose:
 def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pose | None = None) -> list[Matrix]:
     """Derivatives of the pose of a section, or of a body that it carries at this pose in its axes, with all symbols.
 
-    From the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base adds its own.
+    From the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base
+    adds those of its pose.
     """
     discrete = written.discrete
     section = _section_in_world(written, rod, node)

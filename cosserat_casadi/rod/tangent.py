@@ -157,19 +157,14 @@ class Tangent:
         a, v, h = (block_diagonal(block, kernel.sparsity_out(i)) for i, block in enumerate(blocks))
         return a, v, h
 
-    @property
-    def _turning(self) -> Matrix:
-        """A of every interval as an operator, which needs no moment."""
-        if self.igm.pulled.interval_moment is not None:
-            return self.interval_operators[0]
-        kernel = self.kernels.turning
-        block = kernel.map(self.intervals)(*self.shape.interval_arguments)
-        return block_diagonal(block, kernel.sparsity_out(0))
-
     @cached_property
     def interval_variation(self) -> Matrix:
         """δθ that each interval adds, base frame, (3·intervals)×n_a, rad."""
-        return self._turning @ self._turns
+        if self.igm.pulled.interval_moment is not None:
+            return self.interval_operators[0] @ self._turns
+        kernel = self.kernels.turning
+        blocks = kernel.map(self.intervals)(*self.shape.interval_arguments)
+        return block_diagonal(blocks, kernel.sparsity_out(0)) @ self._turns
 
     @cached_property
     def section_rotation(self) -> Matrix:
