@@ -100,8 +100,11 @@ def test_functions_that_call_what_they_share(inputs_size: int) -> None:
 def test_kernels_read_further_arguments_that_all_their_functions_have() -> None:
     """Two functions share what depends on the load factor; a third one has another argument in its place."""
     x, inputs, load_factor, abscissa = (ca.SX.sym(word, size) for word, size in zip("xiab", (3, 2, 1, 1), strict=True))
-    alike = [ca.sin(x[0] * load_factor + inputs[1])]
-    apart = [ca.sin(x[0] * abscissa + inputs[1])]
+    every = [x[2] + inputs[0]]
+    for k in range(LONG):
+        every.append(ca.sin(every[-1]) + x[k % 3])
+    alike = [ca.sin(x[0] * load_factor + every[-1])]
+    apart = [ca.sin(x[0] * abscissa + every[-1])]
     for k in range(LONG):
         alike.append(ca.cos(alike[-1]) + x[k % 3])
         apart.append(ca.cos(apart[-1]) + x[k % 3])
@@ -112,7 +115,11 @@ def test_kernels_read_further_arguments_that_all_their_functions_have() -> None:
         ca.Function("other", [x, inputs, abscissa], [apart[-1]], [*names, "X"], ["c"]),
     ]
     printed = with_shared_kernels(plain, "shared")
-    assert [[kernel.name() for kernel in function.kernels] for function in printed] == [["shared_0"], ["shared_0"], []]
+    assert [[kernel.name() for kernel in function.kernels] for function in printed] == [
+        ["shared_0", "shared_1"],
+        ["shared_0", "shared_1"],
+        ["shared_0"],
+    ]
     assert_same_numbers(plain, external_sources(printed, "shared", "long long int"))
 
 
