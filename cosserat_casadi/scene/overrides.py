@@ -155,14 +155,17 @@ def _known_names(word: str, lists: Mapping[str, str], known: Sequence[str]) -> s
 
 
 def _lists_by_name(tables: Mapping[str, Any]) -> dict[str, str]:
-    """The list that each named entry stands in."""
+    """The list that each named entry stands in.
+
+    A body that the file does not list has the name of the joint it stands for, which is the joint's alone.
+    """
     lists = {}
     for key in NAMED_LISTS:
         entries = tables.get(key)
         if not isinstance(entries, list):
             continue
         for entry in entries:
-            if isinstance(entry, dict) and isinstance(entry.get("name"), str):
+            if isinstance(entry, dict) and isinstance(entry.get("name"), str) and entry.get("listed", True):
                 lists[entry["name"]] = key
     return lists
 

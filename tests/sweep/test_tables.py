@@ -243,6 +243,15 @@ def test_entries_of_one_vector_may_be_parameters() -> None:
     assert [entry.scene.loads[0].force for entry in found.entries] == [(0.1, 0.3, -0.4), (0.2, 0.3, -0.4)]  # type: ignore[union-attr]
 
 
+def test_a_joint_between_sections_of_rods_is_named_by_its_columns() -> None:
+    """The file does not list the body that such a joint holds, which has the joint's name."""
+    rods = [rod("kirchhoff", name=name, base={"position": [x, 0, 0]}) for name, x in (("a", 0.0), ("b", 0.1))]
+    ends = [{"rod": "a", "at": 0.5}, {"rod": "b", "at": 1.0}]
+    elbow = {"name": "elbow", "kind": "revolute", "axis": [0, 1, 0], "stiffness": 1.0, "between": ends}
+    found = variants_of(scene(rods=rods, joints=[elbow]), table_of({"elbow.stiffness": [1.0, 2.0]}))
+    assert [entry.scene.joints[0].stiffness for entry in found.entries] == [1.0, 2.0]  # type: ignore[union-attr]
+
+
 def test_joints_that_hold_too_little_are_refused_with_their_row() -> None:
     """A plate on three spherical joints: in the second row they lie on one line."""
     rods = [
