@@ -20,7 +20,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 from doc_tables import put
-from kicked_rod import KickedRod
+from kicked_rod_waves import KickedRod
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))

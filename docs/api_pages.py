@@ -262,7 +262,8 @@ def _page(concept: Concept) -> str:
 
 def _entry(module: ModuleType, name: str) -> list[str]:
     """Heading, signature, docstring and members of a public name, as paragraphs."""
-    member = getattr(module, name)
+    # A function whose results are kept stands behind its store.
+    member = inspect.unwrap(getattr(module, name))
     paragraphs = [f"## {name}", f"`from {module.__name__} import {name}`"]
     if isinstance(member, FunctionType):
         return [*paragraphs, _signature(name, member), *_docstring(member)]
