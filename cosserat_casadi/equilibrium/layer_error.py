@@ -29,16 +29,20 @@ def layer_error(solution: Solution) -> float | None:
     """Estimated change of the watched poses and lengths to contacts without widths; None without smooth contact.
 
     Args:
-        solution: an equilibrium; of another end it is None, and of one whose friction remembers a path.
+        solution: what a solve ended with. Without an equilibrium, and where friction remembers a path, there is no
+            estimate.
+
+    Returns:
+        distance over the length or angle in rad, whichever is largest; None without an estimate.
     """
     model = solution.model
     if not solution.converged or not model.discrete.has_layers or model.inputs.memory is not None:
         return None
     thinner = kept_with(model, "_thinner_layers", lambda: Model(model.discrete.with_layers(1.0 - THINNER)))
     arguments = (solution.x, solution.inputs, 1.0)
-    left = column(thinner.path_residual(*arguments)) - column(model.path_residual(*arguments))
+    residual_change = column(thinner.path_residual(*arguments)) - column(model.path_residual(*arguments))
     jacobian = model.path_jacobian(*arguments).full()
-    change = -regular_inverse(jacobian) @ left / THINNER
+    change = -regular_inverse(jacobian) @ residual_change / THINNER
     before, after = (watched_at(solution, x) for x in (solution.x, solution.x + WAY * change))
     estimate = SAFETY * change_size(after.change_from(before)) / WAY
     return float(estimate) if np.isfinite(estimate) else np.inf

@@ -204,12 +204,13 @@ class Solution(Equilibrium[Model]):
 
     @cached_property
     def layer_error_estimate(self) -> float | None:
-        """Estimated distance to the equilibrium whose contacts have no widths, as the error estimate counts it.
+        """Estimated change of tips and bodies to the equilibrium whose contacts have no widths.
 
-        None where it is no equilibrium, and in a scene without smooth contact. It is computed when it is first asked
-        for, from the Jacobian.
+        Its unit is that of ``error_estimate``, which does not contain it: that is of the scene as it is written, with
+        its widths. No tolerance binds it. None where the solution is no equilibrium, in a scene without smooth contact,
+        and where friction remembers a path. It is computed from the Jacobian when it is first read.
         """
-        # Imported here, because it is of solutions.
+        # The module imports this one.
         from cosserat_casadi.equilibrium.layer_error import layer_error
 
         return layer_error(self)

@@ -203,5 +203,7 @@ def _errors(solution: Solution) -> Iterator[str]:
             yield f"estimated {what} {error_words(error, within, accuracy.tolerance)}"
     if solution.wrench_error_estimate is not None:
         yield f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative"
-    if solution.layer_error_estimate is not None:
-        yield f"the widths of contact move tips by {solution.layer_error_estimate:.1e}"
+    layer_error = solution.layer_error_estimate
+    if layer_error is not None:
+        words = error_words(layer_error, None, accuracy.tolerance)
+        yield f"estimated distance to contact without widths, which no tolerance binds: {words}"
