@@ -23,6 +23,7 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
 )
 from cosserat_casadi.equilibrium.load_path import between
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -180,9 +181,13 @@ def past_no_obstacle(
     def admits(before: PathPoint, after: PathPoint) -> bool:
         (first, t), (last, target) = before, after
         at_ends = (between(*inputs, t), between(*inputs, target))
-        earlier = barriers_at(t)
+        try:
+            earlier, later = barriers_at(t), barriers_at(target)
+        except SceneError:
+            # The scene refuses such parameters: where its rods would be is not known.
+            return False
         if before_it is not None and t == target == 0.0:
             earlier = SmoothBarriers(before_it)
-        return not barriers_at(target).are_between(first, last, at_ends, earlier)
+        return not later.are_between(first, last, at_ends, earlier)
 
     return replace(path, admits=admits)

@@ -32,6 +32,7 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.control import embedded, motion_stage
 from cosserat_casadi.equilibrium.load_path import input_path
+from cosserat_casadi.equilibrium.smooth_passage import past_no_obstacle
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
 from cosserat_casadi.loads.load_trace import traced
@@ -661,6 +662,16 @@ def test_a_path_to_other_inputs_and_parameters_knows_its_rate() -> None:
     step = 1e-6
     differences = (path.residual(x, 0.3 + step) - path.residual(x, 0.3 - step)) / (2 * step)
     assert_allclose(path.rate(x, 0.3), differences, rtol=0, atol=1e-7 * np.abs(differences).max())
+
+
+def test_no_step_of_a_path_leads_to_parameters_that_the_scene_refuses() -> None:
+    model = build(parse_scene('parameters = ["rod.stiffness.bending_y"]' + ROD + PUSH + WIRE))
+    x, inputs = model.unloaded(), model.pack()
+    ends, parameters = (inputs, inputs), (np.array([2.0]), np.array([-2.0]))
+    path = past_no_obstacle(input_path(model, x, *ends, parameters), model, ends, parameters)
+    assert path.admits is not None
+    assert path.admits((x, 0.0), (x, 0.25))
+    assert not path.admits((x, 0.0), (x, 0.75))
 
 
 MEASURED_TIP = """
