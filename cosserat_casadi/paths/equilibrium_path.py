@@ -14,6 +14,7 @@ from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.rubbing import RubbingStretch
 from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import ModelType, SectionForce, Solution, SolvedPoses
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
@@ -237,10 +238,7 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     @property
     def resolution_indices(self) -> FloatArray:
         """Resolution index at all points, shape (k,): one above 1 is not resolved, as a solve would not be."""
-        if not len(self.factor):
-            return np.zeros(0)
-        indices: FloatArray = self.model.resolution_index.map(len(self.factor))(self.x.T, self.all_inputs.T).full()[0]
-        return indices
+        return evaluated(self.model.resolution_index, self.x, self.all_inputs)[0][:, 0, 0]
 
     def contacts(self, index: int) -> tuple[PathContact, ...]:
         """The contacts at a point of the path; none in a scene without obstacles."""
