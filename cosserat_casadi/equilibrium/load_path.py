@@ -108,21 +108,21 @@ def input_path(
     path_residual = model.path_residual
     path_jacobian = model.path_jacobian
 
-    def given(t: float) -> list[FloatArray]:
+    def arguments_at(t: float) -> list[FloatArray]:
         inputs = between(before, after, t)
         return [inputs] if parameters is None else [inputs, between(*parameters, t)]
 
     def residual(x: FloatArray, t: float) -> FloatArray:
-        g = path_residual(x, *given(t), load_factor)
+        g = path_residual(x, *arguments_at(t), load_factor)
         return column(g)
 
     def jacobian(x: FloatArray, t: float) -> Jacobian:
-        sparse = path_jacobian(x, *given(t), load_factor)
+        sparse = path_jacobian(x, *arguments_at(t), load_factor)
         return _solvable(model, sparse)
 
     def rate(x: FloatArray, t: float) -> FloatArray:
         load_factor_rate = 0.0
-        arguments = given(t)
+        arguments = arguments_at(t)
         dg_dt = column(model.path_rate(x, *arguments, load_factor, change, load_factor_rate))
         if parameter_change is not None and np.any(parameter_change):
             dg_dt = dg_dt + column(model.parameter_jacobian(x, *arguments) @ parameter_change)

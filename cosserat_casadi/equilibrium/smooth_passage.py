@@ -124,10 +124,10 @@ class SmoothBarriers:
         return any(
             self._pass_each_other(
                 pair,
-                section_positions(at_start.model, own, before, inputs[0]),
+                section_positions(at_start.model, pair_at_start, before, inputs[0]),
                 section_positions(self.model, pair, after, inputs[1]),
             )
-            for own, pair in pairs
+            for pair_at_start, pair in pairs
         )
 
     def _pass_each_other(

@@ -319,8 +319,8 @@ def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationRes
     if not isinstance(start, Solution) or model_of_start is None or not model.parameters.size:
         return failed
     named = model.scene.parameters
-    own = (one.scene.model_copy(update={"parameters": named}) for one in (model_of_start, task.model))
-    before, after = (parameter_layout(scene).pack() for scene in own)
+    scenes = (bound.scene.model_copy(update={"parameters": named}) for bound in (model_of_start, task.model))
+    before, after = (parameter_layout(scene).pack() for scene in scenes)
     path = input_path(model, start.x, start.inputs, task.inputs, (before, after))
     path = past_no_obstacle(path, model, (start.inputs, task.inputs), (before, after))
     result = follow(path, task.limits, task.progress)

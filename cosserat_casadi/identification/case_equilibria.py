@@ -322,7 +322,7 @@ class Equilibria:
         if self._barriers_at is None:
             return barred
         try:
-            before, after = (self._barriers_at(own.tobytes()) for own in (near.p, p))
+            before, after = (self._barriers_at(parameters.tobytes()) for parameters in (near.p, p))
         except SceneError:
             # The scene refuses such parameters: where its rods would be is not known.
             return reached
