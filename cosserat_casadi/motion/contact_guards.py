@@ -153,10 +153,13 @@ class ContactGuards:
             nodes: positions, shape (M, 3), m.
             touches: the contacts, at their places.
         """
-        own = [touch.place for touch in touches if touch.facing == number]
+        own = [touch for touch in touches if touch.facing == number]
+        # An end that is held has no valley: the section that is least beside it may strike before the rod rolls on.
+        held = [] if self.facings[number].of_body else [touch.place for touch in own if not touch.slides]
+        valleys = [touch.place for touch in own if touch.place not in held]
         beside = [end for touch in touches for end in self.meeting_ends.beside(touch, SAME_PLACE)]
         left_out = [X for other, X in beside if other == number]
-        return self.facings[number].lowest(nodes, own, left_out)
+        return self.facings[number].lowest(nodes, valleys, held + left_out)
 
 
 def apart(touch: MovingContact, touches: Sequence[MovingContact]) -> float:

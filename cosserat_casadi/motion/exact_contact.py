@@ -405,7 +405,7 @@ class ExactContacts:
             own = [touch.place for touch in known if touch.facing == number]
             if number not in laid:
                 minima = facing.minima(nodes, TOUCHING)
-                new = [one for one in minima if all(abs(one.place - place) > SAME_PLACE for place in own)]
+                new = [one for one in minima if not any(self._is_one(number, nodes, one.place, X) for X in own)]
                 if facing.of_body or not any(_is_flat(facing.at(nodes, one.place)) for one in new):
                     found += [MovingContact(number, one.place, one.inside, min(one.gap, 0.0)) for one in new]
                     continue
@@ -419,6 +419,20 @@ class ExactContacts:
         touches = self.meeting_ends.distinct(tuple(known), tuple(found), SAME_PLACE)
         still = [one._replace(slides=False) if one.facing in laid else one for one in touches]
         return (*still, *lying), laid
+
+    def _is_one(self, number: int, nodes: FloatArray, place: float, other: float) -> bool:
+        """Whether two sections that touch count as one: they are close, and the gap does not rise between them.
+
+        From an end that touches, the gap may rise and come to zero again close by: the rod strikes there, too.
+        """
+        distance = abs(place - other)
+        if distance > SAME_PLACE:
+            return False
+        facing = self.facings[number]
+        for end, towards in ((BASE, 1.0), (TIP, -1.0)):
+            if distance > 0.0 and end in (place, other) and not facing.of_body:
+                return towards * facing.at(nodes, end).slope <= SMOOTH
+        return True
 
     def _event(
         self, kind: str, time: float, touch: MovingContact, energy: float = 0.0, impulse: float = 0.0

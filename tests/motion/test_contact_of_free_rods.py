@@ -378,6 +378,45 @@ def test_a_leaning_rod_rolls_onto_its_end_and_loses_nothing_on_its_way() -> None
     assert np.diff(energy.impacts).min() >= 0.0
 
 
+def test_a_rod_on_its_end_strikes_close_beside_it_whatever_the_tolerance() -> None:
+    """The end is bent up from the floor, and a section 0.0194 of the length from it comes down while the end presses.
+
+    That section strikes before the rod is level at its end: it takes over, and the end goes up.
+    """
+    table = FLOOR.replace("-0.05", "0.0")
+    rubber = RUBBER.replace("2e7", "5e6")
+    text = FREE.format(modes=6, along=0.0, duration=0.113, strain="planar", stuff=rubber, tangent="1, 0, 0.15")
+    text = text.replace("position = [0, 0, 0]", "position = [0, 0, 0.06]").replace("nodes = 10", "nodes = 16")
+    scene = parse_scene(text.replace("time = 1e-3", "time = 2e-3") + table)
+    assert scene.simulation is not None
+    model = build(scene.with_motion_inputs(), moving=True).at().in_motion
+    simulator = Simulator(model, scene.simulation, started(model, scene.simulation, None))
+    ends = []
+    for tolerance in (1e-3, 1e-5, 1e-6):
+        history = simulator.controlled(tolerance)
+        first, second = history.events
+        assert (first.kind, second.kind) == ("impact", "impact")
+        assert_allclose([first.place, second.place], [0.0, 0.0194], rtol=0, atol=3e-4)
+        # No restart without a change: the end, then the section beside it.
+        _, on_end, beside = history.legs
+        for leg, slides in ((on_end, False), (beside, True)):
+            phases = leg.restart.phases
+            assert isinstance(phases, ContactPhase)
+            assert [touch.slides for touch in phases.touches] == [slides]
+            assert not phases.laid
+        # The energy that the blow takes is the difference of those before and after it.
+        kinetic = []
+        for state in (on_end.integration.steps[-1].end, beside.start.instant):
+            instant = history.flight.to_model(state)
+            inputs = beside.piece.at(instant.time)
+            x, v = instant.x[: model.size], instant.v[: model.size]
+            kinetic.append(float(model.energies(x, v, inputs.value, inputs.rate)[0]))
+        assert_allclose(kinetic[0] - kinetic[1], second.energy, rtol=1e-6, atol=0)
+        ends.append(simulator.paths(history).points[-1])
+    assert_allclose(ends[0], ends[2], rtol=0, atol=1e-4)
+    assert_allclose(ends[1], ends[2], rtol=0, atol=1e-6)
+
+
 def test_a_rod_lies_down_where_two_of_its_sections_have_slid_to_one_place() -> None:
     """They would be one constraint twice, and steps came to a halt. A bowl touches with its middle alone."""
     model = free_rod(tangent="1, 0, -0.1")
