@@ -60,7 +60,7 @@ from cosserat_casadi.motion.simulate import (
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
 from cosserat_casadi.motion.step_kernels import KernelSource
-from cosserat_casadi.motion.sudden_loads import warnings
+from cosserat_casadi.motion.sudden_loads import is_sudden
 from cosserat_casadi.motion.tip_paths import Paths, path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -306,7 +306,7 @@ class _Search:
             return UNDAMPED.format(**self.told, most=most) if far else None
         # Of sudden loads two distances tell the power. It grows no more, as it does where modes begin to see a pulse.
         order = max(self.order, ORDER_OF_WAVES)
-        if len(self.levels) < 3 or self.foreseen(most, order) <= self.tolerance or not is_sudden(self.last):
+        if len(self.levels) < 3 or self.foreseen(most, order) <= self.tolerance or not _is_sudden(self.last):
             return None
         return WAVES.format(
             **self.told, most=most, wanted=self.last.modes * self.finer_modes(max(self.order, ORDER_OF_FRONTS))
@@ -472,7 +472,7 @@ def _with_tolerance(search: _Search) -> Motion:
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen)
-        if not search.is_damped and is_sudden(level):
+        if not search.is_damped and _is_sudden(level):
             level = replace(level, fronts=lacking_at_fronts(history, search.simulation.duration))
         search.levels.append(level)
         hopeless = search.hopeless
@@ -499,10 +499,10 @@ def _with_tolerance(search: _Search) -> Motion:
     return _judged(search, finest, search.space_error + timed.error, companions)
 
 
-def is_sudden(level: ResolvedMotion) -> bool:
+def _is_sudden(level: ResolvedMotion) -> bool:
     """Whether loads of a motion act at once at its start, or jump."""
     simulator = level.simulator
-    return bool(warnings(level.history, simulator.start, simulator.moving, simulator.simulation.duration))
+    return is_sudden(level.history, simulator.start, simulator.moving, simulator.simulation.duration)
 
 
 def _is_erratic(search: _Search) -> bool:

@@ -26,6 +26,11 @@ AT_ONCE = (
 """Warning of loads that act at once at the start."""
 
 
+def is_sudden(history: History, start: Start, moving: MovingInputs, duration: float) -> bool:
+    """Whether loads act at once at the start of a motion, or jump; arguments as of ``warnings``."""
+    return bool(moving.jumps(duration)) or _starts_at_once(history, start, moving)
+
+
 def warnings(history: History, start: Start, moving: MovingInputs, duration: float) -> list[str]:
     """Sentences on loads that come suddenly.
 
@@ -35,16 +40,20 @@ def warnings(history: History, start: Start, moving: MovingInputs, duration: flo
         moving: the inputs over time.
         duration: of the motion, s.
     """
-    at_start = []
-    accelerations = history.of_model(history.legs[0].start.instant).a
-    # What a motion that goes on sets out with has been under way already.
-    begins = start.resume is None
-    if begins and _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations):
-        at_start.append(AT_ONCE)
+    at_start = [AT_ONCE] if _starts_at_once(history, start, moving) else []
     jumps: dict[str, list[float]] = {}
     for jump in moving.jumps(duration):
         jumps.setdefault(jump.input, []).append(jump.time)
     return at_start + [_jumping(name, times) for name, times in jumps.items()]
+
+
+def _starts_at_once(history: History, start: Start, moving: MovingInputs) -> bool:
+    """Whether loads that were not there act from the start on, and deform a rod."""
+    # What a motion that goes on sets out with has been under way already.
+    if start.resume is not None:
+        return False
+    accelerations = history.of_model(history.legs[0].start.instant).a
+    return _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations)
 
 
 def _jumping(name: str, times: list[float]) -> str:
