@@ -17,8 +17,7 @@ from cosserat_casadi import ExportError, Solution, build, discretise, export, li
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
-from cosserat_casadi.equilibrium.contact.contact_answer_error import richer
-from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.metrics import SAFETY
 from cosserat_casadi.numerics.outcome import Outcome

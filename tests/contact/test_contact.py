@@ -302,6 +302,24 @@ def test_a_depth_that_few_modes_leave_beside_a_line_is_left_to_more_modes() -> N
     assert solution.iterations < 60
 
 
+def test_fixed_modes_leave_a_depth_beside_a_line_where_richer_ones_mend_it() -> None:
+    """Fixed modes enter the table as few modes do: from a solution the line is kept and only moves."""
+    scene_of_table = read_scene("examples/rod_on_table.toml")
+    model = build(scene_of_table, discretise(scene_of_table, 5, 12))
+    solution = solve(model)
+    (contact,) = solution.contacts
+    radius, length = 8e-3, 1.5
+    area = np.pi * radius**2
+    free, _, _ = free_span(2e6 * area * radius**2 / 4, 1100.0 * 9.81 * area, 0.15 - radius)
+    assert solution.error_estimate is not None
+    assert abs(contact.start - free / length) < solution.error_estimate < 1e-4
+    # Other contacts would be sought in 400 steps more.
+    assert solution.iterations < 60
+    heavier = solve(model, {"weight.acceleration": [0.0, 0.0, -9.9]}, start=solution)
+    assert heavier.converged
+    assert heavier.iterations < 30
+
+
 TAPERED = TABLE.replace(
     "stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }\nlinear_density = 0.1",
     "material = { youngs_modulus = 2e6, poisson_ratio = 0.45, density = 1100.0 }\n"

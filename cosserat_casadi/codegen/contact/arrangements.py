@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.contact_answer_error import richer
-from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, state_in, with_contacts, without_contacts

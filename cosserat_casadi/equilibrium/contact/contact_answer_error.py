@@ -7,18 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_notes
-from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, without_contacts
 from cosserat_casadi.equilibrium.metrics import SAFETY, with_estimate
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.numerics.newton import NewtonSettings
-from cosserat_casadi.scene import Scene
 
 
 def with_error_in_contact(solution: Solution, newton: NewtonSettings) -> Solution:
@@ -50,17 +47,6 @@ def beside_finer(solution: Solution, finer: Solution) -> Solution:
     if finer.converged and _extents(solution).keys() == _extents(finer).keys():
         return with_contact_error(solution, finer)
     return replace(solution, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN)
-
-
-def richer(grids: Grids, scene: Scene) -> Grids:
-    """The grids on which the error of an answer shows.
-
-    Args:
-        grids: of the answer.
-        scene: without contacts.
-    """
-    modes = signal_modes(scene)
-    return Grids({name: enriched(rod, modes, meets_obstacles=True) for name, rod in grids.rods.items()})
 
 
 def same_contacts(first: Solution, second: Solution) -> bool:

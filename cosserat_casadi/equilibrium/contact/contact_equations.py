@@ -34,8 +34,10 @@ from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
+from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import element_ends, places_on
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
+from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import solved
@@ -71,6 +73,17 @@ class Grids:
             bending = [count for strain, count in zip(rod.admitted, modes, strict=True) if strain < TORSION]
             fewest[rod.name] = min(bending, default=1)
         return fewest
+
+
+def richer(grids: Grids, scene: scenes.Scene) -> Grids:
+    """The grids on which the error of an answer shows.
+
+    Args:
+        grids: of the answer.
+        scene: without contacts.
+    """
+    modes = signal_modes(scene)
+    return Grids({name: enriched(rod, modes, meets_obstacles=True) for name, rod in grids.rods.items()})
 
 
 @dataclass(frozen=True)

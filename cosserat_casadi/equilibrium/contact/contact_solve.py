@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_alternatives import NEAR
-from cosserat_casadi.equilibrium.contact.contact_equations import Grids
+from cosserat_casadi.equilibrium.contact.contact_equations import Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_judgement import judged
 from cosserat_casadi.equilibrium.contact.contact_search import ContactEquilibrium, Settling
 from cosserat_casadi.equilibrium.contact.contact_state import (
@@ -127,7 +127,8 @@ def _held(
 
     Where points that enter an obstacle by less than the tolerance stand for a line the places of contact are further
     off: the depth is as the square of that distance. Then contacts are looked for from there that hold more closely.
-    Beside the ends of a line few modes leave a depth too, which more modes lessen.
+    Beside the ends of a line few modes leave a depth too, which more modes lessen: where modes are fixed, richer ones
+    than those tell.
     """
     found, holds = settling.run(guesses, admits)
     if found is None or not holds:
@@ -135,10 +136,22 @@ def _held(
     lies = any(touch.is_line for touch in found.state.touches)
     if not stays_unmet(found, unmet_before if lies else 0.0, settling.tolerance):
         return found, holds
+    if lies and not unmet_before and _more_modes_mend(settling, found, admits):
+        return found, holds
     closer = replace(settling, tolerance=max(settling.tolerance**2, LEAST_TOLERANCE))
     closest, holds_closer = closer.run([(found.state, found.solution)], admits)
     settling.iterations = closer.iterations
     return (closest if holds_closer else found), True
+
+
+def _more_modes_mend(settling: Settling, found: ContactEquilibrium, admits: Callable[[Solution], bool]) -> bool:
+    """Whether the same contacts hold on richer modes and leave less unmet there."""
+    finer = replace(settling, grids=richer(settling.grids, settling.scene))
+    more, holds = finer.run([(found.state, found.solution)], admits)
+    settling.iterations = finer.iterations
+    if more is None or not holds or more.state.signature != found.state.signature:
+        return False
+    return not stays_unmet(more, found.unmet(), settling.tolerance)
 
 
 def stays_unmet(found: ContactEquilibrium, before: float, tolerance: float) -> bool:
