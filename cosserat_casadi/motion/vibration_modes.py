@@ -326,7 +326,7 @@ def modes_of(
 
     Raises:
         ValueError: the count is not positive, or values stand beside an equilibrium.
-        SceneError: a value is refused, or nothing that may move has mass.
+        SceneError: a value is refused, more modes are asked for than are sought, or nothing that may move has mass.
     """
     if isinstance(subject, Solution):
         if values is not None:
@@ -339,12 +339,28 @@ def modes_of(
     count = DEFAULT_COUNT if count is None else count
     if count < 1:
         raise ValueError(f"at least one mode must be asked for, got {count}")
+    if not scene.accuracy.fixed:
+        _check_count(scene, count)
     equilibrium = solve_rods(scene, values, progress=progress, report=report)
     if not equilibrium.converged:
         return _without_modes(equilibrium, ModesOutcome.NO_EQUILIBRIUM, equilibrium.message)
     if scene.accuracy.fixed:
         return _on_fixed(equilibrium, count, report)
     return _to_tolerance(equilibrium, count, report)
+
+
+def _check_count(scene: scenes.Scene, count: int) -> None:
+    """Refuse more modes than there are unknowns on the level from which on no finer one is tried.
+
+    Raises:
+        SceneError: so many are asked for.
+    """
+    rods = sum(own.elements * sum(own.modes) for own in discretise(scene, MOST_MODES).values())
+    # A rod's base, and a body, may move in six ways.
+    most = rods + 6 * (len(scene.rods) + len(scene.bodies))
+    if count > most:
+        problem = f"{count} modes are more than the {most} unknowns of {MOST_MODES} polynomials per strain"
+        raise SceneError(Problem("--count", problem, "ask for far fewer: about half of these can be resolved"))
 
 
 def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes:
@@ -358,7 +374,8 @@ def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> M
     """Modes on the first level that agrees with the one before; on the last one where none does."""
     scene = equilibrium.model.scene
     # Half of the modes bend a rod in one plane, as a rule: a planar rod takes a level or two more.
-    first = max(ceil(count / 2) + SPARE_MODES, signal_modes(scene), _most_modes(equilibrium))
+    enough = min(ceil(count / 2) + SPARE_MODES, MOST_MODES)
+    first = max(enough, signal_modes(scene), _most_modes(equilibrium))
     coarser = modes_at(_on_level(equilibrium, first, report), count, report=report)
     while coarser.converged:
         more = ceil((LEVEL_FACTOR - 1.0) * _most_modes(coarser.solution))

@@ -332,6 +332,11 @@ def test_at_least_one_mode_is_asked_for():
         modes_of(scene(rod()), count=0)
 
 
+def test_no_more_modes_are_asked_for_than_the_last_level_has_unknowns():
+    with pytest.raises(SceneError, match="--count: 100000 modes are more than the 54 unknowns"):
+        modes_of(scene(rod()), count=100_000)
+
+
 def test_shapes_are_those_of_a_cantilever():
     """φ = cosh βX − cos βX − σ (sinh βX − sin βX), and φ′ is the rotation."""
     modes = modes_of(scene(rod()), count=1)
