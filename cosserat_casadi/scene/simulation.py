@@ -20,6 +20,10 @@ FRAMES = 101
 """Rows of a result where the scene says neither how many nor when."""
 
 
+MOST_STEPS = 10_000_000
+"""Steps of one size that a scene may ask for: their polynomials take some 10 GB."""
+
+
 class Simulation(Record):
     """How `cosserat simulate` computes the motion; all other commands leave it aside."""
 
@@ -68,7 +72,7 @@ start = "unloaded"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Frames or times; times that increase within the duration; a step that is not longer than that."""
+        """Frames or times; times that increase within the duration; a step that is not longer than that, nor far shorter."""
         if "frames" in given and "times" in given:
             yield Fault(("times",), "stands beside frames", "give one of the two")
         times = numbers_of(given.get("times"))
@@ -81,3 +85,6 @@ start = "unloaded"
             for step in numbers_of(given.get("step")):
                 if step > duration > 0:
                     yield Fault(("step",), f"must be <= duration, got {shown(step)} of {shown(duration)}")
+                if 0 < step < duration / MOST_STEPS:
+                    what = f"makes more than {MOST_STEPS:,} steps of {shown(duration)} s, got {shown(step)}"
+                    yield Fault(("step",), what, "take a longer one, or leave it out")
