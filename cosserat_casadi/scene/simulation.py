@@ -72,7 +72,7 @@ start = "unloaded"
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Frames or times; times that increase within the duration; a step that is not longer than that, nor far shorter."""
+        """Frames or times; times that increase within the duration; a step that is neither longer nor far shorter."""
         if "frames" in given and "times" in given:
             yield Fault(("times",), "stands beside frames", "give one of the two")
         times = numbers_of(given.get("times"))

@@ -13,6 +13,9 @@ from cosserat_casadi.scene.measurement_record import PositiveComponent, overlap,
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import Component, Number, Positive, TiedNames, Whole, names_in, numbers_of
 
+MOST_STARTS = 10_000
+"""Places from which a search may be asked to begin."""
+
 
 class Prior(Record):
     """Prior of an unknown: a normal distribution."""
@@ -141,7 +144,7 @@ starts = 8
     hold_out: Annotated[Number, Field(ge=0, lt=1)] = Field(
         0.0, description="share of the cases that is not fitted but predicted, without unit"
     )
-    starts: Annotated[Whole, Field(ge=1, le=10_000)] = Field(
+    starts: Annotated[Whole, Field(ge=1, le=MOST_STARTS)] = Field(
         1, description="places between the bounds, or from the priors, from which the search begins"
     )
 

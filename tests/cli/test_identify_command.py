@@ -134,8 +134,9 @@ def test_a_search_that_ended_early_is_written_and_marked(
     assert "fitted.toml" in capsys.readouterr().out.replace("\n", "")
 
 
-def test_all_that_is_wrong_is_told_at_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    options = ("--hold-out", "1.5", "--starts", "0", "--output", str(folder / "none" / "found.json"))
+@pytest.mark.parametrize("starts", ["0", "10001"])
+def test_all_that_is_wrong_is_told_at_once(folder: Path, capsys: pytest.CaptureFixture[str], starts: str) -> None:
+    options = ("--hold-out", "1.5", "--starts", starts, "--output", str(folder / "none" / "found.json"))
     assert identify(folder, *options) == REFUSED
     told = capsys.readouterr().err
     for where in ("--hold-out", "--starts", "--output"):

@@ -21,6 +21,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.identification.fitted_scene import beside
 from cosserat_casadi.results.presentation import write_all
+from cosserat_casadi.scene.unknown_records import MOST_STARTS
 from cosserat_casadi.scene.writing import scene_text
 
 ENDED_EARLY = "The numbers are those at which the search ended."
@@ -46,8 +47,8 @@ def identify(
     """
     problems: list[Problem] = []
     check_files({"--output": output, "--plot": plot, "--write": write}, scene, settings, problems)
-    if starts is not None and starts < 1:
-        problems.append(Problem("--starts", f"must be 1 or more, got {starts}"))
+    if starts is not None and not 1 <= starts <= MOST_STARTS:
+        problems.append(Problem("--starts", f"must be from 1 to {MOST_STARTS}, got {starts}"))
     if hold_out is not None and not 0.0 <= hold_out < 1.0:
         problems.append(Problem("--hold-out", f"must be >= 0 and < 1, got {hold_out:g}"))
     checked_scene = read_checked(scene, settings, problems)
