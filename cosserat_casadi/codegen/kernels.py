@@ -119,22 +119,26 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
     """
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
     straight: dict[tuple[int, bool], list[ca.Function | ColumnedFunction]] = defaultdict(list)
+    finished: dict[str, Kernel] = {}
     for one in written.values():
-        if isinstance(one, PrintedKernel):
-            continue
         function = one.form.function if isinstance(one, ColumnedFunction) else one
         if function.is_a("SXFunction") and function.name_in()[:COMMON] == ["x", "inputs"]:
             # To the solver parameters are further inputs.
             straight[function.size1_in(1), function.n_instructions() <= SHORT].append(one)
-    finished: dict[str, Kernel] = {}
     for number, functions in enumerate(straight.values()):
+        # CasADi prints an operation that is not known here: then these functions share nothing.
         with suppress(UnknownOperationError):
             for shared in with_shared_kernels(functions, names.kernel(f"shared_{number}")):
                 finished[shared.name()] = shared
-    return [finished.get(name) or one for name, one in written.items()]
+    return [finished.get(name) or _unshared(one) for name, one in written.items()]
 
 
-def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> Kernel | ColumnedFunction:
+def _unshared(written: ca.Function | ColumnedFunction) -> Kernel:
+    """A kernel that calls no other."""
+    return columns_in_fours(written.form, written.signature) if isinstance(written, ColumnedFunction) else written
+
+
+def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Function | ColumnedFunction:
     """One function of a scene that has no parts: by columns, in straight-line code, or in loops."""
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
@@ -169,7 +173,7 @@ def by_columns(
         most: statements up to which it is not a long one, MOST_IN_COLUMNS by default.
     """
     columned = _columned(written, function, name, MOST_IN_COLUMNS if most is None else most)
-    return None if columned is None else columns_in_fours(columned.form, columned.signature)
+    return None if columned is None else _unshared(columned)
 
 
 def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: int) -> ColumnedFunction | None:

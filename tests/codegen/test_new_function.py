@@ -176,3 +176,24 @@ def test_names_that_the_new_function_takes() -> None:
     assert library_names("lib", rods)
     with pytest.raises(ExportError, match=r"rods\[1\].name: 'far_a' gives a function the name that rod 'a' gives"):
         library_names("lib", rods, functions=tuple(table(WithTipFar)))
+
+
+class WithUnknownOperation(Model):
+    """A model with a function of an operation that CasADi alone prints."""
+
+    @owned_functions(Owner.ROD, (Output("remainder", "m"),), kernel="remainder", header="Of the tip of rod {owner}.")
+    def remainder(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ position of the tip less the nearest multiple of a tenth, m."""
+        position, *_ = self.tip[written.owner](written["x"], written["inputs"])
+        return [ca.remainder(position, 0.1)]
+
+
+def test_an_operation_that_is_printed_by_casadi_beside_derivatives_by_columns(tmp_path: Path) -> None:
+    wanted = scene(push(), WEIGHT, strain="planar")
+    model = WithUnknownOperation(build(wanted, discretise(wanted, 4, 8)).discrete)
+    compiled = load(export(model, tmp_path / "lib"))
+    given = [0.3 + model.unloaded(), model.pack()]
+    for name in ("remainder", "tip", "tip_jacobian"):
+        expected = getattr(model, name)["rod"].call(given)
+        for one, other in zip(getattr(compiled, name)["rod"].call(given), expected, strict=False):
+            assert_allclose(np.array(one), np.array(other), rtol=1e-12, atol=1e-14)
