@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -98,20 +98,24 @@ class Listing:
         calls: calls of other functions.
         outputs: for each output, number of the value of each stored entry that is computed.
 
-    Raises:
-        UnknownOperationError: there is an operation that is not known here.
+    Args:
+        function: the function.
+        apart: whether every use of a constant is a value of its own, and every operation is listed as CasADi has it:
+            of functions that differ in constants alone the values are the same then but for these.
     """
 
-    def __init__(self, function: ca.Function) -> None:
+    def __init__(self, function: ca.Function, *, apart: bool = False) -> None:
         self.function = function
         self.values: list[Value] = []
         self.calls: list[Call] = []
         self.outputs: list[dict[int, int]] = [{} for _ in range(function.n_out())]
+        self._apart = apart
         self._known: dict[Value, int] = {}
         self._called = called_functions(function)
-        variables: dict[int, int] = {}
+        # CasADi's variables are used again and again. A constant is a value where it is read.
+        self._variables: dict[int, int | Constant] = {}
         for k in range(function.n_instructions()):
-            self._add(k, variables)
+            self._add(k)
 
     def operands(self, number: int) -> list[int]:
         """Numbers of the values that one is computed from."""
@@ -141,21 +145,59 @@ class Listing:
             names[function_hash] = f"{name}_{len(names)}" if name in names.values() else name
         return names
 
-    def _add(self, k: int, variables: dict[int, int]) -> None:
-        """Append the value, or the values, of the k-th instruction; variables are used again and again."""
+    def expressions(self, wanted: Iterable[int], known: Mapping[int, ca.SX]) -> dict[int, ca.SX]:
+        """Expressions of values, and of the values that they are computed from, by number.
+
+        Args:
+            wanted: numbers of the values.
+            known: expressions of some values, among them all entries of arguments.
+        """
+        expressions = dict(known)
+        needed = {number for number in wanted if number not in known}
+        for number in reversed(range(len(self.values))):
+            if number in needed:
+                needed |= {operand for operand in self.operands(number) if operand not in known}
+        for number in sorted(needed):
+            value = self.values[number]
+            operands = [expressions[operand] for operand in self.operands(number)]
+            if isinstance(value, Constant):
+                expressions[number] = ca.SX(value.value)
+            elif isinstance(value, Computed):
+                apply = ca.SX.unary if len(operands) == 1 else ca.SX.binary
+                expressions[number] = apply(value.operation, *operands)
+            elif isinstance(value, Called) and number not in expressions:
+                call = self.calls[value.call]
+                expressions |= zip(call.results, _call_of_entries(call.function, operands), strict=True)
+        return expressions
+
+    def entries(self, output: int, expressions: Mapping[int, ca.SX]) -> list[ca.SX]:
+        """Stored entries of an output, from expressions of the values that it has; zeros of the others."""
+        entries = [ca.SX(0.0)] * self.function.nnz_out(output)
+        for entry, number in self.outputs[output].items():
+            entries[entry] = expressions[number]
+        return entries
+
+    def _add(self, k: int) -> None:
+        """Append the value, or the values, of the k-th instruction."""
         code = self.function.instruction_id(k)
         inputs = self.function.instruction_input(k)
         outputs = self.function.instruction_output(k)
         if code == ca.OP_OUTPUT:
-            self.outputs[outputs[0]][outputs[1]] = variables[inputs[0]]
+            self.outputs[outputs[0]][outputs[1]] = self._operand(inputs[0])
         elif code == ca.OP_CONST:
-            variables[outputs[0]] = self._number(Constant(self.function.instruction_constant(k)))
+            self._variables[outputs[0]] = Constant(self.function.instruction_constant(k))
         elif code == ca.OP_INPUT:
-            variables[outputs[0]] = self._number(Read(*inputs))
+            self._variables[outputs[0]] = self._number(Read(*inputs))
         elif code == ca.OP_CALL:
-            self._call(self._called[k], [variables[i] for i in inputs], outputs, variables)
+            self._call(self._called[k], [self._operand(variable) for variable in inputs], outputs)
         else:
-            variables[outputs[0]] = self._number(self._computed(code, [variables[i] for i in inputs]))
+            operands = [self._operand(variable) for variable in inputs]
+            self._variables[outputs[0]] = self._number(self._computed(code, operands))
+
+    def _operand(self, variable: int) -> int:
+        """The number of the value that is in a variable."""
+        value = self._variables[variable]
+        return self._number(value) if isinstance(value, Constant) else value
 
     def _computed(self, code: int, operands: list[int]) -> Computed:
         if code in REWRITTEN:
@@ -163,18 +205,29 @@ class Listing:
             return Computed(operation, (self._number(Constant(constant)), operands[0]))
         if code == ca.OP_SQ:
             return Computed(ca.OP_MUL, (operands[0], operands[0]))
-        if code not in BINARY and code not in FUNCTIONS and code not in CHOICES:
-            raise UnknownOperationError(f"operation {code}")
         return Computed(code, tuple(operands))
 
-    def _call(self, function: ca.Function, operands: list[int], outputs: list[int], variables: dict[int, int]) -> None:
+    def _call(self, function: ca.Function, operands: list[int], outputs: list[int]) -> None:
         results = [self._number(Called(len(self.calls), i)) for i in range(len(outputs))]
         self.calls.append(Call(function, operands, results))
-        variables.update(zip(outputs, results, strict=True))
+        self._variables.update(zip(outputs, results, strict=True))
 
     def _number(self, value: Value) -> int:
         """The number of a value, which is computed once."""
-        if value not in self._known:
-            self._known[value] = len(self.values)
-            self.values.append(value)
+        if value in self._known and (isinstance(value, Read) or not self._apart):
+            return self._known[value]
+        self._known[value] = len(self.values)
+        self.values.append(value)
         return self._known[value]
+
+
+def _call_of_entries(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
+    """Entries of all results of a function that is called with these entries."""
+    shaped = list[ca.SX]()
+    start = 0
+    for i in range(function.n_in()):
+        pattern = function.sparsity_in(i)
+        end = start + pattern.nnz()
+        shaped.append(ca.SX(pattern, ca.vertcat(*arguments[start:end])))
+        start = end
+    return [entry for result in function.call(shaped, False, True) for entry in result.nonzeros()]

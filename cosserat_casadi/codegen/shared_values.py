@@ -8,17 +8,16 @@ reads the values of kernels that more functions share.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate, pairwise
 
 import casadi as ca
 
 from cosserat_casadi.codegen.columns import ColumnedFunction
-from cosserat_casadi.codegen.listing import Called, Computed, Constant, Listing, Read
+from cosserat_casadi.codegen.listing import Called, Computed, Listing, Read
 from cosserat_casadi.codegen.printed_kernels import PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c, shared_in_c
-from cosserat_casadi.codegen.streams import call_of_entries
 
 FEWEST_SHARED = 100
 """Number of shared values from which on they become a kernel; of fewer a call saves little code."""
@@ -79,7 +78,12 @@ class _Sharing:
             results.append(ca.vertcat(*map(ca.vec, function.call(arguments))))
         symbols = list(known.values())
         self._listing = Listing(ca.Function("joint", symbols, ca.cse(results)))
-        self._entries = [symbol.nonzeros() for symbol in symbols]
+        entries = [symbol.nonzeros() for symbol in symbols]
+        self._read = {
+            number: entries[value.argument][value.entry]
+            for number, value in enumerate(self._listing.values)
+            if isinstance(value, Read)
+        }
         self._homes = self._homes_of_values()
         self._handed_over = self._read_elsewhere()
         self._kernels: dict[int, ca.Function] = {}
@@ -167,44 +171,23 @@ class _Sharing:
             if home >> i & 1:
                 arguments = [*self._common(home), *(results[other] for other in self._larger(home))]
                 (results[home],) = kernel.call(arguments, False, True)
-        outputs = self._listing.outputs[i]
         handed_over = {home: result.nonzeros() for home, result in results.items()}
-        expressions = self._expressions(list(outputs.values()), handed_over)
-        entries = [ca.SX(0.0)] * self._listing.function.nnz_out(i)
-        for entry, number in outputs.items():
-            entries[entry] = expressions[number]
+        expressions = self._expressions(self._listing.outputs[i].values(), handed_over)
+        entries = self._listing.entries(i, expressions)
         patterns = [function.sparsity_out(k) for k in range(function.n_out())]
         ends = accumulate((pattern.nnz() for pattern in patterns), initial=0)
         vectors = [ca.vertcat(*entries[begin:end]) for begin, end in pairwise(ends)]
         shaped = list(map(ca.SX, patterns, vectors))
         return ca.Function(function.name(), self._arguments[i], shaped, function.name_in(), function.name_out())
 
-    def _expressions(self, wanted: Sequence[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
+    def _expressions(self, wanted: Iterable[int], known: Mapping[int, Sequence[ca.SX]]) -> dict[int, ca.SX]:
         """Expressions of values, and of the values that they are computed from, by number.
 
         Args:
             wanted: numbers of the values.
             known: for each kernel that is called the entries of its result, by its set of functions.
         """
-        listing = self._listing
-        expressions: dict[int, ca.SX] = {}
+        expressions = dict(self._read)
         for home, entries in known.items():
             expressions |= zip(self._handed_over[home], entries, strict=True)
-        needed = {number for number in wanted if number not in expressions}
-        for number in reversed(range(len(listing.values))):
-            if number in needed:
-                needed |= {operand for operand in listing.operands(number) if operand not in expressions}
-        for number in sorted(needed):
-            value = listing.values[number]
-            operands = [expressions[operand] for operand in listing.operands(number)]
-            if isinstance(value, Constant):
-                expressions[number] = ca.SX(value.value)
-            elif isinstance(value, Read):
-                expressions[number] = self._entries[value.argument][value.entry]
-            elif isinstance(value, Computed):
-                apply = ca.SX.unary if len(operands) == 1 else ca.SX.binary
-                expressions[number] = apply(value.operation, *operands)
-            elif number not in expressions:
-                call = listing.calls[value.call]
-                expressions |= zip(call.results, call_of_entries(call.function, operands), strict=True)
-        return expressions
+        return self._listing.expressions(wanted, expressions)

@@ -1,4 +1,4 @@
-"""Scalar functions as streams of numbered values with constants apart: functions that compute alike share one."""
+"""Scalar functions as lists of values with constants apart: functions that compute alike share one."""
 
 from __future__ import annotations
 
@@ -9,21 +9,11 @@ from math import isfinite
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.calls import called_functions
+from cosserat_casadi.codegen.listing import Constant, Listing, Read, Value
 from cosserat_casadi.maths.typing import FloatArray
 
-FACTORS = {ca.OP_NEG: -1.0, ca.OP_TWICE: 2.0}
-"""Operations that CasADi writes for a product with a constant; 1/x stands for such a quotient."""
-
-Line = tuple[int, tuple[int, ...], int]
-"""Operation, operands, number of results. Operands are numbers of earlier values, CONSTANT for the next constant, or
-what is read or written."""
-
-Key = tuple[tuple[Line, ...], tuple[Hashable, ...]]
-"""Lines, and the content of each function that is called."""
-
-CONSTANT = -1
-"""Operand that is the next constant."""
+Key = tuple[Hashable, ...]
+"""What streams share that compute alike."""
 
 ROUNDING = 2.0**-48
 """Difference of two constants, over the larger, up to which they are one number that was rounded on its way here."""
@@ -36,7 +26,7 @@ def names_of_part(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
 
 def scalars(function: ca.Function) -> tuple[list[ca.SX], list[ca.SX]]:
     """Arguments and results as scalars, without entries that are zero whatever the arguments."""
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    symbols = function.sx_in()
     return symbols, [ca.sparsify(result) for result in function.call(symbols)]
 
 
@@ -48,111 +38,79 @@ def stacked(function: ca.Function) -> ca.Function:
 
 
 class Stream:
-    """The instructions of a scalar function, each value numbered once, with constants apart.
+    """The values of a scalar function with constants apart: two legs of a robot have the same but for these.
 
-    CasADi's own instructions write to work variables that are used again, and hold constants as instructions. Two legs
-    of a robot give the same lines here although their constants differ. For the map x ↦ 3 x₀ + x₄, say,
-
-    ========================  ================================  ==================
-    CasADi                    line                              constants
-    ========================  ================================  ==================
-    a0 = 3
-    a1 = input[0][0]          (OP_INPUT, (0, 0), 1): value 0
-    a0 = a0 * a1              (OP_MUL, (CONSTANT, 0), 1): 1     [3]
-    a1 = input[0][4]          (OP_INPUT, (0, 1), 1): value 2
-    a0 = a0 + a1              (OP_ADD, (1, 2), 1): value 3
-    output[0][0] = a0         (OP_OUTPUT, (3, 0), 0)
-    ========================  ================================  ==================
-
-    x₄ is read as the second of the unknowns that this part reads, x = [0, 4].
+    An unknown is read by its number among those that the function reads: 3 x₀ + x₄ reads x = [0, 4], and computes with
+    the constant 3 what 5 x₁ + x₂ computes with 5.
 
     Attributes:
         function: map (x, inputs, factor) ↦ entries.
+        listing: its values.
         reads: for each argument the entries that are read; an argument of one entry is read whole.
-        lines: the instructions.
         constants: value of every use of a constant, in order.
-        called: the function of every call, in order.
     """
 
     def __init__(self, function: ca.Function) -> None:
         self.function = function
-        self.called = list(called_functions(function).values())
-        self.lines: list[Line] = []
-        self.constants: list[float] = []
-        codes = [function.instruction_id(k) for k in range(function.n_instructions())]
-        read = {tuple(function.instruction_input(k)) for k, code in enumerate(codes) if code == ca.OP_INPUT}
-        self.reads = [sorted(entry for number, entry in read if number == i) for i in range(function.n_in())]
+        self.listing = Listing(function, apart=True)
+        self.constants = [value.value for value in self.listing.values if isinstance(value, Constant)]
+        read = [value for value in self.listing.values if isinstance(value, Read)]
+        self.reads: list[list[int]] = []
         for i in range(function.n_in()):
-            if function.numel_in(i) == 1:
-                self.reads[i] = [0]
-        self._local = [{entry: i for i, entry in enumerate(entries)} for entries in self.reads]
-        self._value_of: dict[int, int] = {}
-        self._constant_of: dict[int, float] = {}
-        self._value_count = 0
-        for k, code in enumerate(codes):
-            self._add(k, code)
+            entries = sorted(value.entry for value in read if value.argument == i)
+            self.reads.append([0] if function.numel_in(i) == 1 else entries)
 
     @classmethod
     def settled(cls, function: ca.Function) -> Stream:
-        """The instructions without products with a one that is off by rounding.
+        """The values without products with a one that is off by rounding.
 
         CasADi leaves out products with one. A one that a machine rounds otherwise, such as a stiffness over that which
-        scales the equations, would make other lines of one leg of a robot than of the next.
+        scales the equations, would make other values of one leg of a robot than of the next.
         """
         stream = cls(function)
         ones = [c != 1.0 and abs(c - 1.0) <= ROUNDING for c in stream.constants]
         if not any(ones):
             return stream
         constants = [ca.SX(1.0 if one else c) for one, c in zip(ones, stream.constants, strict=True)]
-        whole = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+        whole = function.sx_in()
         read = [symbol.nz[own] if own else ca.SX(0, 1) for symbol, own in zip(whole, stream.reads, strict=True)]
-        entries = _replay(stream, read, constants)
+        entries = stream.result(read, constants)
         return cls(ca.Function(function.name(), whole, [entries], function.name_in(), function.name_out()))
 
     @property
     def key(self) -> Key:
-        """What streams share that compute alike: their lines, and what they call."""
-        contents = {hash(callee): Stream(callee).content for callee in self.called}
-        return tuple(self.lines), tuple(contents[hash(callee)] for callee in self.called)
+        """What streams share that compute alike: their values but for constants, and what they call."""
+        values = tuple(self._without_constant(value) for value in self.listing.values)
+        functions = {hash(call.function): call.function for call in self.listing.calls}
+        contents = {number: Stream(function).content for number, function in functions.items()}
+        calls = tuple((contents[hash(call.function)], *call.operands) for call in self.listing.calls)
+        return values, calls, tuple(tuple(output.items()) for output in self.listing.outputs)
 
     @property
     def content(self) -> Hashable:
         """What functions share that compute the same: the rods of a scene have functions of their own that do."""
         return self.key, tuple(self.constants)
 
-    def _add(self, k: int, code: int) -> None:
-        """Append the line of the k-th instruction."""
-        inputs = self.function.instruction_input(k)
-        outputs = self.function.instruction_output(k)
-        if code == ca.OP_CONST:
-            self._constant_of[outputs[0]] = self.function.instruction_constant(k)
-        elif code == ca.OP_INPUT:
-            argument, entry = inputs
-            self._write(code, (argument, self._local[argument][entry]), outputs)
-        elif code == ca.OP_OUTPUT:
-            self.lines.append((code, (self._operand(inputs[0]), outputs[1]), 0))
-        elif code in FACTORS:
-            self._write(ca.OP_MUL, (self._constant(FACTORS[code]), self._operand(inputs[0])), outputs)
-        elif code == ca.OP_INV:
-            self._write(ca.OP_DIV, (self._constant(1.0), self._operand(inputs[0])), outputs)
-        else:
-            self._write(code, tuple(self._operand(variable) for variable in inputs), outputs)
+    def result(self, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
+        """The result in other symbols of what is read of each argument, and with other constants."""
+        arguments = [_entries(symbol) for symbol in symbols]
+        next_constant = iter(constants)
+        known: dict[int, ca.SX] = {}
+        for number, value in enumerate(self.listing.values):
+            if isinstance(value, Constant):
+                known[number] = next(next_constant)
+            elif isinstance(value, Read):
+                known[number] = arguments[value.argument][self.reads[value.argument].index(value.entry)]
+        expressions = self.listing.expressions(self.listing.outputs[0].values(), known)
+        return ca.vertcat(*self.listing.entries(0, expressions))
 
-    def _write(self, code: int, operands: tuple[int, ...], outputs: Sequence[int]) -> None:
-        self.lines.append((code, operands, len(outputs)))
-        for variable in outputs:
-            self._constant_of.pop(variable, None)
-            self._value_of[variable] = self._value_count
-            self._value_count += 1
-
-    def _operand(self, variable: int) -> int:
-        if variable in self._constant_of:
-            return self._constant(self._constant_of[variable])
-        return self._value_of[variable]
-
-    def _constant(self, value: float) -> int:
-        self.constants.append(value)
-        return CONSTANT
+    def _without_constant(self, value: Value) -> Value | None:
+        """A value as streams that compute alike have it."""
+        if isinstance(value, Constant):
+            return None
+        if isinstance(value, Read):
+            return Read(value.argument, self.reads[value.argument].index(value.entry))
+        return value
 
 
 def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list[float]]]:
@@ -177,7 +135,7 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
     constants = []
     for numbers, values in zip(alike, uses, strict=True):
         constants.append(symbol_of[numbers] if numbers in symbol_of else ca.SX(values[0]))
-    kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), *names_of_part(arguments))
+    kernel = ca.Function(name, symbols, ca.cse([first.result(symbols, constants)]), *names_of_part(arguments))
     return kernel, [[values[i] for values in varied.values()] for i in range(len(streams))]
 
 
@@ -204,41 +162,5 @@ def _numbered(values: Sequence[float]) -> dict[float, int]:
     return numbers
 
 
-def _replay(stream: Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
-    """The result of a stream in new symbols and constants."""
-    next_constant = iter(constants)
-    next_called = iter(stream.called)
-    arguments = [_entries(symbol) for symbol in symbols]
-    values = list[ca.SX]()
-    results = [ca.SX(0.0)] * stream.function.nnz_out(0)
-    for code, operands, _ in stream.lines:
-        if code == ca.OP_INPUT:
-            argument, entry = operands
-            values.append(arguments[argument][entry])
-        elif code == ca.OP_OUTPUT:
-            value, entry = operands
-            results[entry] = next(next_constant) if value == CONSTANT else values[value]
-        else:
-            given = [next(next_constant) if value == CONSTANT else values[value] for value in operands]
-            if code == ca.OP_CALL:
-                values += call_of_entries(next(next_called), given)
-            else:
-                apply = ca.SX.unary if len(given) == 1 else ca.SX.binary
-                values.append(apply(code, *given))
-    return ca.vertcat(*results)
-
-
 def _entries(vector: ca.SX) -> list[ca.SX]:
     return ca.vertsplit(vector) if vector.numel() else []
-
-
-def call_of_entries(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
-    """Entries of all results of a function that is called with these entries."""
-    shaped = list[ca.SX]()
-    start = 0
-    for i in range(function.n_in()):
-        pattern = function.sparsity_in(i)
-        end = start + pattern.nnz()
-        shaped.append(ca.SX(pattern, ca.vertcat(*arguments[start:end])))
-        start = end
-    return [entry for result in function.call(shaped, False, True) for entry in result.nonzeros()]
