@@ -128,7 +128,7 @@ def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Part
 
 def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_constant: bool) -> ColumnForm:
     """A shared function, which takes only what it reads of columns and turns, as a form with all of both."""
-    symbols = [ca.SX.sym(kernel.name_in(i), kernel.sparsity_in(i)) for i in range(kernel.n_in())]
+    symbols = kernel.sx_in()
     own_constants = symbols[CONSTANTS]
     constants = own_constants
     turns_behind = None

@@ -21,6 +21,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.cost import TOGETHER
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
+from cosserat_casadi.maths.calls import in_scalars
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec, expressions_of
@@ -200,7 +201,7 @@ class ColumnedJacobian:
     def scalars(self) -> tuple[list[ca.SX], dict[str, ca.SX], ca.SX]:
         """Symbols of the arguments, symbols of the columns by rod, and the Jacobian in them."""
         function = self.of_columns
-        symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+        symbols = function.sx_in()
         count = len(self.given)
         columns = dict(zip(self.rods, symbols[count:], strict=True))
         return symbols[:count], columns, function.call(symbols)[0]
@@ -323,12 +324,10 @@ def pose_in_columns(model: Model, spec: FunctionSpec, owner: str, name: str) -> 
     every = ca.reshape(columns, stride, rows).T[:, : turns.shape[1]]
     whole = ca.horzcat(by_unknowns[:, :first], every, by_unknowns[:, first + 1 :])
     results = [*map(ca.densify, [whole, *others]), by_unknowns[:, first]]
-    plain = ca.Function(name, [*written.symbols.values(), columns, turn], results).expand()
-    symbols = [ca.SX.sym("given", plain.sparsity_in(i)) for i in range(plain.n_in())]
     words = [*written.symbols, *_words_of_columns(name)]
     results_by_name = [f"result_{i}" for i in range(len(results))]
-    function = ca.Function(name, symbols, ca.cse(plain.call(symbols)), words, results_by_name)
-    return ColumnForm(function, padded, rows)
+    plain = ca.Function(name, [*written.symbols.values(), columns, turn], results, words, results_by_name)
+    return ColumnForm(in_scalars(plain, name), padded, rows)
 
 
 def _words_of_columns(name: str) -> list[str]:

@@ -220,7 +220,7 @@ def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
         name: its name in C.
         most: instructions up to which it is wanted; None stands for a longer one.
     """
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    symbols = function.sx_in()
     expressions = list(function.call(symbols))
     if ca.Function(name, symbols, expressions).n_instructions() > SHARED_AT_MOST * most:
         return None

@@ -17,7 +17,7 @@ from cosserat_casadi.codegen.numbered import Program, function_of
 from cosserat_casadi.codegen.programs import PartialProgram, alike, foreseen, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, in_scalars
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 
@@ -110,7 +110,7 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
 
 def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> Parted:
     """Parts as straight-line code."""
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(3)]
+    symbols = function.sx_in()
     entries = function.call(symbols)[0].nonzeros()
     named = names_of_part(ARGUMENTS[:3])
     groups: dict[Key, list[tuple[Stream, list[int]]]] = {}
@@ -140,9 +140,7 @@ def _program(function: ca.Function) -> Program | None:
 def _short_or_in_loops(program: Program) -> ca.Function:
     """Straight-line code if that is short, else loops."""
     in_loops = function_of(program)
-    symbols = [ca.SX.sym(in_loops.name_in(i), in_loops.sparsity_in(i)) for i in range(in_loops.n_in())]
-    results = ca.cse(list(in_loops.call(symbols)))
-    straight = ca.Function(program.name, symbols, results, in_loops.name_in(), in_loops.name_out())
+    straight = in_scalars(in_loops, program.name)
     return straight if straight.n_instructions() <= STRAIGHT else in_loops
 
 

@@ -83,7 +83,7 @@ def _identity(step: Step) -> object:
 @cache
 def _lines(function: ca.Function) -> Stream:
     """Lines of a function that a step calls, with all entries of its results in one column."""
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    symbols = function.sx_in()
     entries = [entry for result in function.call(symbols) for entry in result.nonzeros()]
     return Stream.settled(ca.Function("stacked", symbols, [ca.vertcat(*entries)], *names_of_part(function.name_in())))
 
@@ -298,7 +298,7 @@ def _with_constants(function: ca.Function, reads: Sequence[Sequence[int]], kerne
         reads: entries that are read of each argument.
         kernel: maps what is read of each argument, and the constants, to the entries of all results.
     """
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    symbols = function.sx_in()
     constants = ca.SX.sym("constants", kernel.size1_in(function.n_in()))
     given = [ca.vertcat(*[symbol.nz[entry] for entry in read]) for symbol, read in zip(symbols, reads, strict=True)]
     entries = ca.vertsplit(kernel.call([*given, constants])[0])

@@ -22,7 +22,7 @@ from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import identifier, library_names
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem, refuse
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, in_scalars
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
@@ -195,9 +195,7 @@ def written(function: ca.Function, name: str) -> ca.Function:
     """
     if chooses(function):
         return _named(function, name)
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    results = ca.cse(list(function.call(symbols)))
-    straight = ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    straight = in_scalars(function, name)
     if straight.n_instructions() <= STRAIGHT:
         return straight
     return _named(function, name)

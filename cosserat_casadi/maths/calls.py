@@ -30,6 +30,12 @@ def called_functions(function: ca.Function, codes: Iterable[int] | None = None) 
     return {k: elements[k].which_function() for k in calls}
 
 
+def in_scalars(function: ca.Function, name: str) -> ca.Function:
+    """A function under another name as scalar instructions, with common terms shared."""
+    symbols = function.sx_in()
+    return ca.Function(name, symbols, ca.cse(function.call(symbols)), function.name_in(), function.name_out())
+
+
 def functions_within(function: ca.Function) -> list[ca.Function]:
     """The functions that a function calls, deep inside too, once each.
 

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.calls import called_functions
+from cosserat_casadi.maths.calls import called_functions, in_scalars
 
 COUNTED_EXACTLY = 100_000
 """Operations up to which a function is expanded to be counted: sharing the terms of so many takes about a second."""
@@ -63,9 +63,7 @@ def operations(function: ca.Function) -> int:
 
     The kernels of the intervals stay separate functions; each call counts with all its operations.
     """
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    results = ca.cse(list(function.call(symbols)))
-    return _scalar_operations(ca.Function("scalar", symbols, results))
+    return _scalar_operations(in_scalars(function, "scalar"))
 
 
 def most_operations(function: ca.Function) -> int:
