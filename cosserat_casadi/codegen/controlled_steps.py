@@ -7,13 +7,14 @@ the equations back, unless they are in machine code themselves.
 from __future__ import annotations
 
 import ctypes
+import hashlib
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
 from cosserat_casadi.codegen.motion_sources import initialiser, pairs
 from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
@@ -93,17 +94,39 @@ def steps_library() -> ctypes.CDLL:
     Raises:
         ExportError: there is no compiler, or it fails.
     """
-    texts = {
+    path = compiled_texts(NAME, _texts(), find_compiler(), included={"stage_newton.c"}, origin=_origin())
+    library = ctypes.CDLL(str(path))
+    assert library.steps_record() == ctypes.sizeof(_Record), "the record differs from that of the C"
+    library.steps_taken.argtypes = [ctypes.POINTER(_Record)]
+    return library
+
+
+def steps_are_at_hand() -> bool:
+    """Whether the loop was compiled before: in this process, or in the cache.
+
+    Raises:
+        ExportError: there is no compiler.
+    """
+    if steps_library.cache_info().currsize:
+        return True
+    return compiled_from(NAME, _origin(), find_compiler()) is not None
+
+
+@cache
+def _origin() -> str:
+    """Key of the sources."""
+    return hashlib.sha256("\0".join(_texts().values()).encode()).hexdigest()
+
+
+@cache
+def _texts() -> dict[str, str]:
+    """The sources by file name."""
+    return {
         f"{NAME}.c": resource("c", f"{NAME}.c"),
         "stage_newton.c": resource("c", "stage_newton.c"),
         "fours.h": resource("c", "fours.h"),
         f"{NAME}.h": render(f"{NAME}.h.in", _words()),
     }
-    path = compiled_texts(NAME, texts, find_compiler(), included={"stage_newton.c"})
-    library = ctypes.CDLL(str(path))
-    assert library.steps_record() == ctypes.sizeof(_Record), "the record differs from that of the C"
-    library.steps_taken.argtypes = [ctypes.POINTER(_Record)]
-    return library
 
 
 def _words() -> dict[str, Any]:

@@ -12,13 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 
 from cosserat_casadi.codegen.cache import cache_folder
 from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
-from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_library
+from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_are_at_hand, steps_library
 from cosserat_casadi.codegen.description import key_of
 from cosserat_casadi.codegen.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
@@ -71,8 +71,17 @@ SAVED = {PROGRAM: 0.8, RESIDUAL: 0.2, JACOBIANS: 0.8}
 TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
 """Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
 
+ITERATION = 2e-4
+"""Time of an iteration of Newton's method in Python beyond that in C, s: 1.7e-4 to 6.5e-4, equations left out."""
+
+TO_COMPILE_STEPS = 0.35
+"""Processor time for compiling the steps, s; once for all models."""
+
 MOTIONS_TO_COME = 2.0
 """Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
+
+MOTIONS_OF_ALL_MODELS = 4.0
+"""The same of a search that may go on to further models: 2.3 to 5.2 times the work of its first motion."""
 
 
 @dataclass
@@ -83,11 +92,15 @@ class MotionCompiler:
         always: whether to compile even where that takes longer than it saves.
         last: the work of the motion before; None before the first.
         asked: for each function the model that it was looked for, and its machine code, None where there was none.
+        saved_by_steps: time that steps in C would have saved of the motion before, s.
+        spent_on_steps: that of all motions in this process, s.
     """
 
     always: bool = False
     last: StepStatistics | None = None
     asked: dict[str, tuple[Model, RepeatedCall | None]] = field(default_factory=dict)
+    saved_by_steps: float = 0.0
+    spent_on_steps: ClassVar[float] = 0.0
 
     @cached_property
     def _compiler(self) -> str:
@@ -97,9 +110,14 @@ class MotionCompiler:
     def learn(self, statistics: StepStatistics) -> None:
         """Take note of the work of the motion for which kernels were asked last."""
         self.last = statistics
+        self.saved_by_steps = ITERATION * statistics.iterations
         for name, (model, found) in self.asked.items():
             if found is None:
                 _spent(model)[name] += _interpreted_time(model, name, statistics)
+                if name == RESIDUAL and not can_be_centred(model):
+                    # Programs are run by steps in C alone.
+                    self.saved_by_steps += SAVED[PROGRAM] * _interpreted_time(model, name, statistics)
+        MotionCompiler.spent_on_steps += self.saved_by_steps
 
     def kernels(self, model: Model) -> StepKernels:
         """The kernels for the next motion of a model.
@@ -132,14 +150,20 @@ class MotionCompiler:
         return None if residual is None else residual.library
 
     def _stepper(self) -> Stepper | None:
-        """The steps in machine code; None where there is no compiler."""
+        """The steps in machine code; None where they are not at hand and do not pay, or where there is no compiler."""
         try:
+            if not (self.always or steps_are_at_hand() or self._steps_pay()):
+                return None
             steps_library()
         except ExportError:
             if self.always:
                 raise
             return None
         return CompiledSteps
+
+    def _steps_pay(self) -> bool:
+        """Whether steps in machine code save more time than they take to compile; foreseen as :meth:`_pays` does."""
+        return max(MOTIONS_OF_ALL_MODELS * self.saved_by_steps, self.spent_on_steps) > TO_COMPILE_STEPS
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""

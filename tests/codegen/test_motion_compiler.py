@@ -14,8 +14,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
-from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps
-from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, MotionCompiler
+from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps, steps_library
+from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
@@ -210,6 +210,35 @@ def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:
     for found, expected in zip(tip(x, inputs), model.tip["rod"](x, inputs), strict=True):
         assert_allclose(found.full(), expected.full(), rtol=1e-12, atol=1e-14)
     assert_array_equal(displacements(moving(arm()), library), displacements(model))
+
+
+def test_steps_are_compiled_where_motions_tell_that_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
+    steps_library.cache_clear()
+    model = moving(arm())
+    compiler = MotionCompiler()
+    assert compiler.kernels(model).stepper is None
+    compiler.learn(work(50, 1))
+    assert compiler.kernels(model).stepper is None
+    # Many short motions of one process are as good a reason as a long one.
+    while MotionCompiler.spent_on_steps < TO_COMPILE_STEPS:
+        assert MotionCompiler().kernels(model).stepper is None
+        compiler.learn(work(50, 1))
+    assert MotionCompiler().kernels(model).stepper is CompiledSteps
+    steps_library.cache_clear()
+    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
+    assert MotionCompiler().kernels(model).stepper is CompiledSteps, "they are in the cache"
+
+
+def test_steps_of_a_long_motion_are_compiled_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
+    steps_library.cache_clear()
+    model = moving(arm())
+    compiler = MotionCompiler()
+    compiler.kernels(model)
+    compiler.learn(work(500, 1))
+    assert MotionCompiler.spent_on_steps < TO_COMPILE_STEPS
+    assert compiler.kernels(model).stepper is CompiledSteps
 
 
 def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> None:

@@ -334,7 +334,7 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
 
 /* ---- Linear systems: step_matrices.py ---- */
 
-FAST static real size_of(const real *entry, int plane) {
+static real size_of(const real *entry, int plane) {
   return plane ? sqrt(entry[0] * entry[0] + entry[plane] * entry[plane]) : fabs(entry[0]);
 }
 
@@ -361,7 +361,7 @@ FAST static void subtract_complex_row(real *restrict row, real *restrict imagina
 }
 
 /* The rows of a matrix less multiples of the row of a pivot, which is the identity's then. */
-FAST static void eliminate_real(real *a, int k, int n) {
+static void eliminate_real(real *a, int k, int n) {
   real *own = a + k * n;
   const real inverse = 1 / own[k];
   own[k] = 1;
@@ -375,7 +375,7 @@ FAST static void eliminate_real(real *a, int k, int n) {
   }
 }
 
-FAST static void eliminate_complex(real *a, int k, int n) {
+static void eliminate_complex(real *a, int k, int n) {
   const int plane = n * n;
   real *own = a + k * n;
   real *own_imaginary = own + plane;
@@ -402,7 +402,7 @@ FAST static void eliminate_complex(real *a, int k, int n) {
 }
 
 /* Largest sum of the sizes of the entries of a column. */
-FAST static real norm_of_columns(const real *a, int plane, int n, real *sums) {
+static real norm_of_columns(const real *a, int plane, int n, real *sums) {
   real largest = 0;
   memset(sums, 0, (size_t)n * sizeof *sums);
   for (int i = 0; i < n; i++) {
@@ -416,7 +416,7 @@ FAST static real norm_of_columns(const real *a, int plane, int n, real *sums) {
 
 /* The inverse of a matrix, in place, by Gauss-Jordan elimination with partial pivoting, of the matrix whose largest entry
    of every row and column is one. Zero where that one is singular to rounding. */
-FAST static int invert(real *a, int is_complex, workspace *work) {
+static int invert(real *a, int is_complex, workspace *work) {
   const int n = N;
   const int plane = is_complex ? n * n : 0;
   real *rows = work->vectors;
