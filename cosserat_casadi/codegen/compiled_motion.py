@@ -294,11 +294,12 @@ class CompiledMotion(LoadedLibrary):
         if count < 1:
             raise ValueError(f"count must be at least 1, got {count}")
         nothing = np.zeros(self.inputs.size)
-        acceleration = nothing if inputs_acceleration is None else inputs_acceleration
         rate = vector(nothing if inputs_rate is None else inputs_rate, self.inputs.size, "inputs_rate").copy()
         moved = self.inputs.stacked(inputs).copy()
-        given = _Given(moved, rate, acceleration, parameters)
+        # C refuses a base that moves where nobody has said whether it is accelerated.
+        given = _Given(moved, rate, inputs_acceleration, parameters)
         call = self._prepared("step", state, dt, given, memory, options, [])
+        acceleration = nothing if inputs_acceleration is None else inputs_acceleration
         gained = dt * vector(acceleration, self.inputs.size, "inputs_acceleration")
         for _ in range(count):
             call.take()

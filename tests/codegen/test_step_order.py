@@ -206,6 +206,8 @@ def test_a_base_that_moves_without_an_acceleration_is_refused(shaken: Exported) 
     refused = shaken.compiled.step(state, 1e-3, begin.value, begin.rate)
     assert refused.status is MotionStatus.NO_ACCELERATION
     assert_allclose(refused.state.x, state.x, rtol=0, atol=0)
+    several, *_ = shaken.compiled.steps(state, 1e-3, 2, begin.value, begin.rate)
+    assert several.status is MotionStatus.NO_ACCELERATION
     assert shaken.compiled.step(state, 1e-3, begin.value, begin.rate, 0.0 * begin.rate).done
     assert shaken.compiled.step(state, 1e-3, begin.value).done
 
