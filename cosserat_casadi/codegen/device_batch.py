@@ -441,16 +441,7 @@ def batch_of(
     single: bool = False,
     threads: int | None = None,
 ) -> DeviceBatch:
-    """The same from texts.
-
-    Args:
-        described: the manifest.
-        texts: sources and headers by name.
-        device: as for :func:`load_batch`, and so the others.
-        compiler: as there.
-        single: as there.
-        threads: as there.
-    """
+    """As :func:`load_batch`, from a manifest, and the texts of sources and headers by name."""
     if device not in FLAGS or (threads is not None and threads < 1):
         raise ValueError(f"a device is 'cuda' or 'host', with at least one thread, got {device!r} and {threads}")
     found = find_compiler(compiler) if device == HOST else find_nvcc(compiler)

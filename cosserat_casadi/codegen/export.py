@@ -174,20 +174,7 @@ def folder_files(
     period: float | None = None,
     estimate_errors: bool = True,
 ) -> dict[str, str]:
-    """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
-
-    Args:
-        model: what is exported.
-        name: the library.
-        error_estimate: as for :func:`export`.
-        verified: as for :func:`export`.
-        derivatives: as for :func:`export`.
-        dynamics: as for :func:`export`.
-        stability: as for :func:`export`.
-        batches: as for :func:`export`.
-        cuda: as for :func:`export`.
-        period: as for :func:`export`.
-        estimate_errors: as for :func:`export`.
+    """Text of every file that :func:`export` writes of a model; the manifest, which lists the others, is last.
 
     Raises:
         ExportError: the scene has no motion, or its load cases cannot be solved side by side, and that is asked for.
@@ -200,25 +187,22 @@ def folder_files(
     functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names, on_device=cuda)
     rows = _side_by_side(model, names) if batches else None
-    contents = FolderContents(generated, parts, motion, rows, derivatives, stability, on_device=cuda)
+    beside = {"scene.toml": scene_text(with_discretisation(model.scene, model.discretisation))}
+    if stability:
+        beside |= stability_sources(model, names)
+    if derivatives:
+        beside |= derivative_source(differentiable(model, names), names)
+    contents = FolderContents(generated, parts, motion, rows, beside, on_device=cuda)
     by_hand = library_sources(model, names, contents, error_estimate, verified)
     budget = ALWAYS
     if period is not None:
         budget = fitting(costs_of(model, names, {**by_hand, **generated}), period)
         by_hand = library_sources(model, names, contents, error_estimate, verified, budget)
-    files = {
-        **by_hand,
-        **(stability_sources(model, names) if stability else {}),
-        **generated,
-        "scene.toml": scene_text(with_discretisation(model.scene, model.discretisation)),
-    }
-    if derivatives:
-        files |= derivative_source(differentiable(model, names), names)
     described = manifest(model, names, functions, error_estimate, verified)
     if motion is not None:
         described["motion"] = motion_entry(model)
     described["turn"] = budget.entry
-    return with_manifest(files, described)
+    return with_manifest({**by_hand, **generated, **beside}, described)
 
 
 def check_period(scene: Scene, period: float | None) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from typing import Any
 
@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.block_sources import block_words, dense_words, numb
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
-from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
+from cosserat_casadi.codegen.manifest import MANIFEST, input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES, motion_words
@@ -27,14 +27,7 @@ from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import status_words
-from cosserat_casadi.codegen.structs import (
-    INPUT,
-    initialiser,
-    input_struct_words,
-    pose_name,
-    result_struct_words,
-    value_words,
-)
+from cosserat_casadi.codegen.structs import initialiser, pose_name, result_struct_words, vector_words
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
@@ -144,8 +137,7 @@ class FolderContents:
         parts: the equations of an assembly in parts; None for one rod.
         motion: the equations of motion, where the folder has them.
         rows: the solver of batches side by side, where the folder has it.
-        derivatives: whether the folder holds derivatives of the equations for CasADi.
-        stability: whether it holds the stability of equilibria.
+        beside: further files by name, such as those of stability or of derivatives.
         on_device: whether it holds batches on a GPU.
     """
 
@@ -153,8 +145,7 @@ class FolderContents:
     parts: Assembled | None
     motion: MotionInC | None = None
     rows: InLanes | None = None
-    derivatives: bool = False
-    stability: bool = False
+    beside: Mapping[str, str] = field(default_factory=dict)
     on_device: bool = False
 
     def verbatim(self, names: Names) -> tuple[str, ...]:
@@ -164,37 +155,15 @@ class FolderContents:
         motion = () if self.motion is None else MOTION_FILES
         return (*SHARED, *estimate, *linear, *motion)
 
-    @property
-    def to_compile(self) -> dict[str, str]:
+    def to_compile(self, names: Names) -> dict[str, str]:
         """Words of the build file for sources and headers that a plain folder does not have."""
-        stability = self.stability
-        lanes_source = "" if self.rows is None else " {name}_lanes.c"
+        source, header = f"{names.name}_stability.c", f"{names.name}_stability.h"
+        lanes_source = "" if self.rows is None else f" {names.name}_lanes.c"
         return {
-            "more_sources": (" {name}_stability.c" if stability else "") + lanes_source,
+            "more_sources": (f" {source}" if source in self.beside else "") + lanes_source,
             "more_compiled": lanes_source,
-            "more_headers": " {name}_stability.h" if stability else "",
+            "more_headers": f" {header}" if header in self.beside else "",
         }
-
-    def absent(self, names: Names) -> set[str]:
-        """Files of :data:`ROLES` that the folder does not have."""
-        absent = {*(BLOCKS if self.parts is None else DENSE)}
-        if f"{names.name}_kernels_in_fours.h" not in self.generated:
-            absent |= {*FOURS, "{name}_kernels_in_fours.h", "{name}_derivatives_in_fours.h"}
-        if not any(file in self.generated for file in PROGRAM):
-            absent |= {*PROGRAM}
-        if self.rows is None:
-            absent |= {*lanes.FILES, "{name}_lanes.c", "{name}_lanes.h"}
-        if not estimates_errors(names):
-            absent |= {*ERROR_FILES}
-        if not self.on_device:
-            absent |= {*device_files("{name}")}
-        if self.motion is None:
-            absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
-        if not self.derivatives:
-            absent |= {"{name}_derivatives.c", "{name}_derivatives_in_fours.h"}
-        if not self.stability:
-            absent |= {"{name}_stability.c", "{name}_stability.h", SECOND_VARIATION}
-        return absent
 
 
 def library_sources(
@@ -220,16 +189,16 @@ def library_sources(
         "default_iterations": budget.iterations,
         "default_continuation_steps": budget.steps,
         "budget_note": budget.note,
-        "file_rows": _file_rows(names, contents),
+        **contents.to_compile(names),
     }
     name = names.name
-    words |= {word: files.format(name=name) for word, files in contents.to_compile.items()}
-    files = rendered(words, contents.verbatim(names))
+    files = {} if contents.rows is None else dict(contents.rows.files)
     if contents.motion is not None:
         files[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
     if contents.on_device:
         files |= {file: render(f"device_batch.{file.rpartition('.')[2]}.in", words) for file in device_files(name)}
-    return {**files, **({} if contents.rows is None else contents.rows.files)}
+    beside = {*files, *contents.generated, *contents.beside, MANIFEST}
+    return files | rendered(words, contents.verbatim(names), beside=beside)
 
 
 def device_files(name: str) -> tuple[str, str]:
@@ -237,25 +206,32 @@ def device_files(name: str) -> tuple[str, str]:
     return f"{name}_batch.cu", f"{name}_batch.h"
 
 
-def rendered(words: dict[str, Any], verbatim: Iterable[str], templates: Sequence[str] = TEMPLATES) -> dict[str, str]:
+def rendered(
+    words: dict[str, Any],
+    verbatim: Iterable[str],
+    templates: Sequence[str] = TEMPLATES,
+    beside: Collection[str] = (),
+) -> dict[str, str]:
     """Files that every folder has, by name: header, source, configuration, demo, build file, README, and the solver.
 
     Args:
         words: of the templates.
         verbatim: files of the folder ``c`` that are written as they are.
         templates: of the first four.
+        beside: names of the other files of the folder, for the README.
     """
     header, source, config, demo = (render(template, words) for template in templates)
     name = words["name"]
-    return {
+    files = {
         f"{name}.h": header,
         f"{name}.c": source,
         f"{name}_config.h": config,
         f"{name}_demo.c": demo,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        "README.md": render("README.md.in", words),
         **{file: resource("c", file, on_device=bool(words.get("on_device"))) for file in verbatim},
     }
+    files["README.md"] = render("README.md.in", {**words, "file_rows": _file_rows(name, {*files, *beside})})
+    return files
 
 
 def title_words(
@@ -410,7 +386,21 @@ def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES
         names: what things are called.
         ranges: which ranges inputs have by what they are, and what the solver does beyond them.
     """
-    words = _words_of_inputs(input_entries(model), names)
+    entries = input_entries(model)
+    words: dict[str, Any] = vector_words(names, entries, "input")
+    axes = "Section axes turn with the rod."
+    if any(entry["shape"][1] > 1 for entry in entries):
+        axes = (
+            "Lists along the rod are Legendre coefficients in 2X − 1, all components of one degree after another, or "
+            "values at knots."
+        )
+    words |= {
+        "input_macros": words["input_macros"] or "/* This scene leaves none free. */",
+        "input_rows": words["input_rows"] or "| | none: everything is fixed | | |",
+        "input_words": " ".join(entry["name"] for entry in entries) or "none",
+        "input_defaults": words["input_defaults"] or "0",
+        "axes_note": axes,
+    }
     if model.inputs.size:
         lower, upper = ranges_of_inputs(model.scene, model.inputs)
         ends = {"lower": _ends(lower, names), "upper": _ends(upper, names)}
@@ -423,23 +413,6 @@ def _ends(values: FloatArray, names: Names) -> str:
     real = f"({names.name}_real)"
     infinite = {np.inf: f"{real}HUGE_VAL", -np.inf: f"-{real}HUGE_VAL"}
     return ", ".join(infinite.get(value) or initialiser(value, names) for value in values.tolist())
-
-
-def _words_of_inputs(entries: list[dict[str, Any]], names: Names) -> dict[str, Any]:
-    """What the templates say of inputs as they are in the manifest: macros, struct, table, default values."""
-    macros, rows, defaults = value_words(names, entries, INPUT)
-    polynomial = any(entry["shape"][1] > 1 for entry in entries)
-    return {
-        "input_macros": macros or "/* This scene leaves none free. */",
-        **input_struct_words(names, entries),
-        "input_rows": rows or "| | none: everything is fixed | | |",
-        "input_words": " ".join(entry["name"] for entry in entries) or "none",
-        "defaults": defaults or "0",
-        "axes_note": "Lists along the rod are Legendre coefficients in 2X − 1, all components of one degree after "
-        "another, or values at knots."
-        if polynomial
-        else "Section axes turn with the rod.",
-    }
 
 
 def _unknown_words(model: Model) -> dict[str, str]:
@@ -479,10 +452,10 @@ def _pose_words(names: Names) -> dict[str, Any]:
     return {"pose_owners": "each rod,\n   then each body: position, then quaternion"}
 
 
-def _file_rows(names: Names, contents: FolderContents) -> str:
-    absent = contents.absent(names)
-    roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
-    return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
+def _file_rows(name: str, files: Collection[str]) -> str:
+    """What each file of a folder is for, as rows of the README."""
+    roles = {file.format(name=name): role for file, role in ROLES.items()}
+    return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items() if file in files)
 
 
 def accuracy_words(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, str]:

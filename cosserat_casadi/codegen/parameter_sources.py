@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.manifest import parameter_entries
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.structs import PARAMETER, parameter_struct_words, value_words
+from cosserat_casadi.codegen.structs import vector_words
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
@@ -56,14 +54,14 @@ def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *
             "solver_inputs": f"{names.macro}_INPUTS",
             "pose_derivatives": _listed_lines(functions),
         }
-    entries = parameter_entries(model)
     adapters = [f"derivatives_of_{function}" for function in functions]
     rendered = [
         render("pose_adapter.c.in", {**basics, "adapter": adapter, "function": function})
         for adapter, function in zip(adapters, functions, strict=True)
     ]
     return {
-        **_described(entries, names),
+        "parameter_count": model.parameters.size,
+        **vector_words(names, parameter_entries(model), "parameter"),
         **_arguments(names),
         "with_parameters": True,
         "solves_tangent": True,
@@ -89,10 +87,10 @@ def contact_parameter_words(model: Model, names: Names) -> Words:
     if not model.parameters.size:
         empty = ("parameters", "poses_by_parameters", "contacts_by_parameters", "passed", "no_derivatives")
         return {**dict.fromkeys(empty, ""), "solver_inputs": f"{names.macro}_INPUTS"}
-    entries = parameter_entries(model)
     real = f"{names.name}_real"
     return {
-        **_described(entries, names),
+        "parameter_count": model.parameters.size,
+        **vector_words(names, parameter_entries(model), "parameter"),
         "with_parameters": True,
         "parameters": f"const {real} *parameters, ",
         "poses_by_parameters": f"{real} *d_poses_d_parameters, ",
@@ -118,18 +116,6 @@ def _arguments(names: Names) -> Words:
         "parameters_in_source": ", const real *parameters",
         "given_of_row": "stack(inputs + (size_t)i * OWN_INPUTS, parameters + (size_t)i * PARAMETERS, work->stacked)",
         "parameters_in_readme": f", const {real} *parameters",
-    }
-
-
-def _described(entries: list[dict[str, Any]], names: Names) -> Words:
-    """Macros, defaults, rows of the README, and the struct."""
-    macros, rows, defaults = value_words(names, entries, PARAMETER)
-    return {
-        "parameter_count": sum(len(entry["value"]) for entry in entries),
-        "parameter_macros": macros,
-        "parameter_rows": rows,
-        "parameter_defaults": defaults,
-        **parameter_struct_words(names, entries),
     }
 
 

@@ -9,54 +9,46 @@ import numpy as np
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.model.build import Model
 
-INPUT = "INPUT"
-"""Word in macros of inputs."""
 
-PARAMETER = "PARAMETER"
-"""Word in macros of parameters."""
-
-
-def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
-    """Words of the struct of inputs.
+def vector_words(names: Names, entries: list[dict[str, Any]], word: str) -> dict[str, str]:
+    """Words of a vector: macros and rows of the README, default values, members of its struct, copies from it and back.
 
     Args:
         names: what things are called.
-        entries: inputs as in the manifest.
+        entries: inputs or parameters as in the manifest.
+        word: "input" or "parameter", with which these words begin.
     """
-    members, pack, unpack = _struct_lines(names, entries, "inputs", INPUT)
-    return {"input_members": members, "pack_lines": pack, "unpack_lines": unpack}
-
-
-def parameter_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
-    """Words of the struct of parameters.
-
-    Args:
-        names: what things are called.
-        entries: parameters as in the manifest.
-    """
-    members, pack, unpack = _struct_lines(names, entries, "parameters", PARAMETER)
-    return {"parameter_struct": members, "parameter_pack_lines": pack, "parameter_unpack_lines": unpack}
-
-
-def _struct_lines(names: Names, entries: list[dict[str, Any]], vector: str, word: str) -> tuple[str, str, str]:
-    """Lines of the members of a struct, and of the copies from it into a vector and back.
-
-    Args:
-        names: what things are called.
-        entries: parts of the vector as in the manifest.
-        vector: name of the vector in C.
-        word: in the macros of its parts.
-    """
+    macros = list[str]()
+    rows = list[str]()
+    values = list[str]()
     members = list[str]()
     pack = list[str]()
     unpack = list[str]()
     for entry in entries:
         member = identifier(entry["name"])
-        macro = _macro(names, word, entry["name"])
-        members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
-        pack.append(f"  memcpy({vector} + {macro}, named->{member}, sizeof named->{member});")
-        unpack.append(f"  memcpy(named->{member}, {vector} + {macro}, sizeof named->{member});")
-    return "\n".join(members), "\n".join(pack), "\n".join(unpack)
+        macro = f"{names.macro}_{word.upper()}_{member.upper()}"
+        first = entry["first"]
+        count = len(entry["value"])
+        unit = entry["unit"]
+        axes = "" if entry.get("axes", "none") == "none" else f", {entry['axes']} axes"
+        remark = axes if word == "input" else f": {entry['name']}"
+        numbered = "1 number" if count == 1 else f"{count} numbers"
+        span = f"{first} … {first + count - 1}" if count > 1 else f"{first}"
+        macros.append(f"#define {macro} {first} /* {numbered}, {unit}{remark} */")
+        macros.append(f"#define {macro}_SIZE {count}")
+        rows.append(f"| {span} | `{entry['name']}`{axes} | {unit} | {listed(entry['value'])} |")
+        values += [initialiser(value, names) for value in entry["value"]]
+        members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {unit} */")
+        pack.append(f"  memcpy({word}s + {macro}, named->{member}, sizeof named->{member});")
+        unpack.append(f"  memcpy(named->{member}, {word}s + {macro}, sizeof named->{member});")
+    return {
+        f"{word}_macros": "\n".join(macros),
+        f"{word}_rows": "\n".join(rows),
+        f"{word}_defaults": ", ".join(values),
+        f"{word}_members": "\n".join(members),
+        f"{word}_pack_lines": "\n".join(pack),
+        f"{word}_unpack_lines": "\n".join(unpack),
+    }
 
 
 def result_struct_words(model: Model, names: Names) -> dict[str, str]:
@@ -88,38 +80,6 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
         "evaluate_lines": "\n".join(calls),
         "pose_macros": "\n".join(macros),
     }
-
-
-def value_words(names: Names, entries: list[dict[str, Any]], word: str) -> tuple[str, str, str]:
-    """Lines with the macros of inputs or parameters, rows of the README, and their default values.
-
-    Args:
-        names: what things are called.
-        entries: inputs or parameters as in the manifest.
-        word: in their macros.
-    """
-    macros = list[str]()
-    rows = list[str]()
-    values = list[float]()
-    for entry in entries:
-        macro = _macro(names, word, entry["name"])
-        first = entry["first"]
-        count = len(entry["value"])
-        unit = entry["unit"]
-        axes = "" if entry.get("axes", "none") == "none" else f", {entry['axes']} axes"
-        remark = axes if word == INPUT else f": {entry['name']}"
-        numbered = "1 number" if count == 1 else f"{count} numbers"
-        macros.append(f"#define {macro} {first} /* {numbered}, {unit}{remark} */")
-        macros.append(f"#define {macro}_SIZE {count}")
-        span = f"{first} … {first + count - 1}" if count > 1 else f"{first}"
-        rows.append(f"| {span} | `{entry['name']}`{axes} | {unit} | {listed(entry['value'])} |")
-        values += entry["value"]
-    return "\n".join(macros), "\n".join(rows), ", ".join(initialiser(value, names) for value in values)
-
-
-def _macro(names: Names, word: str, name: str) -> str:
-    """Macro of the first entry of an input or of a parameter."""
-    return f"{names.macro}_{word}_{identifier(name).upper()}"
 
 
 def listed(values: list[float]) -> str:
