@@ -7,6 +7,7 @@ import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -17,10 +18,10 @@ from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.lanes import in_lanes, lanes_files
 from cosserat_casadi.codegen.library import FolderContents, library_sources
-from cosserat_casadi.codegen.names import Names, model_names
+from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
-from cosserat_casadi.codegen.texts import files_in_c, fill, render
+from cosserat_casadi.codegen.texts import files_in_c, render
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -54,27 +55,6 @@ BODY_CONTACT = ("contacts", "force.x", "force.y", "force.z")
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
-
-STABILITY_IN_ROWS = {
-    "stability_header": '#include "@{name}_stability.h"\n',
-    "stability_member": "  @{name}_stability_workspace stability;\n",
-    "stability_call": """
-  @{name}_stability_info found;
-  if (@{name}_stability(given@{passed}, x, &room->workspace, &room->stability, &found) != @{MACRO}_CONVERGED) return;
-  row[@{column}] = found.smallest_eigenvalue;
-  row[@{next}] = found.verdict == @{MACRO}_STABLE || found.verdict == @{MACRO}_NEUTRAL;""",
-}
-"""What is added to the function for rows where it judges stability."""
-
-PARAMETERS_IN_ROWS = {
-    "parameters": ", const @{name}_real *parameters",
-    "all_parameters": ", const @{name}_real *all_parameters",
-    "parameter_rows": ", all_parameters (PARAMETERS x count)",
-    "chunk_of_parameters": "    const @{name}_real *own = all_parameters + (size_t)first * @{MACRO}_PARAMETERS;\n",
-    "passed_chunk": ", own",
-    "passed_row": ", own + (size_t)i * @{MACRO}_PARAMETERS",
-}
-"""What is added to the function for rows where the scene names parameters."""
 
 _LOCK = threading.Lock()
 
@@ -160,7 +140,7 @@ def _row_texts(model: Model, columns: tuple[str, ...], *, stability: bool, lanes
         **library_sources(model, names, FolderContents(generated, parts, rows=side_by_side)),
         **(stability_sources(model, names) if stability else {}),
         **generated,
-        f"{NAME}_rows.c": _rows_source(model, names, columns, lanes=side_by_side is not None),
+        f"{NAME}_rows.c": _rows_source(model, columns, lanes=side_by_side is not None),
     }
     return dict(to_compile(files))
 
@@ -199,34 +179,29 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     return member.effort, member.conjugate
 
 
-def _rows_source(model: Model, names: Names, columns: tuple[str, ...], *, lanes: bool) -> str:
-    tips = [names.function("tip", rod) for rod in names.rods]
-    bodies = [names.function("body", body) for body in names.bodies]
-    passed = ", parameters" if model.parameters.size else ""
-    lines = list[str]()
-    column = len(JUDGED)
-    for function in (*tips, *bodies):
-        lines.append(f"  {function}(x, given{passed}, row + {column}, row + {column + 3});")
-        column += len(POSE)
-    for actuator in names.actuators:
-        function = names.function("actuator", actuator)
-        lines.append(f"  {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
-        column += 2
-    estimate = ERRORS[0]
-    if estimate in columns:
-        lines.append(f"  row[{columns.index(estimate)}] = end->error_estimate;")
-    words = {"name": names.name, "MACRO": names.macro, "results": str(len(columns)), "calls": "\n".join(lines)}
-    words |= {"passed": passed, **dict.fromkeys(PARAMETERS_IN_ROWS, "")}
-    words["batch_workspace"] = f"{names.name}_batch_workspace" if lanes else f"{names.name}_workspace"
-    if passed:
-        words |= {key: fill(text, words) for key, text in PARAMETERS_IN_ROWS.items()}
-    in_rows = dict.fromkeys(STABILITY_IN_ROWS, "")
-    if STABILITY[0] in columns:
-        column = columns.index(STABILITY[0])
-        in_rows = {
-            key: fill(text, {**words, "column": column, "next": column + 1}) for key, text in STABILITY_IN_ROWS.items()
-        }
-    return render("rows.c.in", {**words, **in_rows})
+def _rows_source(model: Model, columns: tuple[str, ...], *, lanes: bool) -> str:
+    """The function for rows."""
+    words = {
+        "name": NAME,
+        "MACRO": NAME.upper(),
+        "results": len(columns),
+        "passed": ", parameters" if model.parameters.size else "",
+        "with_parameters": model.parameters.size > 0,
+        "batch_workspace": f"{NAME}_batch_workspace" if lanes else f"{NAME}_workspace",
+        **judged_words(columns),
+    }
+    return render("rows.c.in", words)
+
+
+def judged_words(columns: tuple[str, ...]) -> dict[str, Any]:
+    """Words for the columns of errors and of stability, which a row may have."""
+    tells_errors, tells_stability = ERRORS[0] in columns, STABILITY[0] in columns
+    return {
+        "estimates_errors": tells_errors,
+        "estimate": columns.index(ERRORS[0]) if tells_errors else 0,
+        "stability": tells_stability,
+        "verdict": columns.index(STABILITY[0]) if tells_stability else 0,
+    }
 
 
 def loaded(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:

@@ -8,12 +8,11 @@ from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.rows import (
     CONTACT,
-    ERRORS,
     JUDGED,
     NAME,
     POSE,
-    STABILITY,
     RowLibrary,
+    judged_words,
     row_results,
     to_compile,
 )
@@ -57,7 +56,6 @@ def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
     touching = list(pairs(chosen.scene))
     entries = [f"{{{rods.index(rod)}, {obstacles.index(obstacle.name)}}}" for rod, obstacle in touching]
     first_pair = columns.index(f"{touching[0][0]}.{touching[0][1].name}.{CONTACT[0]}")
-    estimate = ERRORS[0]
     words = {
         "name": names.name,
         "MACRO": names.macro,
@@ -69,10 +67,7 @@ def _rows_source(chosen: Chosen, names: Names, columns: tuple[str, ...]) -> str:
         "of_pair": len(CONTACT),
         "pairs": len(touching),
         "pair_entries": ", ".join(entries),
-        "estimates_errors": int(estimate in columns),
-        "estimate": columns.index(estimate) if estimate in columns else 0,
         "with_parameters": chosen.parameters.size > 0,
-        "stability": chosen.judges_stability,
-        "verdict": columns.index(STABILITY[0]) if chosen.judges_stability else 0,
+        **judged_words(columns),
     }
     return render("contact_rows.c.in", words)
