@@ -42,9 +42,6 @@ from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSetting
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
-SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
-"""Limits of the solver in float: its rounding is 1e-7 of the largest term."""
-
 SHARED = (
     "solver.h",
     "solver_newton.c",
@@ -374,7 +371,6 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
         "default_continuation_steps": ALWAYS.steps,
         "settling_iterations": SETTLING_ITERATIONS,
         "settling_residuals": SETTLING_ITERATIONS + 2,
-        **SINGLE,
     }
 
 

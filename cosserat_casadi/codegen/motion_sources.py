@@ -38,14 +38,6 @@ STEP_ITERATIONS, MOST_STEP_ITERATIONS = 12, 20
 STEP_PARTS, MOST_STEP_PARTS = 8, 32
 """Parts that a step may be cut into: where the caller names none, and at most."""
 
-SINGLE = {
-    "single_step_tolerance": "1e-5",
-    "single_stage_rounding": "2e-6",
-    "single_stage_singular": "1e-7",
-    "single_massless": "1e-5",
-}
-"""Limits of a step in float."""
-
 STAGES = 2
 """Stages of the method, which step.c is written for."""
 
@@ -128,7 +120,6 @@ def _limits() -> Words:
         "diverging": stage_newton.DIVERGING,
         "massless": consistent_start.RANK,
         "closed": CONSISTENT,
-        **SINGLE,
     }
 
 

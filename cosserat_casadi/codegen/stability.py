@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.library import SECOND_VARIATION, SINGLE
+from cosserat_casadi.codegen.library import SECOND_VARIATION
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.judge import ASIDE
@@ -62,7 +62,6 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
         "roots": numbers(roots.tolist()),
         **limits_of_stability(model),
         "tolerance": ContinuationSettings().newton.tolerance,
-        "single_tolerance": SINGLE["single_tolerance"],
         **_parameter_words(model, names),
     }
     source, header, algorithm = stability_files(names.name)

@@ -83,39 +83,6 @@ TRACK_ITERATIONS, TRACK_PARTS = 60, 20
 LONGEST_WAY = 0.1
 """Farthest that a section may move in one part of the way of the inputs, relative to the length of its rod."""
 
-SINGULAR = 1e-14
-"""Pivot, relative to the largest entry of its column, that is zero: a short line of contact has small ones."""
-
-MIN_STEP = 1e-4
-"""Shortest part of the way of the inputs."""
-
-FASTEST = 1.5
-"""How fast a gap may change along a rod, over that of X: what it stretches and tapers."""
-
-CLOSEST = 1.0 / 800.0
-"""Least step along a rod from section to section that is held against obstacles: of the dense sections of gaps.py."""
-
-BESIDE_END = 1e-4
-"""The same beside an end of an element, where a rod that lies on starts to enter."""
-
-FARTHEST = 1.0 / 32.0
-"""Longest such step."""
-
-LOOKED_ALONG = 1e-2
-"""Such a step along a line of contact, whose depth tells whether polynomials follow the obstacle."""
-
-GOLDEN_SECTIONS = 24
-"""Golden sections to where a gap is least between three sections."""
-
-STRIDE = 1e-3
-"""Way of a section between two looks on the way of a step, relative to the length of the rod."""
-
-MOST_LOOKS = 400
-"""Most such looks."""
-
-SHORTER = 0.7
-"""Share of a line of contact that stays where a rod curls up, as in contact_search.py."""
-
 
 def contact_files(
     model: Model,
@@ -268,27 +235,16 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "iterations": settings.iterations,
         "halvings": halvings,
         "most_residuals": halvings + 1,
-        "singular": SINGULAR,
         "max_reuses": newton.MAX_REUSES,
         "reuse_decrease": newton.REUSE_DECREASE,
         "accepted": chosen.tolerance,
         "shortest_element": contact_state.SHORTEST,
         "longest_way": LONGEST_WAY,
-        "min_step": MIN_STEP,
-        "stride": STRIDE,
-        "most_looks": MOST_LOOKS,
         "deep": passing_through.DEEP,
         "vanished": VANISHED,
-        "fastest": FASTEST,
-        "closest": CLOSEST,
-        "beside_end": BESIDE_END,
-        "farthest": FARTHEST,
-        "looked_along": LOOKED_ALONG,
-        "golden_sections": GOLDEN_SECTIONS,
         "near": contact_alternatives.NEAR,
         "at_tip": contact_search.AT_TIP,
         "lies_from": contact_alternatives.LIES_FROM,
-        "shorter": SHORTER,
         "alike": contact_search.ALIKE,
         "fit": contact_equations.FIT,
         "samples": len(contact_search.SAMPLES) - 1,
