@@ -149,11 +149,13 @@ def actuators_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> boo
         member = EFFECTS[actuator.kind]
         # Inputs that are zero leave no entry: a direction of friction that is zero rubs nowhere.
         numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values[actuator.name].items()}
-        without_effort = not member.prescribes_conjugate(actuator) and not numbers[member.effort].nnz()
+        if not member.prescribes_conjugate(actuator) and not numbers[member.effort].nnz():
+            # Without effort it does no work.
+            continue
         rod = discrete.rods[actuator.rod]
         quantity = member.worked_on(actuator, rod.grid, numbers)
         unloaded = shape(rod, ca.DM.zeros(rod.size))
-        if not without_effort and not quantity.on(unloaded).conservative:
+        if not quantity.on(unloaded).conservative:
             return False
     return True
 

@@ -90,11 +90,35 @@ class Piece:
     def at(self, t: float) -> InputState:
         """The inputs at a time; at start and end their limits from within, beyond them as they would go on."""
         # Every stage of a step asks for them.
+        if self._polynomial is not None:
+            s = t - self.start
+            return InputState(*(np.array([1.0, s, s**2, s**3]) @ self._polynomial).reshape(3, -1))
         orders = np.zeros((3, len(self._constant)))
         orders[0] = self._constant
         for span, path in self._paths:
             orders[:, span] += path.at(t)
         return InputState(*orders)
+
+    @cached_property
+    def _polynomial(self) -> FloatArray | None:
+        """Coefficients of values, rates and accelerations of all inputs, shape (4, 3 inputs), in powers of t − start.
+
+        None where an input is no cubic polynomial in the whole piece.
+        """
+        if not np.isfinite(self.start):
+            return None
+        values = np.zeros((4, len(self._constant)))
+        values[0] = self._constant
+        for span, path in self._paths:
+            coefficients = path.coefficients_about(self.start)
+            if coefficients is None:
+                return None
+            values[:, span] += coefficients
+        rates = np.zeros_like(values)
+        accelerations = np.zeros_like(values)
+        rates[:-1] = np.array([[1.0], [2.0], [3.0]]) * values[1:]
+        accelerations[:-2] = np.array([[2.0], [6.0]]) * values[2:]
+        return np.concatenate([values, rates, accelerations], axis=1)
 
     @cached_property
     def remembered(self) -> Callable[[float], InputState]:
@@ -228,6 +252,10 @@ class _Path(ABC):
     def values_at(self, times: FloatArray) -> FloatArray:
         """Values at T times, shape (T, entries)."""
 
+    def coefficients_about(self, origin: float) -> FloatArray | None:
+        """Coefficients of 1, s, s², s³ with s = t − origin, shape (4, entries); None where it is no such polynomial."""
+        return None
+
 
 @dataclass(frozen=True)
 class _Wave(_Path):
@@ -304,6 +332,20 @@ class _Table(_Path):
         # Value, rate and acceleration of 1, s, s², s³.
         powers = np.array([[1.0, s, s**2, s**3], [0.0, 1.0, 2.0 * s, 3.0 * s**2], [0.0, 0.0, 2.0, 6.0 * s]])
         return np.asarray(powers @ self.coefficients[segment])
+
+    def coefficients_about(self, origin: float) -> FloatArray | None:
+        if self.first != self.last:
+            return None
+        moved = origin - self.origins[self.first]
+        constant, linear, quadratic, cubic = self.coefficients[self.first]
+        return np.array(
+            [
+                constant + moved * (linear + moved * (quadratic + moved * cubic)),
+                linear + moved * (2.0 * quadratic + moved * 3.0 * cubic),
+                quadratic + moved * 3.0 * cubic,
+                cubic,
+            ]
+        )
 
     def values_at(self, times: FloatArray) -> FloatArray:
         segments = np.clip(np.searchsorted(self.knots, times, side="right"), self.first, self.last)
