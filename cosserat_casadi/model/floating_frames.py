@@ -164,7 +164,7 @@ class UnloadedScene:
         for joint in self.scene.joints:
             # The base is where the body is, but where the body is said by such bases alone.
             if joint.rod == rod and joint.holds_base and joint.body is not None and self._placing_joints(joint.body):
-                return self.body_frame(joint.body).start.then(place_of(joint))
+                return _turned(self.body_frame(joint.body).start.then(place_of(joint)), joint, record)
         own = NumericPose(*base_pose(record))
         carrier = record.base.rod
         if carrier is None:
@@ -407,6 +407,29 @@ class UnloadedScene:
         rotation = _nearest_rotation(correlation)
         position = mean_point - rotation @ mean_arm
         return NumericPose(position, matrix_to_quaternion(rotation))
+
+
+def _turned(closed: NumericPose, joint: scenes.Joint, rod: scenes.Rod) -> NumericPose:
+    """The base of a rod on a body, turned to where the rod says that it begins as far as the joint leaves that free.
+
+    Args:
+        closed: the base with the axes of the joint, world pose.
+        joint: it.
+        rod: whose base it is; one that says no orientation keeps that of the body.
+    """
+    kind = JOINT_KINDS[joint.kind]
+    if rod.base == scenes.Base() or kind.coordinate(joint, np.eye(3)) is not None:
+        return closed
+    held = kind.directions(joint).rotations
+    wanted = closed.inverse.then(NumericPose(*base_pose(rod))).quaternion
+    if held.shape[1] == 2:
+        axis = np.cross(held[:, 0], held[:, 1])
+        wanted = np.concatenate([wanted[:1], axis * (axis @ wanted[1:])])
+    length = np.linalg.norm(wanted)
+    # Half a turn across the axis leaves no turn about it nearer than others.
+    if held.shape[1] > 2 or length < FLAT:
+        return closed
+    return closed.then(NumericPose(np.zeros(3), wanted / length))
 
 
 def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted: bool = False) -> bool:

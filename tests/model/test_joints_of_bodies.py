@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import SceneError, build, export, load, modes_of, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
@@ -333,3 +334,61 @@ def test_bodies_that_hold_each_other_alone_are_refused() -> None:
         SceneError, match="nobody holds the body 'upper': its joints lead to no rod and not to the world"
     ):
         scene_from_dict(tables)
+
+
+def on_an_arm(joint: dict[str, Any], **base: Any) -> dict[str, Any]:
+    """A rod on a body that is held in the world."""
+    held = hinge({"world": True, "position": [0, 0, 0]}, {"body": "arm"}, name="crank", angle=0.0)
+    carried = {**joint, "between": [{"body": "arm", "position": [CRANK, 0, 0]}, {"rod": "a", "at": 0.0}]}
+    arm = {"name": "arm", "mass": 0.2, "inertia": [1e-3, 1e-3, 1e-3]}
+    return scene([link("a", base=base)], [held, carried], bodies=[arm])
+
+
+@pytest.mark.parametrize(
+    ("joint", "direction"),
+    [
+        ({"kind": "revolute", "axis": Y}, [0.6, 0.0, 0.8]),
+        ({"kind": "spherical"}, [0.6, 0.0, 0.8]),
+        ({"kind": "fixed"}, [0.0, 0.0, 1.0]),
+        ({"kind": "revolute", "axis": [1, 0, 0]}, [0.0, 0.0, 1.0]),
+        ({"kind": "revolute", "axis": Y, "stiffness": 0.1}, [0.0, 0.0, 1.0]),
+    ],
+)
+def test_a_rod_on_a_body_starts_as_its_base_points_where_its_joint_turns_freely(
+    joint: dict[str, Any], direction: list[float]
+) -> None:
+    discrete = build(scene_from_dict(on_an_arm(joint, tangent=[0.6, 0.0, 0.8]))).discrete
+    tip = discrete.unloaded.section("a", 1.0).position
+    length = discrete.records["a"].length
+    assert_allclose(tip, np.array([CRANK, 0.0, 0.0]) + length * np.array(direction), rtol=1e-14, atol=1e-14)
+
+
+def test_the_start_of_a_hinged_rod_is_the_turn_nearest_to_its_base() -> None:
+    wanted = np.array([0.5, -0.1, 0.7, 0.2])
+    wanted /= np.linalg.norm(wanted)
+    asked = Rotation.from_quat(np.roll(wanted, -1)).as_matrix()
+    hinged = on_an_arm({"kind": "revolute", "axis": Y}, quaternion=wanted.tolist())
+    turned = build(scene_from_dict(hinged)).discrete.unloaded.base("a").rotation
+    angles = np.linspace(-np.pi, np.pi, 100_001)
+    traces = np.cos(angles) * (asked[0, 0] + asked[2, 2]) + np.sin(angles) * (asked[0, 2] - asked[2, 0])
+    nearest = angles[np.argmax(traces)]
+    sine, cosine = np.sin(nearest), np.cos(nearest)
+    about_y = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+    assert_allclose(turned, about_y, rtol=0.0, atol=1e-4)
+
+
+def test_a_loop_that_is_closed_unloaded_and_bears_nothing_takes_no_step() -> None:
+    tables = on_an_arm({"kind": "revolute", "axis": Y}, tangent=[1, 0, 0])
+    slide = {"kind": "prismatic", "axis": [1, 0, 0], "between": [{"world": True}, {"body": "slider"}]}
+    slide["between"][0]["position"] = [CRANK + tables["rods"][0]["length"], 0, 0]
+    tables["joints"] += [hinge({"rod": "a"}, {"body": "slider"}), slide]
+    tables["bodies"] += [{"name": "slider", "mass": 0.2, "inertia": [1e-3, 1e-3, 1e-3]}]
+    push = {"name": "push", "kind": "body_wrench", "body": "slider", "force": [0, 0, 0]}
+    model = build(scene_from_dict({**tables, "loads": [push]}))
+    resting = solve(model)
+    assert resting.converged
+    assert resting.iterations == 0
+    pushed = solve(model, {"push.force": [-1e-6, 0.0, 0.0]})
+    assert pushed.converged
+    assert pushed.iterations > 0
+    assert np.linalg.norm(pushed.x - resting.x) > 0.0
