@@ -372,23 +372,24 @@ class CompiledSteps:
         """Give the run its new steps, and the memory for a next one."""
         run, record = self._run, self._record
         now = run.now
-        for fact, end, unknowns in zip(facts.tolist(), ends, stages, strict=False):
-            time, size, error, iterations, residual, contraction, wanted = fact
-            arrived = Instant(time, *end)
+        method, differential = run.method, run.equations.differential
+        # A motion has thousands of steps: rows are taken apart all at once.
+        rows = zip(facts.tolist(), ends[:, 0], ends[:, 1], ends[:, 2], stages, strict=False)
+        for (time, size, error, iterations, residual, contraction, wanted), x, v, a, unknowns in rows:
             step = TimeStep(
-                method=run.method,
-                differential=run.equations.differential,
+                method=method,
+                differential=differential,
                 start=now,
                 size=size,
                 unknowns=unknowns,
-                end=arrived,
+                end=Instant(time, x, v, a),
                 error=error,
                 iterations=int(iterations),
                 residual=residual,
                 contraction=contraction,
             )
             run.add(step)
-            now = run.now
+            now = run.steps[-1].end
         if not len(facts):
             return
         run.longest = record.longest
