@@ -51,6 +51,11 @@ class Value:
             return self
         return self.projected(ca.Sparsity.dense(*self.pattern.shape))
 
+    def part(self, rows: Numbers, columns: Numbers) -> Value:
+        """The entries of some rows and columns, as a dense matrix."""
+        entries = self.dense.numbers.reshape(self.pattern.shape, order="F")[np.ix_(rows, columns)]
+        return Value(ca.Sparsity.dense(*entries.shape), entries.ravel(order="F"))
+
     @property
     def _matrix(self) -> ca.DM:
         return ca.DM(self.pattern, self.numbers.astype(np.float64))

@@ -250,6 +250,25 @@ def test_products_of_sparse_matrices() -> None:
     assert_same(compiled, function, 1e-14)
 
 
+def test_constant_matrices_are_multiplied_block_by_block() -> None:
+    """The blocks lie apart in rows and columns, and one row and one column are zero; small blocks are not worth it."""
+    rng = np.random.default_rng(6)
+    matrix = np.zeros((181, 37))
+    for first in range(3):
+        matrix[first:180:3, first:36:3] = rng.uniform(-1, 1, (60, 12))
+    x, z = ca.MX.sym("x", 37), ca.MX.sym("z", 4, 181)
+    function = ca.Function("blocks", [x, z], [ca.DM(matrix) @ x, z @ ca.DM(matrix)])
+    texts, compiled = in_c(function, "blocks_in_c")
+    assert texts["blocks_in_c.c"].count("  product_dense_alone_60(") == 3
+    assert "product_dense_alone_181(" not in texts["blocks_in_c.c"]
+    assert_same(compiled, function, 1e-14)
+    small = ca.sparsify(ca.DM(np.kron(np.eye(6), rng.uniform(-1, 1, (4, 4)))))
+    y = ca.MX.sym("y", 24, 5)
+    texts, compiled = in_c(ca.Function("whole", [y], [small @ y]), "whole_in_c")
+    assert texts["whole_in_c.c"].count("  product_") == 1
+    assert_same(compiled, ca.Function("whole", [y], [small @ y]), 1e-14)
+
+
 def test_columns_of_sparse_matrices_are_read_in_groups() -> None:
     """Columns with equal rows, rows that move down or up by equal steps, no rows, and columns alone."""
     of_columns = [[0, 4], [2, 6], [4, 8], [7, 9], [5, 7], [3, 5], [], [], [1, 2, 9], [1, 2, 9], [1, 9], [0, 9], [3]]
