@@ -6,6 +6,7 @@ by their depth; here the straight way between them is. So it is with rods that p
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import isfinite
@@ -32,6 +33,9 @@ from cosserat_casadi.numerics.continuation import Path, PathPoint
 
 EVERY = 2
 """Sections of rods that touch rods of which one is looked at."""
+
+ROUGHLY = 8
+"""Sections of which one is looked at where many states follow each other: rods are nearly straight between them."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +83,7 @@ class SmoothBarriers:
             properties = self.model.discrete.rods[rod].properties
             start = at_start._looked_at[rod].positions(obstacle, before, inputs[0])
             end = self._looked_at[rod].positions(obstacle, after, inputs[1])
-            assert obstacle.width is not None
-            allowed = DEEP + obstacle.width / properties.length
-            if is_inside_between(obstacle, properties, start, end, allowed):
+            if is_inside_between(obstacle, properties, start, end, _allowed(obstacle, properties.length)):
                 return True
         for layer in self.watched_bodies:
             way = (at_start._place(layer, before, inputs[0]), self._place(layer, after, inputs[1]))
@@ -90,7 +92,7 @@ class SmoothBarriers:
         return self.rods_pass(before, after, inputs, earlier)
 
     def _is_inside_between(self, layer: ContactLayer, start: FloatArray, end: FloatArray) -> bool:
-        """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between two positions."""
+        """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between positions."""
         discrete = self.model.discrete
         if layer.body is not None:
             length = discrete.body_frame(layer.body).length
@@ -98,8 +100,7 @@ class SmoothBarriers:
             assert layer.rod is not None, "a layer of no body is of a rod"
             length = discrete.rods[layer.rod].properties.length
         radius = min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius
-        assert layer.obstacle.width is not None
-        allowed = DEEP + layer.obstacle.width / length
+        allowed = _allowed(layer.obstacle, length)
         return ball_is_inside_between(layer.obstacle, radius, length, start, end, allowed)
 
     def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
@@ -110,6 +111,33 @@ class SmoothBarriers:
         assert layer.rod is not None, "a layer of no body is of a rod"
         along = self._looked_at[layer.rod].positions(layer.obstacle, x, inputs)
         return np.array([np.interp(layer.at, SECTIONS, axis) for axis in along.T])
+
+    def passages(self, x: FloatArray, inputs: FloatArray) -> Iterator[int]:
+        """Numbers of the states from which the straight way to the next one is barred, as :meth:`are_between` has it.
+
+        Args:
+            x: unknowns of states in their order, shape (k, model.size).
+            inputs: stacked inputs, shape (k, inputs).
+        """
+        if not (self.model.discrete.pairs or self._somewhere_inside(x, inputs)):
+            return
+        for row in range(len(x) - 1):
+            if self.are_between(x[row], x[row + 1], (inputs[row], inputs[row + 1])):
+                yield row
+
+    def _somewhere_inside(self, x: FloatArray, inputs: FloatArray) -> bool:
+        """Whether a rod or body is deep inside an obstacle on the straight ways from state to state."""
+        for rod, obstacle in self.watched:
+            properties = self.model.discrete.rods[rod].properties
+            paths = self._looked_at[rod].paths(obstacle, x, inputs, ROUGHLY)
+            way = (paths[:-1], paths[1:])
+            if is_inside_between(obstacle, properties, *way, _allowed(obstacle, properties.length), ROUGHLY):
+                return True
+        for layer in self.watched_bodies:
+            path = np.array([self._place(layer, *state) for state in zip(x, inputs, strict=True)])
+            if self._is_inside_between(layer, path[:-1], path[1:]):
+                return True
+        return False
 
     def rods_pass(
         self,
@@ -151,6 +179,12 @@ class SmoothBarriers:
     def _looked_at(self) -> dict[str, LookedAt]:
         of_disks = {layer.rod for layer in self.watched_bodies if layer.rod is not None}
         return {rod: LookedAt(self.model, rod) for rod in {rod for rod, _ in self.watched} | of_disks}
+
+
+def _allowed(obstacle: scenes.ObstacleRecord, length: float) -> float:
+    """Depth inside a smooth obstacle that is not deep, relative to the length."""
+    assert obstacle.width is not None
+    return DEEP + obstacle.width / length
 
 
 def past_no_obstacle(

@@ -20,6 +20,13 @@ THINNEST = 1e-3
 """Least half of the thickness of an obstacle and radius of a section together, over the length of the rod."""
 
 
+MOST_ENDS = 400
+"""Ends of steps at which rods are looked at, at most: of more steps every second, third, …"""
+
+CLOSER = 17
+"""Times that are looked at between two others."""
+
+
 def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     """Problems of a scene with exact contact in motion: settings and members that are refused beside it."""
     if simulation.integrator == "gauss":
@@ -77,16 +84,22 @@ def too_deep(history: History, duration: float) -> str:
 
 
 def told_passage(history: History, duration: float) -> str:
-    """A sentence on rods that pass through each other between two times that are watched; else nothing."""
-    if not history.model.discrete.pairs:
-        return ""
-    times, x, inputs = watched_states(history, duration)
+    """A sentence on rods that pass through smooth bars, balls or each other; else nothing.
+
+    The straight ways between times that are watched and ends of steps are looked at; where one is barred, those between
+    times that are closer.
+    """
     barriers = SmoothBarriers(history.model)
-    for row in range(len(times) - 1):
-        if barriers.rods_pass(x[row], x[row + 1], (inputs[row], inputs[row + 1])):
+    if not barriers.any:
+        return ""
+    ends = [step.end.time for _, step in history.steps]
+    times = np.union1d(watched_states(history, duration).times, ends[:: 1 + len(ends) // MOST_ENDS])
+    for row in barriers.passages(*history.rough_positions(times)):
+        closer = np.linspace(times[row], times[row + 1], CLOSER)
+        if any(True for _ in barriers.passages(*history.rough_positions(closer))):
             return (
-                f"Between t = {times[row]:.6g} and {times[row + 1]:.6g} s rods pass through each other: give their "
-                "contact more width or stiffness, or take shorter steps."
+                f"Between t = {times[row]:.6g} and {times[row + 1]:.6g} s a rod or a body passes through an obstacle "
+                "or a rod, or is deep inside: give their contact more width or stiffness, or take shorter steps."
             )
     return ""
 

@@ -28,6 +28,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     seen_sections,
 )
 from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
@@ -67,6 +68,15 @@ class LookedAt:
         """
         at_nodes = self.model.fields[self.rod](x, inputs)[0].full()
         return seen_from(self.model, obstacle, x, inputs, np.asarray(self._interpolation @ at_nodes.T))
+
+    def paths(self, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray, every: int) -> FloatArray:
+        """The same of T states, at every so many of SECTIONS, shape (T, k, 3), m; x and inputs have T rows."""
+        at_nodes = evaluated(self.model.fields[self.rod], x, inputs)[0]
+        positions = np.asarray(self._interpolation[::every] @ np.swapaxes(at_nodes, 1, 2))
+        if obstacle.body is None:
+            return positions
+        of_body, _, rotations = evaluated(self.model.body[obstacle.body], x, inputs)
+        return np.asarray((positions - np.swapaxes(of_body, 1, 2)) @ rotations)
 
     @cached_property
     def _interpolation(self) -> FloatArray:
@@ -113,19 +123,19 @@ def ball_is_inside_between(
     end: FloatArray,
     deepest: float = DEEP,
 ) -> bool:
-    """Whether a ball is inside an obstacle on the straight way from one position to another, shape (3,) each, m.
+    """Whether a ball is inside an obstacle on the straight way from one position to another, m.
 
     Args:
         obstacle: the obstacle.
         radius: of the ball, m.
         length: what depths are relative to, m.
-        start: position.
-        end: another.
+        start: position, shape (3,), or those of several ways, shape (ways, 3).
+        end: another, likewise.
         deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
     """
     admitted = min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
     # A stretch without length.
-    ends = (np.tile(start, (2, 1)), np.tile(end, (2, 1)))
+    ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
     return _sinks(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
 
 
@@ -135,19 +145,24 @@ def is_inside_between(
     start: FloatArray,
     end: FloatArray,
     deepest: float = DEEP,
+    every: int = 1,
 ) -> bool:
     """Whether a section of a rod is inside an obstacle on the straight way from its positions to others.
 
     Args:
         obstacle: the obstacle.
         properties: of the rod.
-        start: positions at the abscissae SECTIONS, in the axes that the obstacle is given in, shape (k, 3), m.
+        start: positions at the abscissae SECTIONS, in the axes that the obstacle is given in, shape (k, 3), m; or those
+            of several ways, shape (ways, k, 3).
         end: others, likewise.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
             :data:`MIDDLE` of the radius of a bar or ball.
+        every: number of SECTIONS of which one is given.
     """
     admitted = min(deepest * properties.length, MIDDLE * obstacle.thickness / 2)
-    return _sinks(lambda positions, X: section_gaps(obstacle, properties, positions, X), start, end, SECTIONS, admitted)
+    return _sinks(
+        lambda positions, X: section_gaps(obstacle, properties, positions, X), start, end, SECTIONS[::every], admitted
+    )
 
 
 def _sinks(
@@ -161,17 +176,20 @@ def _sinks(
 
     Args:
         gaps_at: gaps, m, at positions of shape (k, 3) with their abscissae.
-        start: positions at X, between which the rod is straight, shape (k, 3), m.
+        start: positions at X, between which the rod is straight, those of one way after another, shape (…, 3), m.
         end: others, likewise.
         X: abscissae, shape (k,).
         admitted: depth, m.
     """
+    start, end = start.reshape(-1, 3), end.reshape(-1, 3)
+    joints = np.arange(1, len(start)) % len(X) == 0
+    X = np.tile(X, len(start) // len(X))
     # Types are written: to infer those of what the loop changes takes the type checker six seconds.
     ways: FloatArray = np.asarray(np.linalg.norm(end - start, axis=1), dtype=float)
     stretches: FloatArray = np.maximum(
         *(np.linalg.norm(np.diff(positions, axis=0), axis=1) for positions in (start, end))
     )
-    first: npt.NDArray[np.int_] = np.arange(len(X) - 1)
+    first: npt.NDArray[np.int_] = np.flatnonzero(~joints)
     # Middle and width of each part, in the number of the section and in the share of the way.
     section: FloatArray = first + np.float64(0.5)
     share: FloatArray = np.full(len(first), 0.5)
