@@ -18,10 +18,12 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.identification.case_equilibria import split
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_checks import told_passage
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.motion_checks import immovable
@@ -179,6 +181,12 @@ class Motions:
         start = np.concatenate([x, still[self.unknowns :]])
         parameters = p if self.model.parameters.size else None
         return integrated(self.model, moving.pieces(end), start, still, self._method, settings, p=parameters)
+
+    def told_passage(self, run: Run) -> str:
+        """A sentence where rods or bodies pass through smooth obstacles or rods in a motion; else nothing."""
+        if run.history is None or not SmoothBarriers(self.model).any:
+            return ""
+        return told_passage(run.history, float(run.times[-1]), self.model.at(run.p))
 
     def sensitivity(self, run: Run, x: FloatArray, inputs: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives of unknowns and inputs at the measured times, shapes (T, size, m) and (inputs, m).

@@ -36,6 +36,7 @@ class Ending:
         left_out: cases that took no part.
         unstable: cases whose equilibrium is unstable.
         unresolved: cases that the nodes do not resolve.
+        passages: cases whose motion leads through an obstacle or a rod, and a sentence on it.
         beyond: cases that are beyond a limit of a path or a law, and which limit that is.
         joint_modes: measured modes of one frequency.
         kinks: contacts that come or go, or change, where the search ended.
@@ -48,6 +49,7 @@ class Ending:
     left_out: list[LeftOut] = field(default_factory=list)
     unstable: list[str] = field(default_factory=list)
     unresolved: list[str] = field(default_factory=list)
+    passages: list[tuple[str, str]] = field(default_factory=list)
     beyond: list[tuple[str, BeyondLimit]] = field(default_factory=list)
     joint_modes: list[JointModes] = field(default_factory=list)
     kinks: list[str] = field(default_factory=list)
@@ -149,6 +151,9 @@ class Ending:
         if self.unresolved:
             cases = named(self.unresolved)
             return "unresolved", f"Not found: the nodes do not resolve the rods in {cases}; allow more of them."
+        if self.passages:
+            cases = named([case for case, _ in self.passages])
+            return "unresolved", f"Not found. Of {cases}: {self.passages[0][1]}"
         if self.beyond:
             limit = self.beyond[0][1]
             told = Outcome[limit.word]

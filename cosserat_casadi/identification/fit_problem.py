@@ -129,6 +129,7 @@ class Task:
         ending.joint_modes += misfit.joint_modes(fit.state)
         ending.unstable += misfit.unstable(fit.state)
         ending.unresolved += misfit.unresolved(fit.state)
+        ending.passages += misfit.passages(fit.state)
         ending.beyond += misfit.beyond_limits(fit.state)
         ending.barred += misfit.barred
         if fit.beyond is not None and fit.outcome is not FitOutcome.CONVERGED:

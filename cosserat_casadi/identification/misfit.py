@@ -192,6 +192,11 @@ class Misfit:
                 unresolved.append(case)
         return unresolved
 
+    def passages(self, state: MisfitState) -> list[tuple[str, str]]:
+        """Cases whose motion leads through a smooth obstacle or a rod, and a sentence on when it does."""
+        told = [(i, self.motions.told_passage(run)) for i, run in state.runs.items() if run is not None]
+        return [(self.cases[i].where, sentence) for i, sentence in told if sentence]
+
     def beyond_limits(self, state: MisfitState) -> list[tuple[str, BeyondLimit]]:
         """Cases that are beyond a limit, and which limit that is."""
         if isinstance(self.model, TubeFunctions) or self.model.strain_margins is None:

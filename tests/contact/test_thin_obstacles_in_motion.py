@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cosserat_casadi import Motion, MotionOutcome, build, parse_scene, simulate
+from cosserat_casadi import Motion, MotionOutcome, build, identify, parse_scene, simulate
 
 ROD = """
 schema = 1
@@ -80,3 +80,35 @@ def test_what_a_bar_catches_is_computed_to_its_end() -> None:
     motion = moved(WIRE.format(x=0.2, radius=5e-3, width=4e-3), "damping = 0.3\n")
     assert motion.converged, motion.message
     assert np.all(motion.tip().position[:, 2] > -0.1)
+
+
+MEASURED = """
+[[measurements]]
+name = "tip"
+quantity = "position"
+file = "tip.csv"
+time = "t"
+rod = "rod"
+columns = ["x", "y", "z"]
+sigma = 1e-3
+[[unknowns]]
+parameter = "rod.stiffness.bending_y"
+lower = 1e-3
+upper = 4e-3
+"""
+
+
+SOFT = THIN + "stiffness = 1.0\n"
+
+
+@pytest.mark.parametrize(("obstacle", "outcome"), [("", "converged"), (SOFT, "unresolved")], ids=["free", "wire"])
+def test_a_fit_of_a_motion_through_a_wire_is_not_found(obstacle: str, outcome: str) -> None:
+    """The tip of a rod that falls freely was measured: that of the scene falls through a wire that is too soft."""
+    falls = moved()
+    rows = np.flatnonzero(falls.times <= 0.19)
+    places = falls.tip().position[rows].T
+    data = {"t": falls.times[rows], **dict(zip("xyz", places, strict=True))}
+    scene = parse_scene(ROD + obstacle + MEASURED, ["simulation.step=0.015"])
+    found = identify(build(scene.with_unknowns()), {"tip.csv": data})
+    assert found.outcome == outcome, found.message
+    assert ("passes through an obstacle" in found.message) == (outcome == "unresolved")
