@@ -375,7 +375,8 @@ class CompiledSteps:
         method, differential = run.method, run.equations.differential
         # A motion has thousands of steps: rows are taken apart all at once.
         rows = zip(facts.tolist(), ends[:, 0], ends[:, 1], ends[:, 2], stages, strict=False)
-        for (time, size, error, iterations, residual, contraction, wanted), x, v, a, unknowns in rows:
+        for fact, x, v, a, unknowns in rows:
+            time, size, error, iterations, residual, contraction, wanted = fact
             step = TimeStep(
                 method=method,
                 differential=differential,

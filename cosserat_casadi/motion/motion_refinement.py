@@ -626,7 +626,7 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
     near = search.last.simulator.start.equilibrium if search.levels else None
-    began = started(model, search.simulation, search.start, near)
+    began = started(model, search.simulation, search.start, near, search.source)
     return Simulator(model, search.simulation, began, stage, search.tell, search.source, events=search.events)
 
 

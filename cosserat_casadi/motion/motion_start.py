@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.equilibrium.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.equilibrium.solve import NOTHING, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Resume
@@ -17,6 +18,10 @@ from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.moving_model import model_at_rest
 from cosserat_casadi.motion.start_in_contact import resting
+from cosserat_casadi.numerics.newton import relative_norm
+
+Residual = Callable[..., FloatArray]
+"""Residual of the equations of motion, shape (size,), of x, v, a, inputs, and their rates and accelerations."""
 
 UNLOADED = "At rest in the unloaded shape."
 SWINGS = (
@@ -79,19 +84,36 @@ def unloaded_start(model: Model) -> Start:
     return Start(model.unloaded(), UNLOADED if asked else SWINGS)
 
 
-def equilibrium_start(model: Model, inputs: FloatArray, near: Solution | None = None) -> Start:
+def equilibrium_start(
+    model: Model, inputs: FloatArray, near: Solution | None = None, residual: Residual | None = None
+) -> Start:
     """At rest in the equilibrium of the inputs, free bases held where the scene puts them.
 
     Args:
         model: of the scene in motion.
         inputs: at the start, shape (model.inputs.size,).
         near: the equilibrium on other modes; None where it is not known.
+        residual: of the equations of motion, without parameters, as :class:`StepKernels` has it; None where it is not
+            at hand.
     """
+    if near is None and residual is not None and _rests_unloaded(model, inputs, residual):
+        return Start(model.unloaded(), EQUILIBRIUM)
     held = model_at_rest(model)
     sentence = HELD if _frees_bases(held, model) else EQUILIBRIUM
     guess = None if near is None else prolong(near, held)
     solution = solve(held, held.pack(model.inputs.unpack(inputs)), start=guess, estimate_error=False)
     return _started(model, solution, sentence)
+
+
+def _rests_unloaded(model: Model, inputs: FloatArray, residual: Residual) -> bool:
+    """Whether the unloaded scene rests: the functions of statics take longer to write than the motion to compute."""
+    if model.scene.held() is not model.scene or model.scene.touches_exactly:
+        return False
+    unloaded = model.unloaded()
+    no_rates = np.zeros_like(inputs)
+    at_rest = np.zeros_like(unloaded)
+    norm = relative_norm(residual(unloaded, at_rest, at_rest, inputs, no_rates, no_rates), unloaded)
+    return bool(norm <= NOTHING)
 
 
 def given_start(model: Model, solution: Solution) -> Start:

@@ -32,7 +32,7 @@ from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
-from cosserat_casadi.motion.step_kernels import KernelSource
+from cosserat_casadi.motion.step_kernels import KernelSource, interpreted
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_states
 from cosserat_casadi.motion.trajectory import (
@@ -439,7 +439,7 @@ def simulate(
     asked = simulation or model.scene.simulation
     check_simulation(model, asked)
     assert asked is not None, "checked"
-    began = started(model, asked, start)
+    began = started(model, asked, start, source=source)
     if not began.found:
         return not_started(model, began)
     simulator = Simulator(model, asked, began, tell=progress, source=source, events=events)
@@ -468,7 +468,13 @@ def moving_inputs(model: Model) -> MovingInputs:
     return MovingInputs(model.inputs, model.scene.motions, model.pack())
 
 
-def started(model: Model, simulation: Simulation, solution: Solution | None, near: Solution | None = None) -> Start:
+def started(
+    model: Model,
+    simulation: Simulation,
+    solution: Solution | None,
+    near: Solution | None = None,
+    source: KernelSource | None = None,
+) -> Start:
     """How the motion of a model begins.
 
     Args:
@@ -476,6 +482,7 @@ def started(model: Model, simulation: Simulation, solution: Solution | None, nea
         simulation: its settings.
         solution: an equilibrium to start from; None for what the simulation says.
         near: the equilibrium of the start on other modes; None where it is not known.
+        source: as in :class:`Simulator`.
     """
     moving = moving_inputs(model)
     if solution is not None:
@@ -483,7 +490,8 @@ def started(model: Model, simulation: Simulation, solution: Solution | None, nea
     elif model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
         start = unloaded_start(model)
     else:
-        start = equilibrium_start(model, moving.at(0.0).value, near)
+        kernels = interpreted(model) if source is None else source.kernels(model)
+        start = equilibrium_start(model, moving.at(0.0).value, near, kernels.residual)
     return with_velocities(model, start, moving.pieces(simulation.duration)[0])
 
 

@@ -10,6 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Motion, MotionOutcome, SceneError, scene_from_dict, simulate, solve
+from cosserat_casadi.motion import motion_start
+from cosserat_casadi.motion.motion_start import EQUILIBRIUM
 from cosserat_casadi.motion.trajectory import MotionProgress
 from tests.motion import transients
 from tests.motion.stepping import moving_model
@@ -110,6 +112,22 @@ def test_given_equilibrium_is_where_the_motion_starts() -> None:
     motion = simulate(moving_model(scene), start=bent)
     assert_allclose(motion.tip().position, np.tile(bent.tip().position, (101, 1)), rtol=0, atol=1e-9)
     assert motion.energy.kinetic.max() < 1e-15
+
+
+def test_a_scene_on_which_nothing_acts_starts_without_statics(monkeypatch: pytest.MonkeyPatch) -> None:
+    def asked_for(*_: Any, **__: Any) -> None:
+        raise AssertionError("an equilibrium was solved for")
+
+    grown = {"input": "push.force", "times": [0.0, 0.3], "values": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.5]]}
+    scene = table({}, at_tip(force=[0, 0, 0]), accuracy=FEW, simulation=asked(), motions=[grown])
+    solved = simulated({**scene, "loads": [*scene["loads"], gravity(1e-9)]})
+    monkeypatch.setattr(motion_start, "solve", asked_for)
+    motion = simulated(scene)
+    assert motion.start == EQUILIBRIUM == solved.start
+    assert_allclose(motion.x[0], 0.0, rtol=0, atol=0)
+    assert_allclose(motion.tip().position, solved.tip().position, rtol=0, atol=1e-6)
+    with pytest.raises(AssertionError, match="was solved for"):
+        simulated({**scene, "loads": [*scene["loads"], gravity(1e-9)]})
 
 
 # Refused
