@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
-from cosserat_casadi.codegen.motion_sources import initialiser, pairs
+from cosserat_casadi.codegen.motion_sources import initialiser, method_words, pairs
 from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
@@ -134,15 +134,8 @@ def _words() -> dict[str, Any]:
     method = radau(STAGES)
     whole, pair = complex(method.eigenvalues[0]), complex(method.eigenvalues[1])
     arrays = {
-        "stage_nodes": method.nodes,
-        "stage_table": method.matrix,
-        "stage_table_squared": method.matrix_squared,
-        "stage_polynomials": method.polynomials,
         "start_values": method.values_at(0.0),
         "start_integrals": method.values_at(0.0) @ method.matrix,
-        "middle_values": method.values_at(0.5),
-        "middle_integrals": method.integrals_at(0.5),
-        "middle_double_integrals": method.double_integrals_at(0.5),
         "end_values": method.values_at(1.0),
         "end_integrals": method.weights,
         "end_double_integrals": method.position_weights,
@@ -174,6 +167,7 @@ def _words() -> dict[str, Any]:
         "remembered_error": step_control.REMEMBERED_ERROR,
         "most_lasting": step_run.MOST_LASTING,
         "real_rate": repr(1.0 / whole.real),
+        **method_words(method, "double"),
         **{name: initialiser(values, "double") for name, values in arrays.items()},
     }
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.codegen.manifest import read_manifest
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
 
@@ -32,7 +31,7 @@ def check_folder(directory: Path) -> set[str]:
         raise ExportError(Problem("--output", f"{directory} is no folder", "name one"))
     if not os.access(directory, os.R_OK | os.W_OK | os.X_OK):
         raise ExportError(Problem("--output", f"the folder {directory} cannot be written to", "name another"))
-    ours = _listed(directory / MANIFEST)
+    ours = _listed(directory)
     held = {path.name: path.name in ours and path.is_file() for path in directory.iterdir()}
     foreign = sorted(name for name, known in held.items() if not known)
     if foreign:
@@ -73,12 +72,12 @@ def _restore(directory: Path, written: set[str], before: Mapping[str, bytes]) ->
         write_atomically(directory / name, content)
 
 
-def _listed(manifest: Path) -> set[str]:
+def _listed(directory: Path) -> set[str]:
     """Names of the files of an earlier export; none where the manifest is damaged or someone else's."""
     try:
-        described = json.loads(manifest.read_text(encoding="utf-8"))
+        described = read_manifest(directory)
         files, versions = described["files"], described["versions"]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+    except (ExportError, KeyError, TypeError):
         return set()
     if not isinstance(versions, dict) or "cosserat_casadi" not in versions or not isinstance(files, list):
         return set()

@@ -41,6 +41,9 @@ WORDS_IN_C = {PARAMETERS: "parameters"}
 WIDTH = 119
 """Characters of the longest line of the header."""
 
+UNBROKEN = "\xa0"
+"""A blank at which no line is broken."""
+
 
 @dataclass(frozen=True)
 class FunctionInC:
@@ -201,21 +204,16 @@ def _with_facts(name: str, shape: str, unit: str) -> str:
 
 def _filled(comment: str) -> str:
     """A comment in lines, none of which ends within parentheses."""
-    unbroken = re.sub(r"\([^)]*\)", lambda match: match[0].replace(" ", "\xa0"), comment)
-    lines = textwrap.fill(unbroken, WIDTH, subsequent_indent="   ", break_long_words=False)
-    return lines.replace("\xa0", " ")
+    unbroken = re.sub(r"\([^)]*\)", lambda match: match[0].replace(" ", UNBROKEN), comment)
+    return _in_lines(unbroken, "   ")
 
 
 def _wrapped(head: str, parameters: Sequence[str], end: str) -> str:
-    """A signature, broken between parameters."""
-    lines = []
-    line = head
-    for i, parameter in enumerate(parameters):
-        last = i + 1 == len(parameters)
-        text = parameter + (end if last else ",")
-        if len(line) + 1 + len(text) > WIDTH:
-            lines.append(line)
-            line = f"    {text}"
-        else:
-            line += text if i == 0 else f" {text}"
-    return "\n".join([*lines, line])
+    """A signature in lines, broken between parameters."""
+    listed = ", ".join(parameter.replace(" ", UNBROKEN) for parameter in parameters)
+    return _in_lines(f"{head.replace(' ', UNBROKEN)}{listed}{end.replace(' ', UNBROKEN)}", "    ")
+
+
+def _in_lines(text: str, indent: str) -> str:
+    lines = textwrap.fill(text, WIDTH, subsequent_indent=indent, break_long_words=False)
+    return lines.replace(UNBROKEN, " ")

@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.block_sources import block_words, dense_words, numb
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
-from cosserat_casadi.codegen.manifest import MANIFEST, input_entries, unknown_entries
+from cosserat_casadi.codegen.manifest import MANIFEST, described_unknowns, input_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES, motion_words
@@ -174,7 +174,7 @@ def library_sources(
     """Hand-readable files of a folder by name.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
         contents: the parts that stand beside the solver.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length.
@@ -414,31 +414,11 @@ def _ends(values: FloatArray, names: Names) -> str:
 def _unknown_words(model: Model) -> dict[str, str]:
     lines = list[str]()
     rows = ["| entries | what |", "|---|---|"]
-    for entry in unknown_entries(model):
+    for entry, words in described_unknowns(model):
         last = entry["first"] + entry["count"] - 1
-        what = _unknown_word(model, entry)
-        lines.append(f"   {entry['first']} .. {last}: {what}")
-        rows.append(f"| {entry['first']} … {last} | {what} |")
+        lines.append(f"   {entry['first']} .. {last}: {words}")
+        rows.append(f"| {entry['first']} … {last} | {words} |")
     return {"unknown_lines": "\n".join(lines), "unknown_rows": "\n".join(rows)}
-
-
-def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
-    if "strain" in entry:
-        basis = model.discrete.rods[entry["rod"]].properties.basis.capitalize()
-        return f"{basis} coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
-    if "support" in entry:
-        return f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
-    if "tendon" in entry:
-        return f"tension of the tendon {entry['tendon']}, in units of {entry['unit_N']:.6g} N"
-    if "tie" in entry:
-        return f"multipliers of the tie {entry['tie']} on rod {entry['rod']}"
-    if "stop" in entry:
-        return f"what {entry['stop']} pushes with"
-    if "branches" in entry:
-        return f"strains of the dashpots of rod {entry['rod']} since rest, as its strains, one branch after the other"
-    if "joint" in entry:
-        return f"angle (rad) of {entry['joint']}, or its displacement over the length of the rod"
-    return f"how far the {entry['frame']} has moved and its quaternion changed"
 
 
 def _pose_words(names: Names) -> dict[str, Any]:
@@ -458,7 +438,7 @@ def accuracy_words(scene: Scene, error_estimate: float | None, verified: Verifie
     """What a README, and the comment at the top of a header, say of the error that the discretisation leaves.
 
     Args:
-        scene: what is exported.
+        scene: the exported scene.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
         verified: over which ranges the discretisation keeps the tolerance; None where that is not known.
     """

@@ -61,11 +61,11 @@ def read_manifest(folder: Path) -> Any:
 
 
 def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
-    """Whether what is read of a manifest is there: name of the library, files, values of inputs, what a kind has else.
+    """Whether a manifest has name of the library, files, values of inputs, and the entries of its kind.
 
     Args:
-        described: what was read.
-        is_own: whether what this kind of folder has is there; it may raise what a look at wrong data raises.
+        described: the manifest.
+        is_own: whether the entries of this kind are there; it may raise any error of reading wrong data.
     """
     try:
         library_names(described["name"])
@@ -128,7 +128,7 @@ def manifest(
     """The manifest as plain data.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
         kernels: the generated kernels.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
@@ -138,7 +138,7 @@ def manifest(
     return {
         **head_entries(names, model),
         **_output_entries(model),
-        "unknowns": unknown_entries(model),
+        "unknowns": [entry for entry, _ in described_unknowns(model)],
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
         **accuracy_entries(model.scene, error_estimate, verified),
         "functions": [_function_entry(kernel, known) for kernel in kernels],
@@ -228,43 +228,56 @@ def _output_entries(model: Model) -> dict[str, Any]:
     return described
 
 
-def unknown_entries(model: Model) -> list[dict[str, Any]]:
-    """Unknowns in the order of their vector: strains, multipliers, moving frames, tensions, flows."""
-    entries: list[dict[str, Any]] = []
-    for rod, discrete_rod in model.discrete.rods.items():
-        first = model.discrete.unknowns.strain(rod).start
+def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
+    """Unknowns in the order of their vector, strains, multipliers, frames, tensions, flows; each in words too."""
+    described: list[tuple[dict[str, Any], str]] = []
+    discrete = model.discrete
+
+    def add(rod: str, what: dict[str, Any], first: int, count: int, words: str, **further: float) -> None:
+        described.append(({"rod": rod, **what, "first": first, "count": count, **further}, words))
+
+    for rod, discrete_rod in discrete.rods.items():
+        begin = discrete.unknowns.strain(rod).start
+        basis = discrete_rod.properties.basis.capitalize()
         for component, columns in discrete_rod.columns.items():
-            count = discrete_rod.at_nodes[component].shape[1]
-            start = columns.start if isinstance(columns, slice) else columns[0]
-            entries.append({"rod": rod, "strain": STRAINS[component], "first": int(first + start), "count": int(count)})
+            strain = STRAINS[component]
+            first = int(begin + (columns.start if isinstance(columns, slice) else columns[0]))
+            count = int(discrete_rod.at_nodes[component].shape[1])
+            words = f"{basis} coefficients of {strain} of rod {rod}, element after element"
+            add(rod, {"strain": strain}, first, count, words)
     supports = {support.rod: support.kind for support in model.scene.supports}
     # Every entry is one of a rod: that of bodies without rods is the first.
-    first_rod = next(iter(model.discrete.rods))
-    for placed in model.discrete.constraints:
-        is_tie = placed.closes_assembly or placed.joint is not None
-        what = {"tie": placed.where} if is_tie else {"support": supports[placed.rod]}
-        first = model.discrete.multipliers(placed).start
-        entries.append({"rod": placed.rod or first_rod, **what, "first": first, "count": placed.size})
-    for name in model.discrete.frames:
+    first_rod = next(iter(discrete.rods))
+    for placed in discrete.constraints:
+        rod = placed.rod or first_rod
+        what = {"tie": placed.where}
+        words = f"multipliers of the tie {placed.where} on rod {rod}"
+        if not placed.closes_assembly and placed.joint is None:
+            what = {"support": supports[placed.rod]}
+            words = f"multipliers of the support ({supports[placed.rod]}) of rod {rod}"
+        add(rod, what, discrete.multipliers(placed).start, placed.size, words)
+    for name in discrete.frames:
         holders = [joint.rod for joint in model.scene.joints if joint.rod and name == ("body", joint.body)]
-        place = model.discrete.deviation(name)
+        place = discrete.deviation(name)
         rod = name.name if name.kind == "rod" else (holders or [first_rod])[0]
-        entries.append({"rod": rod, "frame": str(name), "first": place.start, "count": place.stop - place.start})
-    for placed in model.discrete.free_coordinates:
-        first = model.discrete.coordinate(placed).start
-        entries.append({"rod": placed.rod or first_rod, "joint": placed.where, "first": first, "count": 1})
-    for cable in model.discrete.cables:
+        words = f"how far the {name} has moved and its quaternion changed"
+        add(rod, {"frame": str(name)}, place.start, place.stop - place.start, words)
+    for placed in discrete.free_coordinates:
+        words = f"angle (rad) of {placed.where}, or its displacement over the length of the rod"
+        add(placed.rod or first_rod, {"joint": placed.where}, discrete.coordinate(placed).start, 1, words)
+    for cable in discrete.cables:
         tendon = cable.tendon
-        unit = model.discrete.tension_unit(tendon.rod)
-        first = model.discrete.tension(cable).start
-        entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
-    for stop in model.discrete.stops:
-        first = model.discrete.stop(stop).start
-        entries.append({"rod": stop.placed.rod or first_rod, "stop": stop.owner, "first": first, "count": 1})
-    for block, place in model.discrete.unknowns.of_kind(BlockKind.FLOW):
-        branches = len(model.discrete.rods[block.owner].properties.branches)
-        entries.append({"rod": block.owner, "branches": branches, "first": place.start, "count": block.size})
-    return entries
+        unit = discrete.tension_unit(tendon.rod)
+        words = f"tension of the tendon {tendon.name}, in units of {unit:.6g} N"
+        add(tendon.rod, {"tendon": tendon.name}, discrete.tension(cable).start, 1, words, unit_N=unit)
+    for stop in discrete.stops:
+        words = f"what {stop.owner} pushes with"
+        add(stop.placed.rod or first_rod, {"stop": stop.owner}, discrete.stop(stop).start, 1, words)
+    for block, place in discrete.unknowns.of_kind(BlockKind.FLOW):
+        branches = len(discrete.rods[block.owner].properties.branches)
+        words = f"strains of the dashpots of rod {block.owner} since rest, as its strains, one branch after the other"
+        add(block.owner, {"branches": branches}, place.start, block.size, words)
+    return described
 
 
 def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[str, Any]:
@@ -284,7 +297,7 @@ def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[st
 
 
 def _public_entry(known: FunctionInC | None) -> dict[str, str]:
-    """What ``load`` offers of a kernel: nothing of those that are the solver's alone."""
+    """The entries by which ``load`` offers a kernel; none where the solver alone calls it."""
     if known is None or not known.spec.public:
         return {}
     described = {"function": known.spec.name}

@@ -23,7 +23,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import CONSISTENT
 from cosserat_casadi.numerics import consistent_start, stage_newton, step_matrices
-from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
 MOTION_FILES = ("motion.h", "elimination.c", "stage_newton.c", "step.c", "step_sensitivity.c", "motion.c")
@@ -123,18 +123,26 @@ def _limits() -> Words:
     }
 
 
+def method_words(method: Collocation, real: str = "solver_real") -> dict[str, str]:
+    """Nodes, tables and polynomials of a method as initialisers."""
+    arrays = {
+        "stage_nodes": method.nodes,
+        "stage_table": method.matrix,
+        "stage_table_squared": method.matrix_squared,
+        "stage_polynomials": method.polynomials,
+        "middle_values": method.values_at(0.5),
+        "middle_integrals": method.integrals_at(0.5),
+        "middle_double_integrals": method.double_integrals_at(0.5),
+    }
+    return {name: initialiser(values, real) for name, values in arrays.items()}
+
+
 def _method() -> dict[str, str]:
-    """The method as initialisers."""
+    """The method as initialisers, with its first eigenvalue."""
     method = radau(STAGES)
     eigenvalue = complex(method.eigenvalues[0])
     return {
-        "stage_nodes": initialiser(method.nodes),
-        "stage_table": initialiser(method.matrix),
-        "stage_table_squared": initialiser(method.matrix_squared),
-        "stage_polynomials": initialiser(method.polynomials),
-        "middle_values": initialiser(method.values_at(0.5)),
-        "middle_integrals": initialiser(method.integrals_at(0.5)),
-        "middle_double_integrals": initialiser(method.double_integrals_at(0.5)),
+        **method_words(method),
         "rate": initialiser(pairs([1.0 / eigenvalue])[0]),
         "share": initialiser(pairs([1.0 / eigenvalue**2])[0]),
         "to_eigenvector": initialiser(pairs(method.to_eigenvectors[0])),
