@@ -499,13 +499,13 @@ class _Writing:
         """Text of a value that is in no variable of the code of columns."""
         value = self.listing.values[number]
         if number in elsewhere:
-            return f"LOAD(passed + {LANES * elsewhere[number]})"
+            return f"PASSED({LANES * elsewhere[number]})"
         if isinstance(value, Constant):
             return FOURS.number(value.value)
         if not self.in_column[number]:
-            return f"EACH(w[{self.place[number]}])"
+            return f"w[{self.place[number]}]"
         if isinstance(value, Read):
-            return f"LOAD(turns + {LANES * value.entry})"
+            return f"TURN({LANES * value.entry})"
         return None
 
 
@@ -542,7 +542,7 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
             return arithmetic.number(value.value)
         if isinstance(value, Read):
             place = width * (arguments[value.argument] + value.entry)
-            return f"LOAD(given + {place})" if wide else f"given[{place}]"
+            return f"GIVEN({place})" if wide else f"given[{place}]"
         return None
 
     return Callee(_body(block.lines(text)), width, function.nnz_in(), function.nnz_out()), len(block.statements)

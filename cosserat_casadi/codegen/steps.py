@@ -443,7 +443,7 @@ def _blocks(matrix: Value) -> list[tuple[Numbers, Numbers]]:
     entries = ca.sparsify(ca.DM(matrix.pattern, (matrix.numbers != 0).astype(np.float64)))
     joined = ca.blockcat([[ca.DM.eye(rows), entries], [entries.T, ca.DM.eye(columns)]])
     _, order, ends = joined.sparsity().scc()
-    groups = [np.sort(order[begin:end]) for begin, end in pairwise(ends)]
+    groups = [np.array(sorted(order[begin:end])) for begin, end in pairwise(ends)]
     blocks = [(group[group < rows], group[group >= rows] - rows) for group in groups]
     return sorted((block for block in blocks if len(block[0]) and len(block[1])), key=lambda block: int(block[0][0]))
 

@@ -1,7 +1,7 @@
 /* Included once for each width of vectors. */
 static void MADE(planar_strip_kernels_increments_turn)(const casadi_real *given, casadi_real *made) {
   FOUR b0, b1, b2;
-  b0 = LOAD(given + 0) * LOAD(given + 0);
+  b0 = GIVEN(0) * GIVEN(0);
   b1 = EACH((-2.8114572543455206e-15)) + b0 * (EACH(8.22063524662433e-18) + EACH((-1.9572941063391263e-20)) * b0);
   b1 = b0 * (EACH((-1.6059043836821613e-10)) + b0 * (EACH(7.647163731819816e-13) + b0 * b1));
   b1 = b0 * (EACH((-2.7557319223985893e-06)) + b0 * (EACH(2.505210838544172e-08) + b1));
@@ -11,8 +11,8 @@ static void MADE(planar_strip_kernels_increments_turn)(const casadi_real *given,
   b2 = b0 * (EACH(0.0005208333333333333) + b0 * (EACH((-3.1001984126984127e-06)) + b2));
   b2 = EACH(1.0) + b0 * (EACH((-0.041666666666666664)) + b2);
   STORE(made + 0, (EACH(1.0) - b0 * b1) / b2);
-  STORE(made + 4, b2 / EACH(2.0) * LOAD(given + 0));
-  STORE(made + 8, LOAD(given + 0));
+  STORE(made + 4, b2 / EACH(2.0) * GIVEN(0));
+  STORE(made + 8, GIVEN(0));
   STORE(made + 12, b2);
   STORE(made + 16, b1);
 }
@@ -24,7 +24,7 @@ static void MADE(planar_strip_kernels_increments)(const casadi_real *given, casa
 }
 
 static void MADE(planar_strip_kernels_pulls_turn)(const casadi_real *given, casadi_real *made) {
-  STORE(made + 0, LOAD(given + 24) * LOAD(given + 40));
+  STORE(made + 0, GIVEN(24) * GIVEN(40));
 }
 
 static void MADE(planar_strip_kernels_pulls)(const casadi_real *given, casadi_real *made, int turns) {
@@ -35,21 +35,21 @@ static void MADE(planar_strip_kernels_pulls)(const casadi_real *given, casadi_re
 
 static void MADE(planar_strip_kernels_variations_turn)(const casadi_real *given, casadi_real *made) {
   FOUR b0, b1, b2, b3, b4, b5, b6;
-  b0 = LOAD(given + 24) * LOAD(given + 4);
-  b1 = EACH(0.5) / (LOAD(given + 8) * LOAD(given + 8));
+  b0 = GIVEN(24) * GIVEN(4);
+  b1 = EACH(0.5) / (GIVEN(8) * GIVEN(8));
   b2 = b0 * b0;
   b3 = EACH((-2.186688975602072e-15)) + b2 * (EACH(6.576508197299464e-18) + EACH((-1.6014224506411032e-20)) * b2);
   b3 = b2 * (EACH((-1.1470745597729724e-10)) + b2 * (EACH(5.735372798864862e-13) + b2 * b3));
   b3 = b2 * (EACH((-1.6534391534391535e-06)) + b2 * (EACH(1.670140559029448e-08) + b3));
   b3 = EACH((-0.002777777777777778)) + b2 * (EACH(9.92063492063492e-05) + b3);
-  b2 = b1 * (LOAD(given + 12) + b2 * b3);
-  b3 = EACH((-1.0)) * (EACH(2.0) * (b0 * (b1 * b3 * (LOAD(given + 40) * b0) * b0 - b2 * LOAD(given + 40))));
-  b1 = LOAD(given + 44) / EACH(2.0);
-  b4 = b0 * (b2 * LOAD(given + 36));
-  b5 = LOAD(given + 40) / EACH(2.0);
-  b6 = LOAD(given + 36) / EACH(2.0);
-  b2 = b0 * (b2 * LOAD(given + 44));
-  STORE(made + 0, LOAD(given + 24));
+  b2 = b1 * (GIVEN(12) + b2 * b3);
+  b3 = EACH((-1.0)) * (EACH(2.0) * (b0 * (b1 * b3 * (GIVEN(40) * b0) * b0 - b2 * GIVEN(40))));
+  b1 = GIVEN(44) / EACH(2.0);
+  b4 = b0 * (b2 * GIVEN(36));
+  b5 = GIVEN(40) / EACH(2.0);
+  b6 = GIVEN(36) / EACH(2.0);
+  b2 = b0 * (b2 * GIVEN(44));
+  STORE(made + 0, GIVEN(24));
   STORE(made + 4, b3);
   STORE(made + 8, b1 - b4);
   STORE(made + 12, EACH((-1.0)) * b5);
@@ -67,7 +67,7 @@ static void MADE(planar_strip_kernels_variations)(const casadi_real *given, casa
 }
 
 static void MADE(planar_strip_kernels_fwd1_pulls_turn)(const casadi_real *given, casadi_real *made) {
-  STORE(made + 0, LOAD(given + 40) * LOAD(given + 72) + LOAD(given + 24) * LOAD(given + 88));
+  STORE(made + 0, GIVEN(40) * GIVEN(72) + GIVEN(24) * GIVEN(88));
 }
 
 static void MADE(planar_strip_kernels_fwd1_pulls)(const casadi_real *given, casadi_real *made, int turns) {
@@ -77,7 +77,7 @@ static void MADE(planar_strip_kernels_fwd1_pulls)(const casadi_real *given, casa
 }
 
 static void MADE(planar_strip_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
-  STORE(made + 0, LOAD(given + 24));
+  STORE(made + 0, GIVEN(24));
 }
 
 static void MADE(planar_strip_kernels_turnings)(const casadi_real *given, casadi_real *made, int turns) {
@@ -89,24 +89,24 @@ static void MADE(planar_strip_kernels_turnings)(const casadi_real *given, casadi
 static void MADE(planar_strip_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
   FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9;
-  b0 = EACH(w[40]) * LOAD(turns + 0);
-  b1 = b0 + EACH(w[41]) * LOAD(turns + 4);
-  b2 = b1 + EACH(w[42]) * LOAD(turns + 8);
-  b3 = b2 + EACH(w[43]) * LOAD(turns + 12);
-  b4 = b3 + EACH(w[76]) * LOAD(turns + 16);
-  b5 = EACH(w[214]) * (b4 + EACH(w[77]) * LOAD(turns + 20));
-  b4 = b5 + EACH(w[215]) * b4;
-  b3 = b4 + EACH(w[216]) * b3;
-  b2 = b3 + EACH(w[217]) * b2;
-  b1 = b2 + EACH(w[218]) * b1;
-  b0 = EACH(w[40]) * (b1 + EACH(w[219]) * b0);
-  b5 = EACH(w[77]) * b5;
+  b0 = w[40] * TURN(0);
+  b1 = b0 + w[41] * TURN(4);
+  b2 = b1 + w[42] * TURN(8);
+  b3 = b2 + w[43] * TURN(12);
+  b4 = b3 + w[76] * TURN(16);
+  b5 = w[214] * (b4 + w[77] * TURN(20));
+  b4 = b5 + w[215] * b4;
+  b3 = b4 + w[216] * b3;
+  b2 = b3 + w[217] * b2;
+  b1 = b2 + w[218] * b1;
+  b0 = w[40] * (b1 + w[219] * b0);
+  b5 = w[77] * b5;
   b6 = b0 + b5;
-  b1 = EACH(w[41]) * b1;
-  b4 = EACH(w[76]) * b4;
+  b1 = w[41] * b1;
+  b4 = w[76] * b4;
   b7 = b1 + b4;
-  b2 = EACH(w[42]) * b2;
-  b3 = EACH(w[43]) * b3;
+  b2 = w[42] * b2;
+  b3 = w[43] * b3;
   b8 = b2 + b3;
   b9 = EACH((-1.1164549684630114)) * b6 + EACH((-3.0502116982036553)) * b7 + EACH((-4.166666666666669)) * b8;
   b0 = b5 - b0;
@@ -131,25 +131,23 @@ static void MADE(planar_strip_k_jacobian_columns)(const casadi_real *w, const ca
 
 static void MADE(planar_strip_k_tip_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7;
-  b0 = EACH(w[40]) * LOAD(turns + 0);
-  b1 = b0 + EACH(w[41]) * LOAD(turns + 4);
-  b2 = b1 + EACH(w[42]) * LOAD(turns + 8);
-  b3 = b2 + EACH(w[43]) * LOAD(turns + 12);
-  b4 = b3 + EACH(w[44]) * LOAD(turns + 16);
-  b5 = b4 + EACH(w[45]) * LOAD(turns + 20);
-  b6 = EACH(w[131]) * b5;
-  b6 = EACH(w[121]) * b0 + EACH(w[123]) * b1 + EACH(w[125]) * b2 + EACH(w[127]) * b3 + EACH(w[129]) * b4 + b6;
-  b7 = EACH(w[137]) * b5;
-  b7 = EACH(w[132]) * b0 + EACH(w[133]) * b1 + EACH(w[134]) * b2 + EACH(w[135]) * b3 + EACH(w[136]) * b4 + b7;
-  b4 = b5 * EACH(w[138]) / EACH(2.0);
-  b5 = b5 * EACH(w[139]) / EACH(2.0);
-  STORE(columns + 0, EACH(2.220446049250313e-16) * b6 - b7);
+  FOUR b0, b1, b2, b3, b4, b5, b6;
+  b0 = w[40] * TURN(0);
+  b1 = b0 + w[41] * TURN(4);
+  b2 = b1 + w[42] * TURN(8);
+  b3 = b2 + w[43] * TURN(12);
+  b4 = b3 + w[44] * TURN(16);
+  b5 = b4 + w[45] * TURN(20);
+  b6 = w[121] * b0 + w[123] * b1 + w[125] * b2 + w[127] * b3 + w[129] * b4 + w[131] * b5;
+  b4 = w[132] * b0 + w[133] * b1 + w[134] * b2 + w[135] * b3 + w[136] * b4 + w[137] * b5;
+  b3 = b5 * w[138] / EACH(2.0);
+  b5 = b5 * w[139] / EACH(2.0);
+  STORE(columns + 0, EACH(2.220446049250313e-16) * b6 - b4);
   FILL(columns + 4, 0);
-  STORE(columns + 8, EACH((-1.0)) * (b6 + EACH(2.220446049250313e-16) * b7));
-  STORE(columns + 12, EACH((-1.0)) * (EACH(0.7071067811865476) * b4 + EACH(0.7071067811865475) * b5));
+  STORE(columns + 8, EACH((-1.0)) * (b6 + EACH(2.220446049250313e-16) * b4));
+  STORE(columns + 12, EACH((-1.0)) * (EACH(0.7071067811865476) * b3 + EACH(0.7071067811865475) * b5));
   FILL(columns + 16, 0);
-  STORE(columns + 20, EACH(0.7071067811865476) * b5 - EACH(0.7071067811865475) * b4);
+  STORE(columns + 20, EACH(0.7071067811865476) * b5 - EACH(0.7071067811865475) * b3);
   FILL(columns + 24, 0);
 }
 

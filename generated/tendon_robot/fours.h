@@ -3,7 +3,8 @@
 
    Arrays of fours are arrays of numbers, four for each. EACH makes a number one that stands for four alike, FILL stores
    such a number, and SPREAD makes a four of one. EVERY_LANE calls what computes four, once or for each lane. FOR_FOURS
-   goes through so many entries of arrays, four at least: the last four may be some once more. */
+   goes through so many entries of arrays, four at least: the last four may be some once more. GIVEN, TURN and PASSED are
+   the fours at a place of the arrays given, turns and passed. */
 #undef FOUR
 #undef EACH
 #undef SPREAD
@@ -12,8 +13,14 @@
 #undef FILL
 #undef EVERY_LANE
 #undef FOR_FOURS
+#undef GIVEN
+#undef TURN
+#undef PASSED
 
 #define EACH(number) ((casadi_real)(number))
+#define GIVEN(place) LOAD(given + (place))
+#define TURN(place) LOAD(turns + (place))
+#define PASSED(place) LOAD(passed + (place))
 
 #ifdef FOURS_IN_VECTORS
 /* Aligned as numbers are: any four neighbours in an array are fours. */

@@ -1,0 +1,812 @@
+/* Included once for each width of vectors. */
+static void MADE(tendon_robot_kernels_increments_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6;
+  b0 = GIVEN(0) + (GIVEN(4) * GIVEN(20) - GIVEN(8) * GIVEN(16)) / EACH(12.0);
+  b1 = GIVEN(4) + (GIVEN(8) * GIVEN(12) - GIVEN(0) * GIVEN(20)) / EACH(12.0);
+  b2 = GIVEN(8) + (GIVEN(0) * GIVEN(16) - GIVEN(4) * GIVEN(12)) / EACH(12.0);
+  b3 = b0 * b0 + b1 * b1 + b2 * b2;
+  b4 = EACH((-2.8114572543455206e-15)) + b3 * (EACH(8.22063524662433e-18) + EACH((-1.9572941063391263e-20)) * b3);
+  b4 = b3 * (EACH((-1.6059043836821613e-10)) + b3 * (EACH(7.647163731819816e-13) + b3 * b4));
+  b4 = b3 * (EACH((-2.7557319223985893e-06)) + b3 * (EACH(2.505210838544172e-08) + b4));
+  b4 = EACH(0.16666666666666666) + b3 * (EACH((-0.008333333333333333)) + b3 * (EACH(0.0001984126984126984) + b4));
+  b5 = EACH(3.920664999224027e-14) + b3 * (EACH((-4.667458332409556e-17)) + EACH(4.289943320229371e-20) * b3);
+  b5 = b3 * (EACH(1.076457782186949e-08) + b3 * (EACH((-2.446494959515793e-11)) + b3 * b5));
+  b5 = b3 * (EACH(0.0005208333333333333) + b3 * (EACH((-3.1001984126984127e-06)) + b5));
+  b5 = EACH(1.0) + b3 * (EACH((-0.041666666666666664)) + b5);
+  b6 = b5 / EACH(2.0);
+  STORE(made + 0, (EACH(1.0) - b3 * b4) / b5);
+  STORE(made + 4, b6 * b0);
+  STORE(made + 8, b6 * b1);
+  STORE(made + 12, b6 * b2);
+  STORE(made + 16, b0);
+  STORE(made + 20, b1);
+  STORE(made + 24, b2);
+  STORE(made + 28, b5);
+  STORE(made + 32, b4);
+}
+
+static void MADE(tendon_robot_kernels_increments)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 24, made += 36)
+    EVERY_LANE(MADE(tendon_robot_kernels_increments_turn)(given + lane, made + lane))
+}
+
+static void MADE(tendon_robot_kernels_pulls_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7;
+  b0 = GIVEN(68) * GIVEN(80) + GIVEN(72) * GIVEN(84) + GIVEN(76) * GIVEN(88);
+  b1 = GIVEN(44) * GIVEN(80) + GIVEN(48) * GIVEN(84) + GIVEN(52) * GIVEN(88);
+  b2 = GIVEN(36) * GIVEN(36) / EACH(2.0);
+  b3 = GIVEN(56) * GIVEN(80) + GIVEN(60) * GIVEN(84) + GIVEN(64) * GIVEN(88);
+  b4 = GIVEN(40) * (GIVEN(32) * b1 - GIVEN(24) * b0) - b2 * b3;
+  b5 = GIVEN(40) * (GIVEN(28) * b0 - GIVEN(32) * b3) - b2 * b1;
+  b6 = b0 + (GIVEN(24) * b4 - GIVEN(28) * b5);
+  b7 = EACH(0.08333333333333333) * b6;
+  b0 = GIVEN(40) * (GIVEN(24) * b3 - GIVEN(28) * b1) - b2 * b0;
+  b5 = b3 + (GIVEN(32) * b5 - GIVEN(24) * b0);
+  b3 = EACH(0.08333333333333333) * b5;
+  b4 = b1 + (GIVEN(28) * b0 - GIVEN(32) * b4);
+  b0 = EACH(0.08333333333333333) * b4;
+  STORE(made + 0, GIVEN(16) * b7 - GIVEN(20) * b3 + b4);
+  STORE(made + 4, b5 - GIVEN(12) * b7 + GIVEN(20) * b0);
+  STORE(made + 8, b6 + GIVEN(12) * b3 - GIVEN(16) * b0);
+  STORE(made + 12, GIVEN(8) * b3 - GIVEN(4) * b7);
+  STORE(made + 16, GIVEN(0) * b7 - GIVEN(8) * b0);
+  STORE(made + 20, GIVEN(4) * b0 - GIVEN(0) * b3);
+}
+
+static void MADE(tendon_robot_kernels_pulls)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 92, made += 24)
+    EVERY_LANE(MADE(tendon_robot_kernels_pulls_turn)(given + lane, made + lane))
+}
+
+static void MADE(tendon_robot_kernels_variations_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31;
+  FOUR b32, b33;
+  b0 = GIVEN(40) * GIVEN(32);
+  b1 = b0 * GIVEN(32);
+  b2 = GIVEN(40) * GIVEN(28);
+  b3 = b2 * GIVEN(28);
+  b4 = EACH(1.0) - (b1 + b3);
+  b5 = GIVEN(36) * GIVEN(36);
+  b6 = b5 / EACH(2.0);
+  b7 = b6 * GIVEN(32);
+  b8 = GIVEN(40) * GIVEN(24);
+  b9 = b7 + b8 * GIVEN(28);
+  b10 = b6 * GIVEN(28);
+  b11 = b8 * GIVEN(32) - b10;
+  b12 = GIVEN(44) * b4 + GIVEN(56) * b9 + GIVEN(68) * b11;
+  b7 = b2 * GIVEN(24) - b7;
+  b8 = b8 * GIVEN(24);
+  b1 = EACH(1.0) - (b1 + b8);
+  b13 = b6 * GIVEN(24);
+  b2 = b13 + b2 * GIVEN(32);
+  b14 = GIVEN(44) * b7 + GIVEN(56) * b1 + GIVEN(68) * b2;
+  b15 = EACH(0.08333333333333333) * GIVEN(20);
+  b10 = b10 + b0 * GIVEN(24);
+  b13 = b0 * GIVEN(28) - b13;
+  b8 = EACH(1.0) - (b3 + b8);
+  b3 = GIVEN(44) * b10 + GIVEN(56) * b13 + GIVEN(68) * b8;
+  b0 = EACH(0.08333333333333333) * GIVEN(16);
+  b16 = GIVEN(48) * b4 + GIVEN(60) * b9 + GIVEN(72) * b11;
+  b17 = GIVEN(48) * b7 + GIVEN(60) * b1 + GIVEN(72) * b2;
+  b18 = GIVEN(48) * b10 + GIVEN(60) * b13 + GIVEN(72) * b8;
+  b11 = GIVEN(52) * b4 + GIVEN(64) * b9 + GIVEN(76) * b11;
+  b2 = GIVEN(52) * b7 + GIVEN(64) * b1 + GIVEN(76) * b2;
+  b8 = GIVEN(52) * b10 + GIVEN(64) * b13 + GIVEN(76) * b8;
+  b13 = EACH(0.08333333333333333) * GIVEN(12);
+  b10 = EACH(0.08333333333333333) * GIVEN(8);
+  b1 = EACH(0.08333333333333333) * GIVEN(4);
+  b7 = EACH(0.08333333333333333) * GIVEN(0);
+  b9 = GIVEN(52) * GIVEN(24) + GIVEN(64) * GIVEN(28) + GIVEN(76) * GIVEN(32);
+  b5 = EACH(0.5) / b5;
+  b4 = GIVEN(44) * GIVEN(24) + GIVEN(56) * GIVEN(28) + GIVEN(68) * GIVEN(32);
+  b19 = GIVEN(48) * GIVEN(24) + GIVEN(60) * GIVEN(28) + GIVEN(72) * GIVEN(32);
+  b20 = b4 * b4 + b19 * b19 + b9 * b9;
+  b21 = EACH((-2.186688975602072e-15)) + b20 * (EACH(6.576508197299464e-18) + EACH((-1.6014224506411032e-20)) * b20);
+  b21 = b20 * (EACH((-1.1470745597729724e-10)) + b20 * (EACH(5.735372798864862e-13) + b20 * b21));
+  b21 = b20 * (EACH((-1.6534391534391535e-06)) + b20 * (EACH(1.670140559029448e-08) + b21));
+  b21 = EACH((-0.002777777777777778)) + b20 * (EACH(9.92063492063492e-05) + b21);
+  b22 = b5 * b21 * (GIVEN(80) * b4 + GIVEN(84) * b19 + GIVEN(88) * b9);
+  b21 = b5 * (GIVEN(40) + b20 * b21);
+  b20 = b22 * b9 - b21 * GIVEN(88);
+  b5 = b9 * b20;
+  b23 = b22 * b19 - b21 * GIVEN(84);
+  b24 = b19 * b23;
+  b25 = GIVEN(88) / EACH(2.0);
+  b26 = b4 * b23;
+  b21 = b22 * b4 - b21 * GIVEN(80);
+  b22 = b19 * b21;
+  b27 = b4 * b20;
+  b28 = GIVEN(84) / EACH(2.0);
+  b29 = b9 * b21;
+  b21 = b4 * b21;
+  b4 = GIVEN(80) / EACH(2.0);
+  b20 = b19 * b20;
+  b23 = b9 * b23;
+  b9 = GIVEN(68) * GIVEN(80) + GIVEN(72) * GIVEN(84) + GIVEN(76) * GIVEN(88);
+  b19 = GIVEN(44) * GIVEN(80) + GIVEN(48) * GIVEN(84) + GIVEN(52) * GIVEN(88);
+  b30 = GIVEN(56) * GIVEN(80) + GIVEN(60) * GIVEN(84) + GIVEN(64) * GIVEN(88);
+  b31 = GIVEN(40) * (GIVEN(32) * b19 - GIVEN(24) * b9) - b6 * b30;
+  b32 = GIVEN(40) * (GIVEN(28) * b9 - GIVEN(32) * b30) - b6 * b19;
+  b33 = EACH(0.08333333333333333) * (b9 + (GIVEN(24) * b31 - GIVEN(28) * b32));
+  b9 = GIVEN(40) * (GIVEN(24) * b30 - GIVEN(28) * b19) - b6 * b9;
+  b32 = EACH(0.08333333333333333) * (b30 + (GIVEN(32) * b32 - GIVEN(24) * b9));
+  b30 = EACH((-1.0)) * b32;
+  b6 = EACH((-1.0)) * b33;
+  b31 = EACH(0.08333333333333333) * (b19 + (GIVEN(28) * b9 - GIVEN(32) * b31));
+  b9 = EACH((-1.0)) * b31;
+  STORE(made + 0, b12 - b14 * b15 + b3 * b0);
+  STORE(made + 4, b16 - b17 * b15 + b18 * b0);
+  STORE(made + 8, b11 - b2 * b15 + b8 * b0);
+  STORE(made + 12, b12 * b15 + b14 - b3 * b13);
+  STORE(made + 16, b16 * b15 + b17 - b18 * b13);
+  STORE(made + 20, b11 * b15 + b2 - b8 * b13);
+  STORE(made + 24, b14 * b13 - b12 * b0 + b3);
+  STORE(made + 28, b17 * b13 - b16 * b0 + b18);
+  STORE(made + 32, b2 * b13 - b11 * b0 + b8);
+  STORE(made + 36, b14 * b10 - b3 * b1);
+  STORE(made + 40, b17 * b10 - b18 * b1);
+  STORE(made + 44, b2 * b10 - b8 * b1);
+  STORE(made + 48, b3 * b7 - b12 * b10);
+  STORE(made + 52, b18 * b7 - b16 * b10);
+  STORE(made + 56, b8 * b7 - b11 * b10);
+  STORE(made + 60, b12 * b1 - b14 * b7);
+  STORE(made + 64, b16 * b1 - b17 * b7);
+  STORE(made + 68, b11 * b1 - b2 * b7);
+  STORE(made + 72, EACH((-1.0)) * (EACH(2.0) * (b5 + b24)));
+  STORE(made + 76, b25 + b26 + b22);
+  STORE(made + 80, b27 - b28 + b29);
+  STORE(made + 84, b22 - b25 + b26);
+  STORE(made + 88, EACH((-1.0)) * (EACH(2.0) * (b5 + b21)));
+  STORE(made + 92, b4 + b20 + b23);
+  STORE(made + 96, b28 + b29 + b27);
+  STORE(made + 100, b23 - b4 + b20);
+  STORE(made + 104, EACH((-1.0)) * (EACH(2.0) * (b24 + b21)));
+  STORE(made + 108, b33);
+  STORE(made + 112, b30);
+  STORE(made + 116, b6);
+  STORE(made + 120, b31);
+  STORE(made + 124, b32);
+  STORE(made + 128, b9);
+  STORE(made + 132, b6);
+  STORE(made + 136, b32);
+  STORE(made + 140, b33);
+  STORE(made + 144, b9);
+  STORE(made + 148, b30);
+  STORE(made + 152, b31);
+}
+
+static void MADE(tendon_robot_kernels_variations)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 92, made += 156)
+    EVERY_LANE(MADE(tendon_robot_kernels_variations_turn)(given + lane, made + lane))
+}
+
+static void MADE(tendon_robot_kernels_fwd1_pulls_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16, b17;
+  b0 = GIVEN(68) * GIVEN(80) + GIVEN(72) * GIVEN(84) + GIVEN(76) * GIVEN(88);
+  b1 = GIVEN(44) * GIVEN(80) + GIVEN(48) * GIVEN(84) + GIVEN(52) * GIVEN(88);
+  b2 = GIVEN(32) * b1 - GIVEN(24) * b0;
+  b3 = GIVEN(36) * GIVEN(36) / EACH(2.0);
+  b4 = GIVEN(56) * GIVEN(80) + GIVEN(60) * GIVEN(84) + GIVEN(64) * GIVEN(88);
+  b5 = GIVEN(40) * b2 - b3 * b4;
+  b6 = GIVEN(28) * b0 - GIVEN(32) * b4;
+  b7 = GIVEN(40) * b6 - b3 * b1;
+  b8 = EACH(0.08333333333333333) * (b0 + (GIVEN(24) * b5 - GIVEN(28) * b7));
+  b9 = GIVEN(88) * GIVEN(168) + GIVEN(76) * GIVEN(180);
+  b9 = GIVEN(80) * GIVEN(160) + GIVEN(68) * GIVEN(172) + (GIVEN(84) * GIVEN(164) + GIVEN(72) * GIVEN(176)) + b9;
+  b10 = GIVEN(88) * GIVEN(144) + GIVEN(52) * GIVEN(180);
+  b10 = GIVEN(80) * GIVEN(136) + GIVEN(44) * GIVEN(172) + (GIVEN(84) * GIVEN(140) + GIVEN(48) * GIVEN(176)) + b10;
+  b11 = EACH(0.5) * (EACH(2.0) * GIVEN(36) * GIVEN(128));
+  b12 = GIVEN(88) * GIVEN(156) + GIVEN(64) * GIVEN(180);
+  b12 = GIVEN(80) * GIVEN(148) + GIVEN(56) * GIVEN(172) + (GIVEN(84) * GIVEN(152) + GIVEN(60) * GIVEN(176)) + b12;
+  b2 = b2 * GIVEN(132) + GIVEN(40) * (b1 * GIVEN(124) + GIVEN(32) * b10 - (b0 * GIVEN(116) + GIVEN(24) * b9));
+  b2 = b2 - (b4 * b11 + b3 * b12);
+  b6 = b6 * GIVEN(132) + GIVEN(40) * (b0 * GIVEN(120) + GIVEN(28) * b9 - (b4 * GIVEN(124) + GIVEN(32) * b12));
+  b6 = b6 - (b1 * b11 + b3 * b10);
+  b13 = b9 + (b5 * GIVEN(116) + GIVEN(24) * b2 - (b7 * GIVEN(120) + GIVEN(28) * b6));
+  b14 = EACH(0.08333333333333333) * b13;
+  b15 = GIVEN(24) * b4 - GIVEN(28) * b1;
+  b16 = GIVEN(40) * b15 - b3 * b0;
+  b17 = EACH(0.08333333333333333) * (b4 + (GIVEN(32) * b7 - GIVEN(24) * b16));
+  b4 = b15 * GIVEN(132) + GIVEN(40) * (b4 * GIVEN(116) + GIVEN(24) * b12 - (b1 * GIVEN(120) + GIVEN(28) * b10));
+  b9 = b4 - (b0 * b11 + b3 * b9);
+  b6 = b12 + (b7 * GIVEN(124) + GIVEN(32) * b6 - (b16 * GIVEN(116) + GIVEN(24) * b9));
+  b7 = EACH(0.08333333333333333) * b6;
+  b2 = b10 + (b16 * GIVEN(120) + GIVEN(28) * b9 - (b5 * GIVEN(124) + GIVEN(32) * b2));
+  b5 = EACH(0.08333333333333333) * (b1 + (GIVEN(28) * b16 - GIVEN(32) * b5));
+  b16 = EACH(0.08333333333333333) * b2;
+  STORE(made + 0, b8 * GIVEN(108) + GIVEN(16) * b14 - (b17 * GIVEN(112) + GIVEN(20) * b7) + b2);
+  STORE(made + 4, b6 - (b8 * GIVEN(104) + GIVEN(12) * b14) + (b5 * GIVEN(112) + GIVEN(20) * b16));
+  STORE(made + 8, b13 + (b17 * GIVEN(104) + GIVEN(12) * b7) - (b5 * GIVEN(108) + GIVEN(16) * b16));
+  STORE(made + 12, b17 * GIVEN(100) + GIVEN(8) * b7 - (b8 * GIVEN(96) + GIVEN(4) * b14));
+  STORE(made + 16, b8 * GIVEN(92) + GIVEN(0) * b14 - (b5 * GIVEN(100) + GIVEN(8) * b16));
+  STORE(made + 20, b5 * GIVEN(96) + GIVEN(4) * b16 - (b17 * GIVEN(92) + GIVEN(0) * b7));
+}
+
+static void MADE(tendon_robot_kernels_fwd1_pulls)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 184, made += 24)
+    EVERY_LANE(MADE(tendon_robot_kernels_fwd1_pulls_turn)(given + lane, made + lane))
+}
+
+static void MADE(tendon_robot_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16;
+  b0 = GIVEN(40) * GIVEN(32);
+  b1 = b0 * GIVEN(32);
+  b2 = GIVEN(40) * GIVEN(28);
+  b3 = b2 * GIVEN(28);
+  b4 = EACH(1.0) - (b1 + b3);
+  b5 = GIVEN(36) * GIVEN(36) / EACH(2.0);
+  b6 = b5 * GIVEN(32);
+  b7 = GIVEN(40) * GIVEN(24);
+  b8 = b6 + b7 * GIVEN(28);
+  b9 = b5 * GIVEN(28);
+  b10 = b7 * GIVEN(32) - b9;
+  b11 = GIVEN(44) * b4 + GIVEN(56) * b8 + GIVEN(68) * b10;
+  b6 = b2 * GIVEN(24) - b6;
+  b7 = b7 * GIVEN(24);
+  b1 = EACH(1.0) - (b1 + b7);
+  b5 = b5 * GIVEN(24);
+  b2 = b5 + b2 * GIVEN(32);
+  b12 = GIVEN(44) * b6 + GIVEN(56) * b1 + GIVEN(68) * b2;
+  b13 = EACH(0.08333333333333333) * GIVEN(20);
+  b9 = b9 + b0 * GIVEN(24);
+  b5 = b0 * GIVEN(28) - b5;
+  b7 = EACH(1.0) - (b3 + b7);
+  b3 = GIVEN(44) * b9 + GIVEN(56) * b5 + GIVEN(68) * b7;
+  b0 = EACH(0.08333333333333333) * GIVEN(16);
+  b14 = GIVEN(48) * b4 + GIVEN(60) * b8 + GIVEN(72) * b10;
+  b15 = GIVEN(48) * b6 + GIVEN(60) * b1 + GIVEN(72) * b2;
+  b16 = GIVEN(48) * b9 + GIVEN(60) * b5 + GIVEN(72) * b7;
+  b10 = GIVEN(52) * b4 + GIVEN(64) * b8 + GIVEN(76) * b10;
+  b2 = GIVEN(52) * b6 + GIVEN(64) * b1 + GIVEN(76) * b2;
+  b7 = GIVEN(52) * b9 + GIVEN(64) * b5 + GIVEN(76) * b7;
+  b5 = EACH(0.08333333333333333) * GIVEN(12);
+  b9 = EACH(0.08333333333333333) * GIVEN(8);
+  b1 = EACH(0.08333333333333333) * GIVEN(4);
+  b6 = EACH(0.08333333333333333) * GIVEN(0);
+  STORE(made + 0, b11 - b12 * b13 + b3 * b0);
+  STORE(made + 4, b14 - b15 * b13 + b16 * b0);
+  STORE(made + 8, b10 - b2 * b13 + b7 * b0);
+  STORE(made + 12, b11 * b13 + b12 - b3 * b5);
+  STORE(made + 16, b14 * b13 + b15 - b16 * b5);
+  STORE(made + 20, b10 * b13 + b2 - b7 * b5);
+  STORE(made + 24, b12 * b5 - b11 * b0 + b3);
+  STORE(made + 28, b15 * b5 - b14 * b0 + b16);
+  STORE(made + 32, b2 * b5 - b10 * b0 + b7);
+  STORE(made + 36, b12 * b9 - b3 * b1);
+  STORE(made + 40, b15 * b9 - b16 * b1);
+  STORE(made + 44, b2 * b9 - b7 * b1);
+  STORE(made + 48, b3 * b6 - b11 * b9);
+  STORE(made + 52, b16 * b6 - b14 * b9);
+  STORE(made + 56, b7 * b6 - b10 * b9);
+  STORE(made + 60, b11 * b1 - b12 * b6);
+  STORE(made + 64, b14 * b1 - b15 * b6);
+  STORE(made + 68, b10 * b1 - b2 * b6);
+}
+
+static void MADE(tendon_robot_kernels_turnings)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 80, made += 72)
+    EVERY_LANE(MADE(tendon_robot_kernels_turnings_turn)(given + lane, made + lane))
+}
+
+static void MADE(tendon_robot_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2;
+  b0 = w[489] * TURN(160);
+  b0 = w[429] * TURN(0) + w[441] * TURN(32) + w[453] * TURN(64) + w[465] * TURN(96) + w[477] * TURN(128) + b0;
+  STORE(passed + 68, b0);
+  b1 = w[490] * TURN(164);
+  b1 = w[430] * TURN(4) + w[442] * TURN(36) + w[454] * TURN(68) + w[466] * TURN(100) + w[478] * TURN(132) + b1;
+  STORE(passed + 104, b1);
+  b1 = b0 + b1;
+  STORE(passed + 56, b1);
+  b0 = w[491] * TURN(168);
+  b0 = w[431] * TURN(8) + w[443] * TURN(40) + w[455] * TURN(72) + w[467] * TURN(104) + w[479] * TURN(136) + b0;
+  STORE(passed + 132, b0);
+  b0 = b1 + b0;
+  STORE(passed + 44, b0);
+  b1 = w[492] * TURN(172);
+  b1 = w[432] * TURN(12) + w[444] * TURN(44) + w[456] * TURN(76) + w[468] * TURN(108) + w[480] * TURN(140) + b1;
+  STORE(passed + 92, b1);
+  b1 = b0 + b1;
+  STORE(passed + 36, b1);
+  b0 = w[645] * TURN(176);
+  b0 = w[585] * TURN(16) + w[597] * TURN(48) + w[609] * TURN(80) + w[621] * TURN(112) + w[633] * TURN(144) + b0;
+  STORE(passed + 196, b0);
+  b0 = b1 + b0;
+  STORE(passed + 28, b0);
+  b1 = w[646] * TURN(180);
+  b1 = w[586] * TURN(20) + w[598] * TURN(52) + w[610] * TURN(84) + w[622] * TURN(116) + w[634] * TURN(148) + b1;
+  STORE(passed + 248, b1);
+  b1 = b0 + b1;
+  STORE(passed + 20, b1);
+  b0 = w[647] * TURN(184);
+  b0 = w[587] * TURN(24) + w[599] * TURN(56) + w[611] * TURN(88) + w[623] * TURN(120) + w[635] * TURN(152) + b0;
+  STORE(passed + 280, b0);
+  b0 = b1 + b0;
+  STORE(passed + 12, b0);
+  b1 = w[648] * TURN(188);
+  b1 = w[588] * TURN(28) + w[600] * TURN(60) + w[612] * TURN(92) + w[624] * TURN(124) + w[636] * TURN(156) + b1;
+  STORE(passed + 220, b1);
+  b1 = b0 + b1;
+  STORE(passed + 84, b1);
+  b0 = w[485] * TURN(160);
+  b0 = w[425] * TURN(0) + w[437] * TURN(32) + w[449] * TURN(64) + w[461] * TURN(96) + w[473] * TURN(128) + b0;
+  STORE(passed + 72, b0);
+  b2 = w[486] * TURN(164);
+  b2 = w[426] * TURN(4) + w[438] * TURN(36) + w[450] * TURN(68) + w[462] * TURN(100) + w[474] * TURN(132) + b2;
+  STORE(passed + 100, b2);
+  b2 = b0 + b2;
+  STORE(passed + 60, b2);
+  b0 = w[487] * TURN(168);
+  b0 = w[427] * TURN(8) + w[439] * TURN(40) + w[451] * TURN(72) + w[463] * TURN(104) + w[475] * TURN(136) + b0;
+  STORE(passed + 128, b0);
+  b0 = b2 + b0;
+  STORE(passed + 48, b0);
+  b2 = w[488] * TURN(172);
+  b2 = w[428] * TURN(12) + w[440] * TURN(44) + w[452] * TURN(76) + w[464] * TURN(108) + w[476] * TURN(140) + b2;
+  STORE(passed + 88, b2);
+  b2 = b0 + b2;
+  STORE(passed + 40, b2);
+  b0 = w[641] * TURN(176);
+  b0 = w[581] * TURN(16) + w[593] * TURN(48) + w[605] * TURN(80) + w[617] * TURN(112) + w[629] * TURN(144) + b0;
+  STORE(passed + 192, b0);
+  b0 = b2 + b0;
+  STORE(passed + 32, b0);
+  b2 = w[642] * TURN(180);
+  b2 = w[582] * TURN(20) + w[594] * TURN(52) + w[606] * TURN(84) + w[618] * TURN(116) + w[630] * TURN(148) + b2;
+  STORE(passed + 244, b2);
+  b2 = b0 + b2;
+  STORE(passed + 24, b2);
+  b0 = w[643] * TURN(184);
+  b0 = w[583] * TURN(24) + w[595] * TURN(56) + w[607] * TURN(88) + w[619] * TURN(120) + w[631] * TURN(152) + b0;
+  STORE(passed + 276, b0);
+  b0 = b2 + b0;
+  STORE(passed + 16, b0);
+  b2 = w[644] * TURN(188);
+  b2 = w[584] * TURN(28) + w[596] * TURN(60) + w[608] * TURN(92) + w[620] * TURN(124) + w[632] * TURN(156) + b2;
+  STORE(passed + 216, b2);
+  b2 = b0 + b2;
+  STORE(passed + 80, b2);
+  STORE(passed + 8, w[969] * b1 - w[1018] * b2);
+  b2 = w[493] * TURN(160);
+  b2 = w[433] * TURN(0) + w[445] * TURN(32) + w[457] * TURN(64) + w[469] * TURN(96) + w[481] * TURN(128) + b2;
+  STORE(passed + 76, b2);
+  b1 = w[494] * TURN(164);
+  b1 = w[434] * TURN(4) + w[446] * TURN(36) + w[458] * TURN(68) + w[470] * TURN(100) + w[482] * TURN(132) + b1;
+  STORE(passed + 108, b1);
+  b1 = b2 + b1;
+  STORE(passed + 64, b1);
+  b2 = w[495] * TURN(168);
+  b2 = w[435] * TURN(8) + w[447] * TURN(40) + w[459] * TURN(72) + w[471] * TURN(104) + w[483] * TURN(136) + b2;
+  STORE(passed + 136, b2);
+  b2 = b1 + b2;
+  STORE(passed + 52, b2);
+  b1 = w[496] * TURN(172);
+  b1 = w[436] * TURN(12) + w[448] * TURN(44) + w[460] * TURN(76) + w[472] * TURN(108) + w[484] * TURN(140) + b1;
+  STORE(passed + 96, b1);
+  STORE(passed + 0, b2 + b1);
+  b1 = w[649] * TURN(176);
+  b1 = w[589] * TURN(16) + w[601] * TURN(48) + w[613] * TURN(80) + w[625] * TURN(112) + w[637] * TURN(144) + b1;
+  STORE(passed + 4, b1);
+}
+
+static void MADE(tendon_robot_k_jacobian_columns_1)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10;
+  b0 = PASSED(0) + PASSED(4);
+  STORE(passed + 236, b0);
+  b1 = w[650] * TURN(180);
+  b1 = w[590] * TURN(20) + w[602] * TURN(52) + w[614] * TURN(84) + w[626] * TURN(116) + w[638] * TURN(148) + b1;
+  STORE(passed + 252, b1);
+  b1 = b0 + b1;
+  STORE(passed + 264, b1);
+  b2 = w[651] * TURN(184);
+  b2 = w[591] * TURN(24) + w[603] * TURN(56) + w[615] * TURN(88) + w[627] * TURN(120) + w[639] * TURN(152) + b2;
+  STORE(passed + 284, b2);
+  b2 = b1 + b2;
+  STORE(passed + 208, b2);
+  b3 = w[652] * TURN(188);
+  b3 = w[592] * TURN(28) + w[604] * TURN(60) + w[616] * TURN(92) + w[628] * TURN(124) + w[640] * TURN(156) + b3;
+  STORE(passed + 224, b3);
+  b3 = b2 + b3;
+  b4 = PASSED(8) + w[1067] * b3;
+  STORE(passed + 212, b4);
+  b4 = b4 + (w[1068] * PASSED(12) - w[1069] * PASSED(16) + w[1070] * b2);
+  STORE(passed + 272, b4);
+  b4 = b4 + (w[1071] * PASSED(20) - w[1072] * PASSED(24) + w[1073] * b1);
+  STORE(passed + 240, b4);
+  b4 = b4 + (w[1074] * PASSED(28) - w[1075] * PASSED(32) + w[1076] * b0);
+  STORE(passed + 188, b4);
+  b4 = b4 + (w[1077] * PASSED(36) - w[1078] * PASSED(40) + w[1079] * PASSED(0));
+  b5 = b4 + (w[1080] * PASSED(44) - w[1081] * PASSED(48) + w[1082] * PASSED(52));
+  STORE(passed + 124, b5);
+  b5 = b5 + (w[1083] * PASSED(56) - w[1084] * PASSED(60) + w[1085] * PASSED(64));
+  b6 = w[509] * PASSED(68);
+  b7 = w[521] * PASSED(76);
+  b7 = b5 + (w[1086] * PASSED(68) - w[1087] * PASSED(72) + w[1088] * PASSED(76)) + w[497] * PASSED(72) + b6 + b7;
+  STORE(passed + 160, b7);
+  b6 = w[1092] * PASSED(80) - w[1093] * PASSED(84) + w[1094] * b3;
+  STORE(passed + 228, b6);
+  b6 = b6 + (w[1095] * PASSED(16) - w[1096] * PASSED(12) + w[1097] * b2);
+  STORE(passed + 288, b6);
+  b6 = b6 + (w[1098] * PASSED(24) - w[1099] * PASSED(20) + w[1100] * b1);
+  STORE(passed + 256, b6);
+  b6 = b6 + (w[1101] * PASSED(32) - w[1102] * PASSED(28) + w[1103] * b0);
+  STORE(passed + 200, b6);
+  b6 = b6 + (w[1104] * PASSED(40) - w[1105] * PASSED(36) + w[1106] * PASSED(0));
+  b8 = b6 + (w[1107] * PASSED(48) - w[1108] * PASSED(44) + w[1109] * PASSED(52));
+  STORE(passed + 140, b8);
+  b8 = b8 + (w[1110] * PASSED(60) - w[1111] * PASSED(56) + w[1112] * PASSED(64));
+  STORE(passed + 116, b8);
+  b9 = w[513] * PASSED(68);
+  b10 = w[525] * PASSED(76);
+  b10 = b8 + (w[1113] * PASSED(72) - w[1114] * PASSED(68) + w[1115] * PASSED(76)) + w[501] * PASSED(72) + b9 + b10;
+  STORE(passed + 164, b10);
+  b3 = w[1119] * PASSED(80) + w[1120] * PASSED(84) - w[1121] * b3;
+  STORE(passed + 232, b3);
+  b2 = b3 + (w[1122] * PASSED(16) + w[1123] * PASSED(12) - w[1124] * b2);
+  STORE(passed + 292, b2);
+  b1 = b2 + (w[1125] * PASSED(24) + w[1126] * PASSED(20) - w[1127] * b1);
+  STORE(passed + 260, b1);
+  b0 = b1 + (w[1128] * PASSED(32) + w[1129] * PASSED(28) - w[1130] * b0);
+  STORE(passed + 204, b0);
+  b0 = b0 + (w[1131] * PASSED(40) + w[1132] * PASSED(36) - w[1133] * PASSED(0));
+  b1 = b0 + (w[1134] * PASSED(48) + w[1135] * PASSED(44) - w[1136] * PASSED(52));
+  STORE(passed + 144, b1);
+  b1 = b1 + (w[1137] * PASSED(60) + w[1138] * PASSED(56) - w[1139] * PASSED(64));
+  STORE(passed + 120, b1);
+  b2 = w[517] * PASSED(68);
+  b3 = w[529] * PASSED(76);
+  b3 = b1 + (w[1140] * PASSED(72) + w[1141] * PASSED(68) - w[1142] * PASSED(76)) + w[505] * PASSED(72) + b2 + b3;
+  STORE(passed + 168, b3);
+  b3 = w[425] * b7 + w[429] * b10 + w[433] * b3 + w[565] * TURN(128) + w[573] * TURN(160);
+  STORE(passed + 152, b3);
+  b10 = w[524] * PASSED(96);
+  b10 = w[353] * PASSED(52) - w[367] * PASSED(44) + b4 + w[500] * PASSED(88) + w[512] * PASSED(92) + b10;
+  STORE(passed + 172, b10);
+  b4 = w[528] * PASSED(96);
+  b4 = w[367] * PASSED(48) - w[322] * PASSED(52) + b6 + w[504] * PASSED(88) + w[516] * PASSED(92) + b4;
+  STORE(passed + 176, b4);
+  b6 = w[532] * PASSED(96);
+  b6 = w[322] * PASSED(44) - w[353] * PASSED(48) + b0 + w[508] * PASSED(88) + w[520] * PASSED(92) + b6;
+  STORE(passed + 180, b6);
+  b6 = w[428] * b10 + w[432] * b4 + w[436] * b6 + w[568] * TURN(140) + w[576] * TURN(172);
+  STORE(passed + 156, b6);
+  b6 = b3 + b6;
+  STORE(passed + 184, b6);
+  STORE(passed + 148, EACH((-2.985395305138945)) * b6);
+  b5 = w[359] * PASSED(76) - w[369] * PASSED(68) + b5 + w[498] * PASSED(100) + w[510] * PASSED(104);
+  STORE(passed + 112, b5);
+}
+
+static void MADE(tendon_robot_k_jacobian_columns_2)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11;
+  b0 = PASSED(112) + w[522] * PASSED(108);
+  STORE(passed + 352, b0);
+  b1 = w[526] * PASSED(108);
+  b1 = w[369] * PASSED(72) - w[332] * PASSED(76) + PASSED(116) + w[502] * PASSED(100) + w[514] * PASSED(104) + b1;
+  STORE(passed + 356, b1);
+  b2 = w[530] * PASSED(108);
+  b2 = w[332] * PASSED(68) - w[359] * PASSED(72) + PASSED(120) + w[506] * PASSED(100) + w[518] * PASSED(104) + b2;
+  STORE(passed + 360, b2);
+  b3 = w[426] * b0 + w[430] * b1 + w[434] * b2 + w[566] * TURN(132) + w[574] * TURN(164);
+  b4 = w[523] * PASSED(136);
+  b4 = w[356] * PASSED(64) - w[368] * PASSED(56) + PASSED(124) + w[499] * PASSED(128) + w[511] * PASSED(132) + b4;
+  STORE(passed + 364, b4);
+  b5 = w[527] * PASSED(136);
+  b5 = w[368] * PASSED(60) - w[327] * PASSED(64) + PASSED(140) + w[503] * PASSED(128) + w[515] * PASSED(132) + b5;
+  STORE(passed + 368, b5);
+  b6 = w[531] * PASSED(136);
+  b6 = w[327] * PASSED(56) - w[356] * PASSED(60) + PASSED(144) + w[507] * PASSED(128) + w[519] * PASSED(132) + b6;
+  STORE(passed + 372, b6);
+  b7 = w[427] * b4 + w[431] * b5 + w[435] * b6 + w[567] * TURN(136) + w[575] * TURN(168);
+  b8 = b3 + b7;
+  STORE(passed + 412, PASSED(148) + EACH((-7.207381834711404)) * b8);
+  b9 = w[461] * PASSED(160) + w[465] * PASSED(164) + w[469] * PASSED(168) + w[541] * TURN(32) + w[549] * TURN(64);
+  b10 = w[464] * PASSED(172) + w[468] * PASSED(176) + w[472] * PASSED(180) + w[544] * TURN(44) + w[552] * TURN(76);
+  b11 = EACH((-0.874402040352714)) * (b9 + b10);
+  b2 = w[462] * b0 + w[466] * b1 + w[470] * b2 + w[542] * TURN(36) + w[550] * TURN(68);
+  b6 = w[463] * b4 + w[467] * b5 + w[471] * b6 + w[543] * TURN(40) + w[551] * TURN(72);
+  b5 = EACH((-5.096388569925174)) * (b2 + b6);
+  b5 = EACH(2.5481942849625874) * (PASSED(152) - PASSED(156)) + EACH(2.548194284962587) * (b3 - b7) + b11 + b5;
+  STORE(passed + 416, b5);
+  b10 = EACH(2.239046478854207) * (b9 - b10);
+  b6 = EACH(5.405536376033552) * (b2 - b6);
+  STORE(passed + 420, EACH((-1.8018454586778514)) * PASSED(184) + EACH(1.8018454586778514) * b8 + b10 + b6);
+  b6 = w[677] * PASSED(4);
+  b6 = w[349] * PASSED(0) - w[366] * PASSED(36) + PASSED(188) + w[653] * PASSED(192) + w[665] * PASSED(196) + b6;
+  STORE(passed + 312, b6);
+  b10 = w[681] * PASSED(4);
+  b10 = w[366] * PASSED(40) - w[315] * PASSED(0) + PASSED(200) + w[657] * PASSED(192) + w[669] * PASSED(196) + b10;
+  STORE(passed + 316, b10);
+  b8 = w[685] * PASSED(4);
+  b8 = w[315] * PASSED(36) - w[349] * PASSED(40) + PASSED(204) + w[661] * PASSED(192) + w[673] * PASSED(196) + b8;
+  STORE(passed + 320, b8);
+  b8 = w[581] * b6 + w[585] * b10 + w[589] * b8 + w[721] * TURN(144) + w[729] * TURN(176);
+  STORE(passed + 304, b8);
+  b10 = w[680] * PASSED(224);
+  b10 = w[340] * PASSED(208) - w[363] * PASSED(12) + PASSED(212) + w[656] * PASSED(216) + w[668] * PASSED(220) + b10;
+  STORE(passed + 324, b10);
+  b6 = w[684] * PASSED(224);
+  b6 = w[363] * PASSED(16) - w[300] * PASSED(208) + PASSED(228) + w[660] * PASSED(216) + w[672] * PASSED(220) + b6;
+  STORE(passed + 328, b6);
+  b2 = w[688] * PASSED(224);
+  b2 = w[300] * PASSED(12) - w[340] * PASSED(16) + PASSED(232) + w[664] * PASSED(216) + w[676] * PASSED(220) + b2;
+  STORE(passed + 332, b2);
+  b2 = w[584] * b10 + w[588] * b6 + w[592] * b2 + w[724] * TURN(156) + w[732] * TURN(188);
+  STORE(passed + 308, b2);
+  b2 = b8 + b2;
+  STORE(passed + 348, b2);
+  STORE(passed + 300, EACH((-2.985395305138945)) * b2);
+  b2 = w[678] * PASSED(252);
+  b2 = w[346] * PASSED(236) - w[365] * PASSED(28) + PASSED(240) + w[654] * PASSED(244) + w[666] * PASSED(248) + b2;
+  STORE(passed + 336, b2);
+  b8 = w[682] * PASSED(252);
+  b8 = w[365] * PASSED(32) - w[310] * PASSED(236) + PASSED(256) + w[658] * PASSED(244) + w[670] * PASSED(248) + b8;
+  STORE(passed + 340, b8);
+  b6 = w[686] * PASSED(252);
+  b6 = w[310] * PASSED(28) - w[346] * PASSED(32) + PASSED(260) + w[662] * PASSED(244) + w[674] * PASSED(248) + b6;
+  STORE(passed + 344, b6);
+  STORE(passed + 296, w[582] * b2 + w[586] * b8 + w[590] * b6 + w[722] * TURN(148) + w[730] * TURN(180));
+  STORE(passed + 268, w[343] * PASSED(264) - w[364] * PASSED(20));
+}
+
+static void MADE(tendon_robot_k_jacobian_columns_3)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14;
+  b0 = PASSED(268) + PASSED(272) + w[655] * PASSED(276) + w[667] * PASSED(280) + w[679] * PASSED(284);
+  STORE(passed + 392, b0);
+  b1 = w[683] * PASSED(284);
+  b1 = w[364] * PASSED(24) - w[305] * PASSED(264) + PASSED(288) + w[659] * PASSED(276) + w[671] * PASSED(280) + b1;
+  STORE(passed + 396, b1);
+  b2 = w[687] * PASSED(284);
+  b2 = w[305] * PASSED(20) - w[343] * PASSED(24) + PASSED(292) + w[663] * PASSED(276) + w[675] * PASSED(280) + b2;
+  STORE(passed + 400, b2);
+  b3 = w[583] * b0 + w[587] * b1 + w[591] * b2 + w[723] * TURN(152) + w[731] * TURN(184);
+  b4 = PASSED(296) + b3;
+  STORE(passed + 424, PASSED(300) + EACH((-7.207381834711404)) * b4);
+  b5 = w[617] * PASSED(312) + w[621] * PASSED(316) + w[625] * PASSED(320) + w[697] * TURN(48) + w[705] * TURN(80);
+  b6 = w[620] * PASSED(324) + w[624] * PASSED(328) + w[628] * PASSED(332) + w[700] * TURN(60) + w[708] * TURN(92);
+  b7 = EACH((-0.8744020403527165)) * (b5 + b6);
+  b8 = w[618] * PASSED(336) + w[622] * PASSED(340) + w[626] * PASSED(344) + w[698] * TURN(52) + w[706] * TURN(84);
+  b9 = w[619] * b0 + w[623] * b1 + w[627] * b2 + w[699] * TURN(56) + w[707] * TURN(88);
+  b7 = EACH(2.5481942849625883) * (PASSED(304) - PASSED(308)) + EACH(2.5481942849625883) * (PASSED(296) - b3) + b7;
+  STORE(passed + 428, b7 + EACH((-5.096388569925174)) * (b8 + b9));
+  b6 = EACH(2.2390464788542124) * (b5 - b6);
+  b9 = EACH(5.405536376033557) * (b8 - b9);
+  STORE(passed + 432, EACH((-1.801845458677853)) * PASSED(348) + EACH(1.801845458677849) * b4 + b6 + b9);
+  b9 = w[437] * PASSED(160) + w[441] * PASSED(164) + w[445] * PASSED(168) + w[557] * TURN(96) + w[577] * TURN(160);
+  b6 = w[440] * PASSED(172) + w[444] * PASSED(176) + w[448] * PASSED(180) + w[560] * TURN(108) + w[580] * TURN(172);
+  b4 = b9 + b6;
+  b8 = w[438] * PASSED(352) + w[442] * PASSED(356) + w[446] * PASSED(360) + w[558] * TURN(100) + w[578] * TURN(164);
+  b5 = w[439] * PASSED(364) + w[443] * PASSED(368) + w[447] * PASSED(372) + w[559] * TURN(104) + w[579] * TURN(168);
+  b7 = b8 + b5;
+  STORE(passed + 436, EACH((-2.985395305138945)) * b4 + EACH((-7.207381834711404)) * b7);
+  b3 = w[473] * PASSED(160) + w[477] * PASSED(164) + w[481] * PASSED(168) + w[533] * TURN(0) + w[553] * TURN(64);
+  b10 = w[476] * PASSED(172) + w[480] * PASSED(176) + w[484] * PASSED(180) + w[536] * TURN(12) + w[556] * TURN(76);
+  b11 = EACH((-0.874402040352714)) * (b3 + b10);
+  b12 = w[474] * PASSED(352) + w[478] * PASSED(356) + w[482] * PASSED(360) + w[534] * TURN(4) + w[554] * TURN(68);
+  b13 = w[475] * PASSED(364) + w[479] * PASSED(368) + w[483] * PASSED(372) + w[535] * TURN(8) + w[555] * TURN(72);
+  b14 = EACH((-5.096388569925174)) * (b12 + b13);
+  b14 = EACH(2.5481942849625874) * (b9 - b6) + EACH(2.548194284962587) * (b8 - b5) + b11 + b14;
+  STORE(passed + 440, b14);
+  b10 = EACH((-1.8018454586778514)) * b4 + EACH(1.8018454586778514) * b7 + EACH(2.239046478854207) * (b3 - b10);
+  STORE(passed + 444, b10 + EACH(5.405536376033552) * (b12 - b13));
+  b13 = w[593] * PASSED(312) + w[597] * PASSED(316) + w[601] * PASSED(320) + w[713] * TURN(112) + w[733] * TURN(176);
+  b12 = w[596] * PASSED(324) + w[600] * PASSED(328) + w[604] * PASSED(332) + w[716] * TURN(124) + w[736] * TURN(188);
+  b10 = b13 + b12;
+  STORE(passed + 404, b10);
+  b3 = w[594] * PASSED(336) + w[598] * PASSED(340) + w[602] * PASSED(344) + w[714] * TURN(116) + w[734] * TURN(180);
+  b2 = w[595] * b0 + w[599] * b1 + w[603] * b2 + w[715] * TURN(120) + w[735] * TURN(184);
+  b1 = b3 + b2;
+  STORE(passed + 408, b1);
+  STORE(passed + 448, EACH((-2.985395305138945)) * b10 + EACH((-7.207381834711404)) * b1);
+  STORE(passed + 388, EACH(2.5481942849625883) * (b13 - b12) + EACH(2.5481942849625883) * (b3 - b2));
+  b2 = w[629] * PASSED(312) + w[633] * PASSED(316) + w[637] * PASSED(320) + w[689] * TURN(16) + w[709] * TURN(80);
+  STORE(passed + 384, b2);
+  STORE(passed + 376, w[632] * PASSED(324) + w[636] * PASSED(328));
+  STORE(passed + 380, w[640] * PASSED(332));
+}
+
+static void MADE(tendon_robot_k_jacobian_columns_4)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27;
+  b0 = PASSED(376) + PASSED(380) + w[692] * TURN(28) + w[712] * TURN(92);
+  b1 = w[630] * PASSED(336) + w[634] * PASSED(340) + w[638] * PASSED(344) + w[690] * TURN(20) + w[710] * TURN(84);
+  b2 = w[631] * PASSED(392) + w[635] * PASSED(396) + w[639] * PASSED(400) + w[691] * TURN(24) + w[711] * TURN(88);
+  b3 = EACH(2.2390464788542124) * (PASSED(384) - b0);
+  b4 = EACH(5.405536376033557) * (b1 - b2);
+  b5 = w[449] * PASSED(160) + w[453] * PASSED(164) + w[457] * PASSED(168) + w[561] * TURN(96) + w[569] * TURN(128);
+  b6 = w[452] * PASSED(172) + w[456] * PASSED(176) + w[460] * PASSED(180) + w[564] * TURN(108) + w[572] * TURN(140);
+  b7 = b5 + b6;
+  b8 = w[450] * PASSED(352) + w[454] * PASSED(356) + w[458] * PASSED(360) + w[562] * TURN(100) + w[570] * TURN(132);
+  b9 = w[451] * PASSED(364) + w[455] * PASSED(368) + w[459] * PASSED(372) + w[563] * TURN(104) + w[571] * TURN(136);
+  b10 = b8 + b9;
+  b11 = w[485] * PASSED(160) + w[489] * PASSED(164) + w[493] * PASSED(168) + w[537] * TURN(0) + w[545] * TURN(32);
+  b12 = w[488] * PASSED(172) + w[492] * PASSED(176) + w[496] * PASSED(180) + w[540] * TURN(12) + w[548] * TURN(44);
+  b13 = EACH((-1.008409626327554)) * (b11 + b12);
+  b14 = w[486] * PASSED(352) + w[490] * PASSED(356) + w[494] * PASSED(360) + w[538] * TURN(4) + w[546] * TURN(36);
+  b15 = w[487] * PASSED(364) + w[491] * PASSED(368) + w[495] * PASSED(372) + w[539] * TURN(8) + w[547] * TURN(40);
+  b16 = EACH((-5.877442018942687)) * (b14 + b15);
+  b12 = EACH((-2.0779895538125635)) * b7 + EACH(2.0779895538125635) * b10 + EACH(2.582194366976339) * (b11 - b12);
+  b11 = w[605] * PASSED(312) + w[609] * PASSED(316) + w[613] * PASSED(320) + w[717] * TURN(112) + w[725] * TURN(144);
+  b17 = w[608] * PASSED(324) + w[612] * PASSED(328) + w[616] * PASSED(332) + w[720] * TURN(124) + w[728] * TURN(156);
+  b18 = b11 + b17;
+  b19 = w[606] * PASSED(336) + w[610] * PASSED(340) + w[614] * PASSED(344) + w[718] * TURN(116) + w[726] * TURN(148);
+  b20 = w[607] * PASSED(392) + w[611] * PASSED(396) + w[615] * PASSED(400) + w[719] * TURN(120) + w[727] * TURN(152);
+  b21 = b19 + b20;
+  b22 = w[641] * PASSED(312) + w[645] * PASSED(316) + w[649] * PASSED(320) + w[693] * TURN(16) + w[701] * TURN(48);
+  b23 = w[644] * PASSED(324) + w[648] * PASSED(328) + w[652] * PASSED(332) + w[696] * TURN(28) + w[704] * TURN(60);
+  b24 = EACH((-1.0084096263275557)) * (b22 + b23);
+  b25 = w[642] * PASSED(336) + w[646] * PASSED(340) + w[650] * PASSED(344) + w[694] * TURN(20) + w[702] * TURN(52);
+  b26 = w[643] * PASSED(392) + w[647] * PASSED(396) + w[651] * PASSED(400) + w[695] * TURN(24) + w[703] * TURN(56);
+  b27 = EACH((-5.877442018942687)) * (b25 + b26);
+  b23 = EACH((-2.0779895538125657)) * b18 + EACH(2.0779895538125612) * b21 + EACH(2.582194366976345) * (b22 - b23);
+  STORE(columns + 0, PASSED(412));
+  STORE(columns + 20, PASSED(416));
+  STORE(columns + 40, PASSED(420));
+  STORE(columns + 60, PASSED(424));
+  STORE(columns + 80, PASSED(428));
+  STORE(columns + 100, PASSED(432));
+  STORE(columns + 120, PASSED(436));
+  STORE(columns + 140, PASSED(440));
+  STORE(columns + 160, PASSED(444));
+  STORE(columns + 180, PASSED(448));
+  b2 = PASSED(388) + EACH((-0.8744020403527165)) * (PASSED(384) + b0) + EACH((-5.096388569925174)) * (b1 + b2);
+  STORE(columns + 200, b2);
+  b4 = EACH((-1.801845458677853)) * PASSED(404) + EACH(1.801845458677849) * PASSED(408) + b3 + b4;
+  STORE(columns + 220, b4);
+  STORE(columns + 240, EACH((-3.442925822635121)) * b7 + EACH((-8.311958215250252)) * b10);
+  b16 = EACH(2.9387210094713434) * (b5 - b6) + EACH(2.9387210094713434) * (b8 - b9) + b13 + b16;
+  STORE(columns + 260, b16);
+  STORE(columns + 280, b12 + EACH(6.233968661437688) * (b14 - b15));
+  STORE(columns + 300, EACH((-3.442925822635121)) * b18 + EACH((-8.311958215250252)) * b21);
+  b27 = EACH(2.9387210094713447) * (b11 - b17) + EACH(2.9387210094713447) * (b19 - b20) + b24 + b27;
+  STORE(columns + 320, b27);
+  STORE(columns + 340, b23 + EACH(6.233968661437693) * (b25 - b26));
+}
+
+static void MADE(tendon_robot_k_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed, int groups) {
+  int group;
+  for (group = 0; group < groups; group++, turns += 192, columns += 4) {
+    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
+    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_1)(w, turns + lane, columns + lane, passed + lane))
+    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_2)(w, turns + lane, columns + lane, passed + lane))
+    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_3)(w, turns + lane, columns + lane, passed + lane))
+    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_4)(w, turns + lane, columns + lane, passed + lane))
+  }
+}
+
+static void MADE(tendon_robot_k_tip_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
+  b0 = w[360] * TURN(160);
+  b0 = w[300] * TURN(0) + w[312] * TURN(32) + w[324] * TURN(64) + w[336] * TURN(96) + w[348] * TURN(128) + b0;
+  STORE(passed + 32, b0);
+  b1 = w[361] * TURN(164);
+  b1 = w[301] * TURN(4) + w[313] * TURN(36) + w[325] * TURN(68) + w[337] * TURN(100) + w[349] * TURN(132) + b1;
+  b1 = b0 + b1;
+  STORE(passed + 36, b1);
+  b2 = w[362] * TURN(168);
+  b2 = w[302] * TURN(8) + w[314] * TURN(40) + w[326] * TURN(72) + w[338] * TURN(104) + w[350] * TURN(136) + b2;
+  b2 = b1 + b2;
+  STORE(passed + 40, b2);
+  b3 = w[363] * TURN(172);
+  b3 = w[303] * TURN(12) + w[315] * TURN(44) + w[327] * TURN(76) + w[339] * TURN(108) + w[351] * TURN(140) + b3;
+  b3 = b2 + b3;
+  STORE(passed + 44, b3);
+  b4 = w[432] * TURN(176);
+  b4 = w[372] * TURN(16) + w[384] * TURN(48) + w[396] * TURN(80) + w[408] * TURN(112) + w[420] * TURN(144) + b4;
+  b4 = b3 + b4;
+  STORE(passed + 48, b4);
+  b5 = w[433] * TURN(180);
+  b5 = w[373] * TURN(20) + w[385] * TURN(52) + w[397] * TURN(84) + w[409] * TURN(116) + w[421] * TURN(148) + b5;
+  b5 = b4 + b5;
+  STORE(passed + 52, b5);
+  b6 = w[434] * TURN(184);
+  b6 = w[374] * TURN(24) + w[386] * TURN(56) + w[398] * TURN(88) + w[410] * TURN(120) + w[422] * TURN(152) + b6;
+  b6 = b5 + b6;
+  STORE(passed + 56, b6);
+  b7 = w[649] * b6;
+  b8 = w[435] * TURN(188);
+  b8 = w[375] * TURN(28) + w[387] * TURN(60) + w[399] * TURN(92) + w[411] * TURN(124) + w[423] * TURN(156) + b8;
+  b8 = b6 + b8;
+  STORE(passed + 60, b8);
+  b7 = w[606] * b0 + w[613] * b1 + w[620] * b2 + w[627] * b3 + w[628] * b3 + w[635] * b4 + w[642] * b5 + b7;
+  b5 = w[364] * TURN(160);
+  b5 = w[304] * TURN(0) + w[316] * TURN(32) + w[328] * TURN(64) + w[340] * TURN(96) + w[352] * TURN(128) + b5;
+  STORE(passed + 8, b5);
+  b4 = w[365] * TURN(164);
+  b4 = w[305] * TURN(4) + w[317] * TURN(36) + w[329] * TURN(68) + w[341] * TURN(100) + w[353] * TURN(132) + b4;
+  b4 = b5 + b4;
+  STORE(passed + 12, b4);
+  b3 = w[366] * TURN(168);
+  b3 = w[306] * TURN(8) + w[318] * TURN(40) + w[330] * TURN(72) + w[342] * TURN(104) + w[354] * TURN(136) + b3;
+  b3 = b4 + b3;
+  STORE(passed + 16, b3);
+  b2 = w[367] * TURN(172);
+  b2 = w[307] * TURN(12) + w[319] * TURN(44) + w[331] * TURN(76) + w[343] * TURN(108) + w[355] * TURN(140) + b2;
+  b2 = b3 + b2;
+  STORE(passed + 20, b2);
+  b1 = w[436] * TURN(176);
+  b1 = w[376] * TURN(16) + w[388] * TURN(48) + w[400] * TURN(80) + w[412] * TURN(112) + w[424] * TURN(144) + b1;
+  b1 = b2 + b1;
+  STORE(passed + 24, b1);
+  b0 = w[437] * TURN(180);
+  b0 = w[377] * TURN(20) + w[389] * TURN(52) + w[401] * TURN(84) + w[413] * TURN(116) + w[425] * TURN(148) + b0;
+  b0 = b1 + b0;
+  STORE(passed + 28, b0);
+  b1 = b7 + w[656] * b8 - w[663] * b5 - w[670] * b4 - w[677] * b3 - w[684] * b2 - w[685] * b2 - w[692] * b1;
+  b2 = w[438] * TURN(184);
+  b2 = w[378] * TURN(24) + w[390] * TURN(56) + w[402] * TURN(88) + w[414] * TURN(120) + w[426] * TURN(152) + b2;
+  b2 = b0 + b2;
+  STORE(passed + 0, b2);
+  STORE(passed + 4, b1 - w[699] * b0 - w[706] * b2);
+}
+
+static void MADE(tendon_robot_k_tip_jacobian_columns_1)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9;
+  b0 = w[439] * TURN(188);
+  b0 = w[379] * TURN(28) + w[391] * TURN(60) + w[403] * TURN(92) + w[415] * TURN(124) + w[427] * TURN(156) + b0;
+  b0 = PASSED(0) + b0;
+  b1 = w[356] * TURN(160);
+  b1 = w[296] * TURN(0) + w[308] * TURN(32) + w[320] * TURN(64) + w[332] * TURN(96) + w[344] * TURN(128) + b1;
+  b2 = w[357] * TURN(164);
+  b2 = w[297] * TURN(4) + w[309] * TURN(36) + w[321] * TURN(68) + w[333] * TURN(100) + w[345] * TURN(132) + b2;
+  b2 = b1 + b2;
+  b3 = w[358] * TURN(168);
+  b3 = w[298] * TURN(8) + w[310] * TURN(40) + w[322] * TURN(72) + w[334] * TURN(104) + w[346] * TURN(136) + b3;
+  b3 = b2 + b3;
+  b4 = w[359] * TURN(172);
+  b4 = w[299] * TURN(12) + w[311] * TURN(44) + w[323] * TURN(76) + w[335] * TURN(108) + w[347] * TURN(140) + b4;
+  b4 = b3 + b4;
+  b5 = w[428] * TURN(176);
+  b5 = w[368] * TURN(16) + w[380] * TURN(48) + w[392] * TURN(80) + w[404] * TURN(112) + w[416] * TURN(144) + b5;
+  b5 = b4 + b5;
+  b6 = w[429] * TURN(180);
+  b6 = w[369] * TURN(20) + w[381] * TURN(52) + w[393] * TURN(84) + w[405] * TURN(116) + w[417] * TURN(148) + b6;
+  b6 = b5 + b6;
+  b7 = w[430] * TURN(184);
+  b7 = w[370] * TURN(24) + w[382] * TURN(56) + w[394] * TURN(88) + w[406] * TURN(120) + w[418] * TURN(152) + b7;
+  b7 = b6 + b7;
+  b8 = w[649] * b7;
+  b9 = w[431] * TURN(188);
+  b9 = w[371] * TURN(28) + w[383] * TURN(60) + w[395] * TURN(92) + w[407] * TURN(124) + w[419] * TURN(156) + b9;
+  b9 = b7 + b9;
+  b8 = w[606] * b1 + w[613] * b2 + w[620] * b3 + w[627] * b4 + w[628] * b4 + w[635] * b5 + w[642] * b6 + b8;
+  b8 = w[714] * PASSED(8) - (b8 + w[656] * b9) + w[763] * PASSED(12) + w[764] * PASSED(16) + w[765] * PASSED(20);
+  b7 = w[706] * b7;
+  b7 = w[663] * b1 + w[670] * b2 + w[677] * b3 + w[684] * b4 + w[685] * b4 + w[692] * b5 + w[699] * b6 + b7;
+  b7 = b7 + w[713] * b9 - w[714] * PASSED(32) - w[763] * PASSED(36) - w[764] * PASSED(40) - w[765] * PASSED(44);
+  b6 = w[770] * PASSED(60);
+  STORE(columns + 0, PASSED(4) - w[713] * b0);
+  b8 = b8 + w[766] * PASSED(20) + w[767] * PASSED(24) + w[768] * PASSED(28) + w[769] * PASSED(0) + w[770] * b0;
+  STORE(columns + 20, b8);
+  b6 = b7 - w[766] * PASSED(44) - w[767] * PASSED(48) - w[768] * PASSED(52) - w[769] * PASSED(56) - b6;
+  STORE(columns + 40, b6);
+  STORE(columns + 60, EACH((-1.0)) * ((b9 * w[213] + PASSED(60) * w[210] + b0 * w[211]) / EACH(2.0)));
+  STORE(columns + 80, (b9 * w[212] + PASSED(60) * w[211] - b0 * w[210]) / EACH(2.0));
+  STORE(columns + 100, (PASSED(60) * w[212] - b9 * w[211] + b0 * w[213]) / EACH(2.0));
+  STORE(columns + 120, (b9 * w[210] - PASSED(60) * w[213] + b0 * w[212]) / EACH(2.0));
+}
+
+static void MADE(tendon_robot_k_tip_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
+    casadi_real *columns, casadi_real *passed, int groups) {
+  int group;
+  for (group = 0; group < groups; group++, turns += 192, columns += 4) {
+    EVERY_LANE(MADE(tendon_robot_k_tip_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
+    EVERY_LANE(MADE(tendon_robot_k_tip_jacobian_columns_1)(w, turns + lane, columns + lane, passed + lane))
+  }
+}
