@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -12,7 +11,7 @@ from cosserat_casadi.codegen.column_parts import parted_by_columns
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import Parted, parted
-from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
+from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.model.build import Model
 
@@ -26,20 +25,18 @@ class Assembled:
         residual: the residual in parts.
         jacobian: entries of ∂ residual / ∂x in parts.
         input_jacobian: ∂ residual / ∂ (inputs, parameters) in parts, entries by their index in the dense matrix.
-        in_fours: those kernels of residual and Jacobian that are written four at a time, by name.
     """
 
     blocks: Blocks
     residual: Parted
     jacobian: Parted
     input_jacobian: Parted
-    in_fours: Mapping[str, PrintedKernel]
 
     @property
     def kernels(self) -> list[Kernel]:
-        """All functions."""
-        functions = [*self.residual.kernels, *self.jacobian.kernels, *self.input_jacobian.kernels]
-        return [self.in_fours.get(function.name(), function) for function in functions]
+        """All functions, those of the residual with the calls of their intervals in fours."""
+        of_residual = map(with_calls_in_fours, self.residual.kernels)
+        return [*of_residual, *self.jacobian.kernels, *self.input_jacobian.kernels]
 
 
 def assembled(model: Model, names: Names) -> Assembled | None:
@@ -49,29 +46,22 @@ def assembled(model: Model, names: Names) -> Assembled | None:
         return None
     residual = _path_function(with_parameters_behind_inputs(model.path_residual), dense=True)
     residual_parts = parted(residual, partition.owners, names.kernel("residual"))
-    in_fours = [with_calls_in_fours(kernel) for kernel in residual_parts.kernels]
-    jacobian_parts, columns_in_fours = _jacobian(model, partition, names.kernel("jacobian"))
+    jacobian_parts = _jacobian(model, partition, names.kernel("jacobian"))
     inputs = input_jacobian(model)
     rows, columns = inputs.sparsity_out(0).get_triplet()
     by_inputs = parted(_path_function(inputs), [partition.owners[i] for i in rows], names.kernel("input_jacobian"))
     dense_indices = [i + j * model.size for i, j in zip(rows, columns, strict=True)]
     parts = [replace(part, entries=[dense_indices[k] for k in part.entries]) for part in by_inputs.parts]
-    return Assembled(
-        partition,
-        residual_parts,
-        jacobian_parts,
-        replace(by_inputs, parts=parts),
-        {kernel.name(): kernel for kernel in (*in_fours, *columns_in_fours) if isinstance(kernel, PrintedKernel)},
-    )
+    return Assembled(partition, residual_parts, jacobian_parts, replace(by_inputs, parts=parts))
 
 
-def _jacobian(model: Model, partition: Blocks, name: str) -> tuple[Parted, list[PrintedKernel]]:
-    """∂ residual / ∂x in parts, by columns where it has such a form, with the kernels that are written here."""
+def _jacobian(model: Model, partition: Blocks, name: str) -> Parted:
+    """∂ residual / ∂x in parts, by columns where it has such a form."""
     by_columns = None if model.discrete.pairs else parted_by_columns(model, partition, name)
     if by_columns is not None:
         return by_columns
     jacobian = with_parameters_behind_inputs(model.path_jacobian)
-    return parted(jacobian, partition.entry_owners, name), []
+    return parted(jacobian, partition.entry_owners, name)
 
 
 def _path_function(function: ca.Function, *, dense: bool = False) -> ca.Function:

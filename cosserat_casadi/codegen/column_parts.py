@@ -5,7 +5,7 @@ As in parts.py rods that compute alike share one function, with constants that d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -23,16 +23,13 @@ from cosserat_casadi.codegen.columns import (
 )
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
-from cosserat_casadi.codegen.printed_kernels import PrintedKernel
+from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
-from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, same_but_for_rounding, shared
+from cosserat_casadi.codegen.streams import Stream, alike, names_of_part, same_but_for_rounding, shared
 from cosserat_casadi.model.build import Model
 
 COLUMNS, TURNS, CONSTANTS = len(GIVEN), len(GIVEN) + 1, len(GIVEN) + 2
 """Numbers of the arguments of a function that parts share."""
-
-Alike = tuple[Key, tuple[int, ...], tuple[int, ...]]
-"""What parts share that compute alike: instructions, and entries that are read of columns and turns."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +47,14 @@ class _Piece:
     entries: list[int]
 
     @property
-    def alike(self) -> Alike:
-        """What pieces share that compute alike."""
+    def key(self) -> Hashable:
+        """What pieces share that compute alike: values, and entries that are read of columns and turns."""
         if self.column is None:
-            return self.stream.key, (), ()
+            return self.stream.key
         return self.stream.key, tuple(self.stream.reads[COLUMNS]), tuple(self.stream.reads[TURNS])
 
 
-def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, list[PrintedKernel]] | None:
+def parted_by_columns(model: Model, blocks: Blocks, name: str) -> Parted | None:
     """The Jacobian of an assembly in parts by columns.
 
     Args:
@@ -66,8 +63,8 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, 
         name: what the kernels are called, before their numbers.
 
     Returns:
-        the parts, and those of their kernels that are by columns; None where entries of one owner depend on the columns
-        of several rods, or where an operation has no form in fours.
+        the parts; None where entries of one owner depend on the columns of several rods, or where an operation has no
+        form in fours.
     """
     jacobian = columned_jacobian(on_path(model))
     if jacobian is None:
@@ -76,14 +73,15 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, 
     if not result.sparsity().is_subset(blocks.pattern):
         return None
     entries = ca.project(result, blocks.pattern).nonzeros()
-    groups: dict[Alike, list[_Piece]] = {}
+    pieces = []
     for own in places_by_owner(blocks.entry_owners):
         piece = _piece(jacobian, ca.vertcat(*[entries[i] for i in own]), own)
         if piece is None:
             return None
-        groups.setdefault(piece.alike, []).append(piece)
+        pieces.append(piece)
+    groups = [[pieces[i] for i in group] for group in alike(piece.key for piece in pieces)]
     try:
-        return _shared_kernels(list(groups.values()), name)
+        return _shared_kernels(groups, name)
     except UnknownOperationError:
         return None
 
@@ -102,10 +100,9 @@ def _piece(jacobian: ColumnedJacobian, entries: ca.SX, own: list[int]) -> _Piece
     return _Piece(Stream.settled(ca.Function("part", part.symbols, [both], *words)), part, own)
 
 
-def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Parted, list[PrintedKernel]]:
+def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> Parted:
     """A kernel for each group of pieces that compute alike."""
-    kernels = list[ca.Function]()
-    in_fours = list[PrintedKernel]()
+    kernels = list[Kernel]()
     parts = list[Part]()
     for number, group in enumerate(groups):
         kernel, constants = shared([piece.stream for piece in group], f"{name}_{number}")
@@ -116,14 +113,13 @@ def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Part
             turns = [column.turns for column in columns]
             same = all(same_but_for_rounding(own, turns[0]) for own in turns)
             form = _form(kernel, group[0].stream, columns[0], turns_are_constant=same)
-            kernels.append(_by_columns(form, f"{name}_{number}"))
-            in_fours.append(columns_in_fours(form, kernels[-1]))
+            kernels.append(columns_in_fours(form, _by_columns(form, f"{name}_{number}")))
             if not same:
                 # Rods of different length turn by different constants.
                 constants = [[*values, *in_groups(own).tolist()] for values, own in zip(constants, turns, strict=True)]
         for piece, values in zip(group, constants, strict=True):
             parts.append(Part(number, piece.stream.reads[:COLUMNS], values, piece.entries))
-    return Parted(kernels, parts), in_fours
+    return Parted(kernels, parts)
 
 
 def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_constant: bool) -> ColumnForm:

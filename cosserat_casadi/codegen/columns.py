@@ -78,19 +78,6 @@ class ColumnForm:
         return number
 
 
-@dataclass(frozen=True)
-class ColumnedFunction:
-    """A function by columns, and what it is called in C.
-
-    Attributes:
-        form: the function.
-        signature: a function with the name, arguments and results that it has in C.
-    """
-
-    form: ColumnForm
-    signature: ca.Function
-
-
 def in_groups(turns: FloatArray) -> FloatArray:
     """The turns of LANES columns after those of the LANES before, one entry of the group after the other."""
     entries, stride = turns.shape

@@ -13,7 +13,6 @@ from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import (
     SHARED_AT_MOST,
-    ColumnedFunction,
     ColumnForm,
     WrittenJacobian,
     in_columns,
@@ -27,7 +26,7 @@ from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, with_calls_in_fours
+from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.codegen.shared_values import COMMON, with_shared_kernels
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
@@ -130,12 +129,9 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
         with suppress(UnknownOperationError):
             for shared in with_shared_kernels(functions, names.kernel(f"shared_{number}")):
                 finished[shared.name()] = shared
-    return [finished.get(name) or _unshared(one) for name, one in written.items()]
-
-
-def _unshared(written: ca.Function | ColumnedFunction) -> Kernel:
-    """A kernel that calls no other."""
-    return columns_in_fours(written.form, written.signature) if isinstance(written, ColumnedFunction) else written
+    for name, one in written.items():
+        finished.setdefault(name, one.printed if isinstance(one, ColumnedFunction) else one)
+    return [finished[name] for name in written]
 
 
 def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Function | ColumnedFunction:
@@ -161,19 +157,16 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     return straight
 
 
-def by_columns(
-    written: WrittenJacobian, function: ca.Function, name: str, most: int | None = None
-) -> PrintedKernel | None:
-    """A Jacobian of one rod by columns; None where it has no such form, or a long one.
+def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> PrintedKernel | None:
+    """A Jacobian of one rod by columns; None where it has no such form, or one of more than MOST_IN_COLUMNS statements.
 
     Args:
         written: the Jacobian.
         function: the same as it is called in C.
         name: its name in C.
-        most: statements up to which it is not a long one, MOST_IN_COLUMNS by default.
     """
-    columned = _columned(written, function, name, MOST_IN_COLUMNS if most is None else most)
-    return None if columned is None else _unshared(columned)
+    columned = _columned(written, function, name, MOST_IN_COLUMNS)
+    return None if columned is None else columned.printed
 
 
 def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: int) -> ColumnedFunction | None:
@@ -184,11 +177,11 @@ def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: 
 
 def _within(form: ColumnForm, signature: ca.Function, most: int) -> ColumnedFunction | None:
     """A form under a signature; None where it takes more statements, or an operation has no form in fours."""
+    columned = ColumnedFunction(form, signature)
     try:
-        statements = columns_in_fours(form, signature).n_instructions()
+        return columned if columned.printed.statements <= most else None
     except UnknownOperationError:
         return None
-    return ColumnedFunction(form, signature) if statements <= most else None
 
 
 def _literal(model: Model) -> bool:

@@ -14,9 +14,10 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen.numbered import Program, function_of
-from cosserat_casadi.codegen.programs import PartialProgram, alike, foreseen, partial_program, shared_program
+from cosserat_casadi.codegen.printed_kernels import Kernel
+from cosserat_casadi.codegen.programs import PartialProgram, foreseen, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
-from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
+from cosserat_casadi.codegen.streams import Stream, alike, names_of_part, scalars, shared, stacked
 from cosserat_casadi.maths.calls import chooses, in_scalars
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
@@ -61,7 +62,7 @@ class Parted:
         parts: which kernel gives which entries.
     """
 
-    kernels: list[ca.Function]
+    kernels: list[Kernel]
     parts: list[Part]
 
 
@@ -85,7 +86,7 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     # A single part shares nothing: the function is printed as it is.
     if program is not None and len(places) > 1:
         programs = [partial_program(program, own) for own in places]
-    groups = alike(programs)
+    groups = alike(program.key for program in programs)
     limit = STRAIGHT if len(groups) == len(programs) else STRAIGHT_IN_SHARES
     lengths = [foreseen(part.steps) for part in programs]
     if program is not None and not programs:
@@ -96,7 +97,7 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
             return straight
     if not programs:
         return _whole(function, f"{name}_0")
-    kernels = list[ca.Function]()
+    kernels = list[Kernel]()
     parts = list[Part]()
     for number, group in enumerate(groups):
         one, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
@@ -113,17 +114,17 @@ def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> 
     symbols = function.sx_in()
     entries = function.call(symbols)[0].nonzeros()
     named = names_of_part(ARGUMENTS[:3])
-    groups: dict[Key, list[tuple[Stream, list[int]]]] = {}
+    streams = []
     for own in places:
-        stream = Stream.settled(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *named))
-        groups.setdefault(stream.key, []).append((stream, own))
-    kernels = list[ca.Function]()
+        part = ca.vertcat(*[entries[i] for i in own])
+        streams.append(Stream.settled(ca.Function("part", symbols, [part], *named)))
+    kernels = list[Kernel]()
     parts = list[Part]()
-    for number, group in enumerate(groups.values()):
-        kernel, constants = shared([stream for stream, _ in group], f"{name}_{number}")
+    for number, group in enumerate(alike(stream.key for stream in streams)):
+        kernel, constants = shared([streams[i] for i in group], f"{name}_{number}")
         kernels.append(kernel)
-        for (stream, own), values in zip(group, constants, strict=True):
-            parts.append(Part(number, stream.reads, values, own))
+        for i, values in zip(group, constants, strict=True):
+            parts.append(Part(number, streams[i].reads, values, places[i]))
     return Parted(kernels, parts)
 
 
@@ -159,11 +160,8 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
     """
     # Common terms are shared afterwards: those of one rod may be equal by chance.
     streams = [Stream.settled(stacked(function)) for function in functions]
-    groups: dict[Key, list[int]] = {}
-    for i, stream in enumerate(streams):
-        groups.setdefault(stream.key, []).append(i)
     result = list(kernels)
-    for number, members in enumerate(groups.values()):
+    for number, members in enumerate(alike(stream.key for stream in streams)):
         if len(members) > 1:
             made, constants = shared([streams[i] for i in members], f"{name}_{number}")
             for i, values in zip(members, constants, strict=True):
@@ -205,7 +203,7 @@ def _calling(
     Args:
         function: the function.
         name: what it is called.
-        shared: maps what is read of each argument, and constants, to the entries of all results.
+        shared: maps the entries read of each argument, and constants, to the entries of all results.
         reads: entries that are read of each argument.
         constants: those of this function.
     """

@@ -25,7 +25,7 @@ CONSTANT = -1
 
 @dataclass(frozen=True, eq=False)
 class PartialProgram:
-    """The steps of a part in numbers of its own: 0 for zero, then what is read of each argument, then results of steps.
+    """The steps of a part with numbers of its own: 0 for zero, then entries read of arguments, then results of steps.
 
     Attributes:
         entries: which entries of the result it gives.
@@ -125,21 +125,13 @@ def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
     return PartialProgram(ordered, names, reads, steps, constants, local[wanted], _constants(origins, wanted))
 
 
-def alike(programs: Sequence[PartialProgram]) -> list[list[int]]:
-    """Numbers of the programs that compute alike, in groups."""
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for i, program in enumerate(programs):
-        groups.setdefault(program.key, []).append(i)
-    return list(groups.values())
-
-
 def shared_program(programs: Sequence[PartialProgram], name: str) -> tuple[Program, list[list[float]]]:
     """One program for those that compute alike, and the constants of each, which it reads beside its arguments."""
     return _Sharing(programs, name).result
 
 
 def _needed(program: Program, wanted: Numbers) -> tuple[npt.NDArray[np.bool_], list[Step]]:
-    """Which numbers are needed for these, and the steps that make them; of what is done entry by entry those alone."""
+    """Which numbers these need, and the steps that compute them; entrywise steps compute the needed entries alone."""
     needed = np.zeros(program.origins.count, dtype=np.bool_)
     needed[wanted] = True
     kept = []
@@ -157,9 +149,9 @@ def _needed(program: Program, wanted: Numbers) -> tuple[npt.NDArray[np.bool_], l
 
 
 def _ordered(steps: Sequence[Step], wanted: Numbers, count: int) -> list[Step]:
-    """The steps in the order in which what is wanted asks for them, entry after entry: that of any part alike.
+    """The steps in the order in which the wanted entries need them: the same order in all parts that compute alike.
 
-    In the whole a part that comes first computes what it shares with the others before they do.
+    In the whole program the first part computes the values that it shares with the others before they do.
     """
     maker = np.full(count, -1, dtype=np.int64)
     for k, step in enumerate(steps):
@@ -296,7 +288,7 @@ def _with_constants(function: ca.Function, reads: Sequence[Sequence[int]], kerne
     Args:
         function: the function.
         reads: entries that are read of each argument.
-        kernel: maps what is read of each argument, and the constants, to the entries of all results.
+        kernel: maps the entries read of each argument, and the constants, to the entries of all results.
     """
     symbols = function.sx_in()
     constants = ca.SX.sym("constants", kernel.size1_in(function.n_in()))

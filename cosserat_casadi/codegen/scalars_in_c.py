@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import casadi as ca
 
@@ -109,6 +109,28 @@ def columns_in_fours(
 
 
 @dataclass(frozen=True)
+class ColumnedFunction:
+    """A function by columns, with the name, arguments and results that it has in C.
+
+    Attributes:
+        form: the function.
+        signature: the same as CasADi has it.
+    """
+
+    form: ColumnForm
+    signature: ca.Function
+
+    @cached_property
+    def printed(self) -> PrintedKernel:
+        """The function in C, which calls no other kernel.
+
+        Raises:
+            UnknownOperationError: there is an operation that has no form here.
+        """
+        return columns_in_fours(self.form, self.signature)
+
+
+@dataclass(frozen=True)
 class _Batch:
     """Calls of one function that are made together.
 
@@ -169,7 +191,7 @@ class _Writing:
         self.place: dict[int, int] = {}
         self.in_column = self._in_column()
         self.batch_of = self._batches()
-        # What is given to calls is read before the next ones are given anything.
+        # A call has read its operands before those of the next one are written.
         batches = [batch for batch in self.batch_of.values() if self._kernel(batch.calls) is None]
         most_given = (batch.width * batch.turns * batch.operands for batch in batches)
         self.given = self._room(max(most_given, default=0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from itertools import pairwise
 from math import isfinite
 
@@ -92,7 +92,7 @@ class Stream:
         return self.key, tuple(self.constants)
 
     def result(self, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
-        """The result in other symbols of what is read of each argument, and with other constants."""
+        """The result in other symbols of the entries that it reads of each argument, and with other constants."""
         arguments = [_entries(symbol) for symbol in symbols]
         next_constant = iter(constants)
         known: dict[int, ca.SX] = {}
@@ -111,6 +111,14 @@ class Stream:
         if isinstance(value, Read):
             return Read(value.argument, self.reads[value.argument].index(value.entry))
         return value
+
+
+def alike(keys: Iterable[Hashable]) -> list[list[int]]:
+    """Numbers of equal keys, in groups."""
+    groups: dict[Hashable, list[int]] = {}
+    for i, key in enumerate(keys):
+        groups.setdefault(key, []).append(i)
+    return list(groups.values())
 
 
 def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list[float]]]:

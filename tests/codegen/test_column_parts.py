@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.columns import LANES, in_columns, in_groups, on_pat
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import parted
+from cosserat_casadi.codegen.printed_kernels import PrintedKernel
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import gcc, run
 from tests.scenes import push, rod, scene
@@ -84,7 +85,8 @@ def entries_by_parts(model: Model, parts: Assembled, x: FloatArray, load_factor:
     entries = np.full(model.path_jacobian.nnz_out(0), np.nan)
     for part in parts.jacobian.parts:
         kernel = parts.jacobian.kernels[part.kernel]
-        result = kernel(x[part.x], inputs[part.inputs], load_factor, part.constants)
+        function = kernel.signature if isinstance(kernel, PrintedKernel) else kernel
+        result = function(x[part.x], inputs[part.inputs], load_factor, part.constants)
         entries[part.entries] = result.full()[:, 0]
     return entries
 
@@ -104,7 +106,7 @@ def test_parts_by_columns_make_the_jacobian(lengths: tuple[float, ...]) -> None:
     # Rods that differ in numbers share their code, and what a rod reads of columns is its own.
     of_rods = [part for part in parts.jacobian.parts if parts.blocks.entry_owners[part.entries[0]] != INTERFACE]
     assert len({part.kernel for part in of_rods[1:]}) == 1
-    assert all(parts.jacobian.kernels[part.kernel].name() in parts.in_fours for part in of_rods)
+    assert all(isinstance(parts.jacobian.kernels[part.kernel], PrintedKernel) for part in of_rods)
 
 
 def test_turns_of_columns_in_groups() -> None:
@@ -122,7 +124,7 @@ def test_columns_of_an_assembly_take_less_code() -> None:
     straight = parted(path_jacobian, parts.blocks.entry_owners, "straight")
     # Instructions of the functions that the kernels call count too.
     longest = max(kernel.expand().n_instructions() for kernel in straight.kernels)
-    in_fours = max(kernel.n_instructions() for kernel in parts.in_fours.values())
+    in_fours = max(k.n_instructions() for k in parts.jacobian.kernels if isinstance(k, PrintedKernel))
     assert in_fours < 0.6 * longest
 
 
