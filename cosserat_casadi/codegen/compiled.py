@@ -62,7 +62,7 @@ class Compiled(CompiledMotion):
 
     @staticmethod
     def is_sound(described: Any) -> bool:
-        """Whether what is read of a manifest of rods is there."""
+        """Whether the entries that are read of a manifest of rods are there."""
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
         named = [*described.get("bodies", []), *described.get("joints", [])]
         owners = [*(entry["name"] for entry in described.get("actuators", [])), *named]
@@ -111,7 +111,7 @@ class Compiled(CompiledMotion):
 
     def __getattr__(self, name: str) -> Any:
         """A function of the header as a CasADi function, or one for each rod, actuator or body, by name."""
-        # What is not set yet, such as in a copy under way, must not be asked for here.
+        # An attribute that is not set yet, such as in a copy under way, must not be asked for here.
         manifest = self.__dict__.get("manifest", {})
         entries = [entry for entry in manifest.get("functions", []) if entry.get("function") == name]
         if not entries and name not in OWNED:

@@ -45,7 +45,7 @@ LONGEST = 1200.0
 """Time that the compiler has for one file, s: the largest file of the examples takes it less than a tenth of that."""
 
 Progress = Callable[[str, int, int], None]
-"""Takes what is being done, how much of it is done, and how much there is."""
+"""Takes the name of the task, how much of it is done, and how much there is."""
 
 
 def shared_object(

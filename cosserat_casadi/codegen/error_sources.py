@@ -32,7 +32,7 @@ def error_words(model: Model, names: Names) -> Words:
     """Words of a library, with the estimate where the library has its kernels.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
     """
     if not estimates_errors(names):

@@ -35,7 +35,7 @@ JUDGED = ("outcome", "iterations", "cost")
 
 @dataclass(frozen=True)
 class Knowledge:
-    """What is known of the unknowns beforehand, each of shape (unknowns,).
+    """Prior knowledge of the unknowns, each of shape (unknowns,).
 
     Attributes:
         lower: least values.
@@ -76,7 +76,7 @@ class MeasuredCases:
 
 @dataclass(frozen=True)
 class Estimates:
-    """What was found of rows of cases; NaN where nothing was.
+    """Estimates of rows of cases; NaN where a search has ended without.
 
     Attributes:
         outcome: how each search ended, as its place in ENDINGS, shape (cases,).
@@ -205,7 +205,7 @@ def estimator_library(
     """Sources of the solver of a model with a function that estimates inputs.
 
     Args:
-        model: what is measured; its parameters are further inputs here.
+        model: the measured model; its parameters are further inputs here.
         measured: (x, inputs, at, measured) ↦ the differences between model and measurement, and their derivatives with
             x and with the numbers that are found. Behind the inputs stand the parameters.
         indices: of these numbers among the stacked inputs and parameters.

@@ -136,7 +136,7 @@ def _solved(scene: Scene) -> tuple[Model | TubeFunctions, float | None]:
         raise ExportError(Problem("scene", solution.message, "change its inputs, or export a model"))
     model = solution.model
     if scene.parameters:
-        # What was solved has the scene's own numbers as constants.
+        # The solved model has the scene's own numbers as constants.
         model = build(scene, model.steps if isinstance(model, TubeFunctions) else model.discretisation)
     return model, solution.error_estimate
 

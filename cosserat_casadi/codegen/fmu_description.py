@@ -27,7 +27,7 @@ class Variable:
         unit: SI unit.
         description: one sentence.
         causality: "independent", "input", "output" or "parameter".
-        start: value where none is set; None of what is computed.
+        start: value where none is set; None of a computed variable.
     """
 
     name: str
@@ -42,7 +42,7 @@ def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> lis
 
     Args:
         model: the model.
-        outputs: what is seen of its motion.
+        outputs: the outputs of its motion.
         step: of the integrator, s.
     """
     listed = [Variable("time", "s", "Time.", "independent")]

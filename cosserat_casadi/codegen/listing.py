@@ -75,7 +75,7 @@ class Call:
     """A call of another scalar function.
 
     Attributes:
-        function: what is called.
+        function: the called function.
         operands: the stored entries of all its arguments.
         results: the stored entries of all its results.
     """
@@ -93,7 +93,7 @@ class Listing:
     """The values of a scalar function in the order in which it computes them.
 
     Attributes:
-        function: what is listed.
+        function: the listed function.
         values: the values; an operand comes before what it is an operand of.
         calls: calls of other functions.
         outputs: for each output, number of the value of each stored entry that is computed.

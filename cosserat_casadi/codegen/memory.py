@@ -68,7 +68,7 @@ def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
             # A table of numbers.
             continue
         name = found[1] or found[2]
-        # What is written once calls what it is named after, once for one number or once for four.
+        # A function that is written once calls the functions of its name for one number and for four.
         called = [word for word in re.findall(r"\w+", body) if word in deepest]
         deepest[name] = _locals(function) + max((deepest[word] for word in called), default=0)
     return deepest

@@ -74,7 +74,7 @@ def motion_outputs(model: Model) -> MotionOutputs:
         outputs = spec.outputs_of(model.discrete, name)[:2]
         for output, value in zip(outputs, function(x, inputs, *p)[:2], strict=True):
             full_name = f"{name}.{output.name}"
-            # What is given is no result: the tension of a tendon that is pulled by one.
+            # An input is no result: the tension of a tendon that is pulled by one.
             if full_name not in model.inputs.names:
                 entries.append(MotionOutput(full_name, output.unit, f"{output.name.capitalize()} of {name}."))
                 values.append(value)

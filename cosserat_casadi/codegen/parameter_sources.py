@@ -42,7 +42,7 @@ def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *
 
     Args:
         basics: names and sizes of the library.
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
         dynamics: whether the library has motions.
     """

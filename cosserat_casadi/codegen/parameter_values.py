@@ -86,7 +86,7 @@ class ListedParameters(ListedValues):
         return [pointer(vector)] if self.size else []
 
     def rows(self, values: ArgumentValues = None) -> FloatArray:
-        """One row, or those that are given, shape (rows, size).
+        """Parameters of one row or of several, shape (rows, size).
 
         Raises:
             ValueError: rows have another length.

@@ -114,7 +114,7 @@ def row_library(
     """Sources of the solver of a model with a function for rows.
 
     Args:
-        model: what is solved.
+        model: the solved model.
         estimate_errors: whether rows have :data:`ERRORS`.
         stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
         lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
@@ -155,7 +155,7 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
     """Names of the columns of a row of results: how it ended, poses of tips and bodies, efforts, exact contacts.
 
     Args:
-        scene: what is solved.
+        scene: the solved scene.
         estimate_errors: whether :data:`ERRORS` follow.
         stability: whether they end with :data:`STABILITY`, or :data:`TUBE_STABILITY`.
     """

@@ -43,7 +43,7 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
     """Sources and header of the stability of equilibria by file name.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: of the library that they stand beside.
     """
     allowed = variations(model)

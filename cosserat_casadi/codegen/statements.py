@@ -193,7 +193,7 @@ def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None
             waiting[statement.made] = statement
         else:
             written.append(statement)
-    # What is left is read by none of these statements.
+    # None of these statements reads the others.
     return [*written, *waiting.values()]
 
 

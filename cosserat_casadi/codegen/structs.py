@@ -55,7 +55,7 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
     """Words of the struct of results.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
     """
     passed = ", parameters" if model.parameters.size else ""

@@ -140,7 +140,7 @@ def costs_of(model: Model, names: Names, files: Mapping[str, str]) -> TurnCosts:
     """What the parts of a turn take: measured where there is a compiler, else foreseen.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         names: what things are called.
         files: sources and headers by name.
 

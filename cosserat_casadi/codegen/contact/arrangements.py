@@ -69,7 +69,7 @@ class _Met:
     Attributes:
         scene: without contacts.
         grids: modes and nodes of every element.
-        states: by what is discrete of them.
+        states: by their discrete part.
     """
 
     scene: scenes.Scene
@@ -89,7 +89,7 @@ class _Met:
                 self.add(arrangement.state(path.x[points[-1]]))
 
     def key(self, state: ContactState) -> object:
-        """What is discrete of an arrangement: who touches what, and between which ends of elements that stay."""
+        """The discrete part of an arrangement: who touches what, and between which ends of elements that stay."""
         loaded = with_contacts(self.scene, state, self.grids.bending_modes(self.scene))
         ends = []
         for name, discretisation in self.grids.discretisation(loaded).items():

@@ -48,7 +48,7 @@ class Margins(NamedTuple):
 
 
 class ContactInfo(AnswerInfo):
-    """The struct in C that says how a call ended: what there is of every solve, then what there is of contact."""
+    """The struct in C that says how a call ended: the members of every solve, then those of contact."""
 
     _fields_ = (
         ("arrangement", ctypes.c_int),
@@ -119,7 +119,7 @@ class CompiledContact(LoadedLibrary):
 
     @staticmethod
     def is_sound(described: Any) -> bool:
-        """Whether what is read of a manifest of exact contact is there."""
+        """Whether the entries that are read of a manifest of exact contact are there."""
         names = [*described["rods"], *described["obstacles"]]
         contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
         return contacts and all(isinstance(name, str) for name in names)

@@ -97,7 +97,7 @@ def contact_files(
     """Text of every file of a folder by name; the manifest, which lists the others, is last.
 
     Args:
-        model: what is exported.
+        model: the exported model.
         chosen: its arrangements of contacts.
         names: what things are called.
         error_estimate: error of the tip pose at the scene's inputs relative to the length.

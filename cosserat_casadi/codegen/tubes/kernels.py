@@ -135,7 +135,7 @@ class TubeKernels:
         return dense(written, f"{self.name}_{word}")
 
     def _written(self, word: str, results: Sequence[Matrix], further: Mapping[str, ca.MX] | None = None) -> ca.Function:
-        """A function of the twist, of the inputs and the parameters, and of what is more."""
+        """A function of the twist, of the inputs and the parameters, and of further arguments."""
         arguments = {**self._symbols, **(further or {})}
         names = [f"{word}_{number}" for number in range(len(results))]
         return ca.Function("of_y", list(arguments.values()), list(results), list(arguments), names)
