@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.blocks import blocks
 from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel
@@ -62,7 +62,7 @@ def lanes_files(name: str) -> tuple[str, str]:
 def in_lanes(model: Model, names: Names) -> InLanes | None:
     """Files and words that solve cases side by side; None for a model whose cases are solved one after the other."""
     # An assembly is eliminated rod after rod, which has no form for lanes.
-    if assembled(model, names) is not None:
+    if blocks(model.discrete, model.path_jacobian.sparsity_out(0)) is not None:
         return None
     wanted = {*map(names.kernel, EQUATIONS)}
     entries = [entry for entry in functions_in_c(model, names) if entry.kernel in wanted]
