@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -10,7 +10,7 @@ from cosserat_casadi.codegen.blocks import Blocks, blocks
 from cosserat_casadi.codegen.column_parts import parted_by_columns
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import input_jacobian, with_parameters_behind_inputs
-from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.codegen.parts import Parted, parted, parted_by_rows
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.model.build import Model
@@ -45,14 +45,13 @@ def assembled(model: Model, names: Names) -> Assembled | None:
     if partition is None:
         return None
     residual = _path_function(with_parameters_behind_inputs(model.path_residual), dense=True)
-    residual_parts = parted(residual, partition.owners, names.kernel("residual"))
-    jacobian_parts = _jacobian(model, partition, names.kernel("jacobian"))
-    inputs = input_jacobian(model)
-    rows, columns = inputs.sparsity_out(0).get_triplet()
-    by_inputs = parted(_path_function(inputs), [partition.owners[i] for i in rows], names.kernel("input_jacobian"))
-    dense_indices = [i + j * model.size for i, j in zip(rows, columns, strict=True)]
-    parts = [replace(part, entries=[dense_indices[k] for k in part.entries]) for part in by_inputs.parts]
-    return Assembled(partition, residual_parts, jacobian_parts, replace(by_inputs, parts=parts))
+    by_inputs = _path_function(input_jacobian(model))
+    return Assembled(
+        blocks=partition,
+        residual=parted(residual, partition.owners, names.kernel("residual")),
+        jacobian=_jacobian(model, partition, names.kernel("jacobian")),
+        input_jacobian=parted_by_rows(by_inputs, partition.owners, names.kernel("input_jacobian")),
+    )
 
 
 def _jacobian(model: Model, partition: Blocks, name: str) -> Parted:

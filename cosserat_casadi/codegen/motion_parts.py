@@ -7,7 +7,7 @@ one vector each, so that parts are cut as those of statics are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
-from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.codegen.parts import Parted, parted, parted_by_rows, placed
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.errors import ExportError, Problem, refuse
@@ -142,7 +142,7 @@ def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca
             owners.append(owner_of[number[entry]])
     entries = ca.vertcat(*[matrix.nz[:] for matrix in matrices])
     whole = parted(ca.Function("motion", [*symbols], [entries]), owners, name)
-    return _placed(whole, places)
+    return placed(whole, places)
 
 
 def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
@@ -161,11 +161,4 @@ def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
         by_each[1] = ca.jacobian(residual, symbols[PARAMETERS])
     by_inputs = ca.Function("by_inputs", given, [ca.horzcat(*by_each)])
     matrix = by_inputs.call(arguments)[0]
-    rows, columns = matrix.sparsity().get_triplet()
-    whole = parted(ca.Function("motion", [state, inputs, factor], [matrix]), [partition.owners[i] for i in rows], name)
-    return _placed(whole, [i + j * model.size for i, j in zip(rows, columns, strict=True)])
-
-
-def _placed(whole: Parted, places: Sequence[int]) -> Parted:
-    """Parts whose entries are moved to these places."""
-    return replace(whole, parts=[replace(part, entries=[places[k] for k in part.entries]) for part in whole.parts])
+    return parted_by_rows(ca.Function("motion", [state, inputs, factor], [matrix]), partition.owners, name)

@@ -8,7 +8,7 @@ Where that is too long without loops, programs.py does the same with steps in pl
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 
@@ -107,6 +107,19 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         for i, constants in zip(group, constants_of_each, strict=True):
             parts.append(Part(number, programs[i].reads, constants, programs[i].entries))
     return Parted(kernels, parts)
+
+
+def parted_by_rows(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
+    """A matrix in parts as :func:`parted`, by the owners of its rows, with entries by index in the dense matrix."""
+    rows, columns = function.sparsity_out(0).get_triplet()
+    places = [i + j * function.size1_out(0) for i, j in zip(rows, columns, strict=True)]
+    return placed(parted(function, [owners[i] for i in rows], name), places)
+
+
+def placed(whole: Parted, places: Sequence[int]) -> Parted:
+    """Parts whose entries are moved to these places."""
+    parts = [replace(part, entries=[places[k] for k in part.entries]) for part in whole.parts]
+    return replace(whole, parts=parts)
 
 
 def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> Parted:
