@@ -60,15 +60,15 @@ PROGRAM = "motion_program"
 """Inverse dynamics as a program of scalars, three stages at once."""
 
 INSTRUCTION = 7e-9
-"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 4e-9 of few to 10e-9 of many."""
+"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 5e-9 of few to 11e-9 of many."""
 
 AS_MANY_RESIDUALS = 10.0
-"""Time of its derivatives there, over that of inverse dynamics: 7 to 15 in robots of one to six rods."""
+"""Time of its derivatives there, over that of inverse dynamics: 6 to 15 in robots of one to six rods."""
 
-SAVED = {PROGRAM: 0.8, RESIDUAL: 0.2, JACOBIANS: 0.8}
+SAVED = {PROGRAM: 0.75, RESIDUAL: 0.2, JACOBIANS: 0.9}
 """Share of the virtual machine's time that a program saves, machine code beyond a program, and machine code."""
 
-TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.4, 4e-5), JACOBIANS: (0.5, 2e-4)}
+TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.3, 7e-5), JACOBIANS: (0.3, 3.3e-4)}
 """Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
 
 ITERATION = 2e-4
