@@ -91,6 +91,23 @@ def test_rates_are_derivatives_of_values_and_accelerations_those_of_rates(motion
     assert np.all(fine < 1e-2 * np.array([1.0, 30.0]))
 
 
+def test_pieces_of_tables_that_overlap_are_sums_of_their_splines() -> None:
+    random = np.random.default_rng(5)
+    tables = [([0.1, 0.5], random.normal(size=(2, 3))), ([0.3, 0.9], random.normal(size=(2, 3)))]
+    inputs = moving(*(table(times, values, "cubic") for times, values in tables))
+    pieces = inputs.pieces(1.2)
+    assert len(pieces) == 5
+    for piece in pieces:
+        for t in np.linspace(piece.start, piece.end, 4)[1:-1]:
+            expected = np.zeros((3, 3))
+            for times, values in tables:
+                spline = CubicSpline(times, values, bc_type="clamped")
+                inside = times[0] < t < times[-1]
+                expected[0] += spline(np.clip(t, *times))
+                expected[1:] += [spline(t, order) if inside else np.zeros(3) for order in (1, 2)]
+            assert_allclose(of_force(piece.at(t)), expected, rtol=1e-12, atol=1e-11)
+
+
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 40])
 def test_cubic_tables_are_clamped_splines(count: int) -> None:
     random = np.random.default_rng(count)
