@@ -279,24 +279,32 @@ def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progr
         return solution
     if not can_relax(solution.model):
         return replace(solution, message=solution.message + CANNOT_RELAX)
-    stable = relaxed(solution, limits.newton, progress)
+    stable = _relaxed_past_no_obstacle(solution, limits, progress)
     if stable is None:
         return replace(solution, message=solution.message + NONE_STABLE)
     return stable
+
+
+def _relaxed_past_no_obstacle(
+    solution: Solution, limits: ContinuationSettings, progress: Progress | None
+) -> Solution | None:
+    """What a solution relaxes to; None where nothing is found, or a smooth obstacle or a rod is on the way."""
+    settled = relaxed(solution, limits.newton, progress)
+    barriers = SmoothBarriers(solution.model)
+    if settled is None or not barriers.any:
+        return settled
+    ends = (solution.inputs, solution.inputs)
+    return None if barriers.are_between(solution.x, settled.x, ends) else settled
 
 
 def _settled_on_obstacles(
     solution: Solution, limits: ContinuationSettings, progress: Progress | None = None
 ) -> Solution:
     """The equilibrium that a rod snaps to where its load path stalled on soft obstacles, past none of them."""
-    model, inputs = solution.model, solution.inputs
-    barriers = SmoothBarriers(model)
-    if not barriers.any or not can_relax(model) or not model.has_potential(inputs):
+    model = solution.model
+    if not SmoothBarriers(model).any or not can_relax(model) or not model.has_potential(solution.inputs):
         return solution
-    settled = relaxed(solution, limits.newton, progress)
-    if settled is None or barriers.are_between(solution.x, settled.x, (inputs, inputs)):
-        return solution
-    return settled
+    return _relaxed_past_no_obstacle(solution, limits, progress) or solution
 
 
 def _continuation(task: _Task) -> _End:

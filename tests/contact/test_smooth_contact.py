@@ -674,6 +674,18 @@ def test_no_step_of_a_path_leads_to_parameters_that_the_scene_refuses() -> None:
     assert not path.admits((x, 0.0), (x, 0.75))
 
 
+def test_no_relaxing_leads_through_a_wire() -> None:
+    """A column beyond its buckling load falls to either side; a wire beside it is in the way to one of them."""
+    thrust = PUSH.replace("[0, 0, -0.6]", "[-2.5, 0, 0]")
+    few = ["accuracy.modes=3", "accuracy.nodes=8"]
+    free = solve(build(parse_scene(ROD + thrust, few)), stable=True)
+    assert free.stable
+    height = 0.05 * np.sign(free.tip().position[2])
+    wire = WIRE.replace("-0.1]", f"{height}]").replace("0.9,", "0.5,")
+    found = solve(build(parse_scene(ROD + thrust + wire, few)), stable=True)
+    assert not (found.stable and found.pose(0.5).position[2] * height > 0.05**2), found.message
+
+
 MEASURED_TIP = """
 [[measurements]]
 name = "tip"
