@@ -166,6 +166,8 @@ def search_near(
     if isinstance(problem, LiftedProblem):
         found = followed(problem, start)
         if found is not None and found.met and not found.unstable:
+            found = problem.on_this_side(start, found)
+        if found is not None and found.met and not found.unstable:
             return found
     return search(problem, start, stable, starts, report)
 

@@ -23,6 +23,13 @@ NOT_STABLE = " No stable equilibrium was found that comes as near."
 """How it ends where a stable one was wanted."""
 
 
+BARRED = (
+    " The search led through an obstacle or a rod: these are its inputs, with rods on the side on which they began. "
+    "Other starts may lead to the targets."
+)
+"""Sentence where the optimiser ended behind what is in the way."""
+
+
 @dataclass(frozen=True, repr=False)
 class Inverse(Result):
     """Inputs found for targets.
@@ -38,6 +45,7 @@ class Inverse(Result):
         starts: starts that were tried, 1 where the first has met the targets.
         starts_left_out: further starts that the search had no time for.
         cut_short: whether the optimiser ran out of time: the inputs are where it was, which need not be a minimum.
+        barred: whether the optimiser ended behind a smooth obstacle or a rod: the equilibrium is that on this side.
         at_bounds: decision variables that ended at a bound, by name.
     """
 
@@ -49,6 +57,7 @@ class Inverse(Result):
     starts: int = 1
     starts_left_out: int = 0
     cut_short: bool = False
+    barred: bool = False
     at_bounds: tuple[str, ...] = ()
 
     @property
@@ -83,6 +92,8 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
     if not _missed_by_the_model(result):
         solution = with_notes(solution)
     message = solution.message
+    if result.barred and not solution.converged:
+        message += BARRED
     if solution.converged:
         # What was asked for comes first: whether the targets are met.
         message = f"{_targets_sentence(result)} {message}"
@@ -136,6 +147,8 @@ def _minimum_sentence(result: Inverse) -> str:
     sentence = f" It is a local minimum {where}, the best of {starts}."
     if result.cut_short:
         sentence = f" The optimiser ran out of time {where}, in the best of {starts}: it need not be a local minimum."
+    if result.barred:
+        sentence = BARRED
     if result.starts_left_out:
         sentence += f" The search took too long for {result.starts_left_out} further ones."
     return sentence

@@ -13,7 +13,8 @@ from cosserat_casadi.control.decision_variables import DecisionVariables, decisi
 from cosserat_casadi.control.inverse_result import Inverse, gap_left
 from cosserat_casadi.control.sought_inputs import SoughtInputs
 from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
-from cosserat_casadi.equilibrium.solution import Equilibrium
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -51,6 +52,9 @@ IPOPT = {
 
 LEARNED_HESSIAN = {"hessian_approximation": "limited-memory"}
 """Further options where exact second derivatives cost too much."""
+
+SAME = 1e-6
+"""Distance of unknowns, over their norm, within which two equilibria are one."""
 
 NEAR_BOUND = 1e-3
 """Distance from a bound, in the scales, below which an input is tried at the bound itself."""
@@ -104,9 +108,28 @@ class LiftedProblem(SoughtInputs):
             largest_change = float(np.abs(change - centre).max())
             centre = change
         result = replace(self.judged(x, centre, rounds), cut_short=cut_short)
-        if result.met or cut_short:
+        if not result.met and not cut_short:
+            result = self._polished(result, x, centre)
+        return self.on_this_side(start, result)
+
+    def on_this_side(self, start: Equilibrium[Any], result: Inverse) -> Inverse:
+        """The result; where that is behind a smooth obstacle or a rod, what a path leads to at its inputs.
+
+        Unknowns of the optimiser go anywhere. The path is that of the inputs from the start, or of the loads where the
+        start is no equilibrium, without steps through what is in the way.
+        """
+        end = result.solution
+        if not isinstance(end, Solution) or not end.converged:
             return result
-        return self._polished(result, x, centre)
+        barriers = SmoothBarriers(end.model)
+        if not barriers.any:
+            return result
+        if start.converged and not barriers.are_between(start.x, end.x, (start.inputs, end.inputs)):
+            return result
+        led = self.judged(start if start.converged else None, self.change(end.inputs), result.rounds)
+        if led.solution.converged and np.linalg.norm(led.solution.x - end.x) <= SAME * (1 + np.linalg.norm(end.x)):
+            return result
+        return replace(led, cut_short=result.cut_short, barred=True)
 
     def _polished(self, result: Inverse, x: FloatArray, change: FloatArray) -> Inverse:
         """The search once more with the inputs that are near a bound held at it; the better of the two.

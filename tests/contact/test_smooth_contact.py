@@ -686,6 +686,22 @@ def test_no_relaxing_leads_through_a_wire() -> None:
     assert not (found.stable and found.pose(0.5).position[2] * height > 0.05**2), found.message
 
 
+@pytest.mark.parametrize("force", [0.3, pytest.param(1.5, marks=pytest.mark.slow)])
+def test_no_inverse_problem_is_met_behind_a_wire(force: float) -> None:
+    """A target below a wire that hangs under the rod; without the wire it is met."""
+    few = ["accuracy.modes=3", "accuracy.nodes=8"]
+    head = 'inputs = ["push.force"]\n' + ROD + PUSH.replace("-0.6", "-0.05")
+    free = build(parse_scene(head, few))
+    below = solve(free, {"push.force": [0.0, 0.0, -force]}).tip().position
+    target = f"[[targets]]\nkind = 'position'\nrod = 'rod'\nposition = {below.tolist()}\n"
+    if force == 0.3:
+        assert inverse(build(parse_scene(head + target, few)), estimate_error=False).met
+    found = inverse(build(parse_scene(head + WIRE + target, few)), estimate_error=False)
+    assert not found.met
+    assert "led through an obstacle or a rod" in found.solution.message
+    assert found.solution.pose(0.9).position[2] > -0.1
+
+
 MEASURED_TIP = """
 [[measurements]]
 name = "tip"
