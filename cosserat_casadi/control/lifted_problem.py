@@ -13,7 +13,7 @@ from cosserat_casadi.control.decision_variables import DecisionVariables, decisi
 from cosserat_casadi.control.inverse_result import Inverse, gap_left
 from cosserat_casadi.control.sought_inputs import SoughtInputs
 from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, are_one
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.maths.pose import POSE_SIZE
@@ -52,9 +52,6 @@ IPOPT = {
 
 LEARNED_HESSIAN = {"hessian_approximation": "limited-memory"}
 """Further options where exact second derivatives cost too much."""
-
-SAME = 1e-6
-"""Distance of unknowns, over their norm, within which two equilibria are one."""
 
 NEAR_BOUND = 1e-3
 """Distance from a bound, in the scales, below which an input is tried at the bound itself."""
@@ -127,7 +124,7 @@ class LiftedProblem(SoughtInputs):
         if start.converged and not barriers.are_between(start.x, end.x, (start.inputs, end.inputs)):
             return result
         led = self.judged(start if start.converged else None, self.change(end.inputs), result.rounds)
-        if led.solution.converged and np.linalg.norm(led.solution.x - end.x) <= SAME * (1 + np.linalg.norm(end.x)):
+        if led.solution.converged and are_one(led.solution.x, end.x):
             return result
         return replace(led, cut_short=result.cut_short, barred=True)
 

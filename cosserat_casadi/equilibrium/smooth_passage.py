@@ -34,6 +34,9 @@ from cosserat_casadi.numerics.continuation import Path, PathPoint
 EVERY = 2
 """Sections of rods that touch rods of which one is looked at."""
 
+SAME = 1e-6
+"""Distance of unknowns, over their norm, within which two equilibria are one."""
+
 ROUGHLY = 8
 """Sections of which one is looked at where many states follow each other: rods are nearly straight between them."""
 
@@ -179,6 +182,11 @@ class SmoothBarriers:
     def _looked_at(self) -> dict[str, LookedAt]:
         of_disks = {layer.rod for layer in self.watched_bodies if layer.rod is not None}
         return {rod: LookedAt(self.model, rod) for rod in {rod for rod, _ in self.watched} | of_disks}
+
+
+def are_one(x: FloatArray, other: FloatArray) -> bool:
+    """Whether the unknowns of two equilibria at the same inputs are those of one."""
+    return bool(np.linalg.norm(x - other) <= SAME * (1 + np.linalg.norm(x)))
 
 
 def _allowed(obstacle: scenes.ObstacleRecord, length: float) -> float:

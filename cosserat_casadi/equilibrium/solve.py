@@ -21,7 +21,7 @@ from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import column, continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, are_one, past_no_obstacle
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
@@ -295,6 +295,18 @@ def _relaxed_past_no_obstacle(
         return settled
     ends = (solution.inputs, solution.inputs)
     return None if barriers.are_between(solution.x, settled.x, ends) else settled
+
+
+def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool:
+    """Whether an equilibrium is behind a smooth obstacle or a rod.
+
+    The straight way from the unloaded shape leads through it then, and the load path comes to another equilibrium.
+    """
+    barriers = SmoothBarriers(model)
+    if not barriers.any or not barriers.are_between(model.unloaded(), x, (inputs, inputs)):
+        return False
+    led = solve(model, inputs, estimate_error=False)
+    return not (led.converged and are_one(led.x, x))
 
 
 def _settled_on_obstacles(

@@ -24,6 +24,8 @@ from cosserat_casadi.codegen.estimator import (
     Knowledge,
     MeasuredCases,
 )
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.equilibrium.solve import is_behind
 from cosserat_casadi.equilibrium.stability import second_variation, variations
 from cosserat_casadi.estimation.beforehand import (
     cases_within_reach,
@@ -38,7 +40,7 @@ from cosserat_casadi.estimation.beforehand import (
     with_unknown_parameters,
 )
 from cosserat_casadi.estimation.consistency import Consistency, consistency
-from cosserat_casadi.estimation.estimate_outcome import NOT_DETERMINED, REASONS, Estimate, information_of
+from cosserat_casadi.estimation.estimate_outcome import BEHIND, NOT_DETERMINED, REASONS, Estimate, information_of
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact, RowSolver
@@ -94,17 +96,20 @@ def estimate_model(
     search = Search(solver, tables, known, indices, cores or available_cores(), report)
     (found, second), shared, added = _rows_and_shared(search, layout)
     told = information_of(found.first(own), known, layout.own_labels)
-    covariance = told.covariance
+    inputs = table.inputs.copy()
+    inputs[:, indices] = found.unknowns
+    behind = _behind(model, found, inputs)
+    told = replace(told, determined=told.determined & ~behind)
+    covariance = np.where(behind[:, None, None], np.nan, told.covariance)
     drawn = None
     if model.scene.estimation.draws:
         drawn = search.sampled(found, covariance, model.scene.estimation.draws)
         covariance = np.where(drawn.sound[:, None, None], drawn.covariance, covariance)
     outcomes = []
-    for ending, determined in zip(found.outcome.tolist(), told.determined.tolist(), strict=True):
-        undetermined = ending == 0 and not determined
-        outcomes.append(NOT_DETERMINED if undetermined else ENDINGS[ending])
+    for ending, determined, hidden in zip(found.outcome.tolist(), told.determined.tolist(), behind, strict=True):
+        word = BEHIND if hidden else NOT_DETERMINED
+        outcomes.append(word if ending == 0 and not determined else ENDINGS[ending])
     values = np.where(told.determined[:, None], found.unknowns[:, :own], np.nan)
-    inputs = table.inputs.copy()
     inputs[:, indices] = np.where(told.determined[:, None], found.unknowns, np.nan)
     sensors = sensor_names(model, sections, table.at)
     result = Estimate(
@@ -132,6 +137,17 @@ def estimate_model(
         report("Looking for contacts that change", 0, 0)
         remarks += _on_contacts(result.cases, solver.contact_changes(table, inputs[:, indices], covariance, known))
     return replace(result, warnings=tuple(remarks))
+
+
+def _behind(model: Model, found: Estimates, inputs: FloatArray) -> npt.NDArray[np.bool_]:
+    """Rows that were found behind a smooth obstacle or a rod, shape (cases,); of inputs with parameters behind them."""
+    behind = np.zeros(len(found.x), dtype=bool)
+    if not SmoothBarriers(model).any:
+        return behind
+    for row in np.flatnonzero(found.outcome == 0):
+        given, parameters = np.split(inputs[row], [model.inputs.size])
+        behind[row] = is_behind(model.at(parameters), found.x[row], given)
+    return behind
 
 
 def _stability(result: Estimate) -> Iterator[bool | None]:

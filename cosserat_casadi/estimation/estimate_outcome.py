@@ -36,6 +36,9 @@ SURE = 0.95
 NOT_DETERMINED = "not_determined"
 """Word for a row whose unknowns neither data nor priors determine."""
 
+BEHIND = "behind"
+"""Word for a row whose search led through a smooth obstacle or a rod."""
+
 
 @dataclass(frozen=True, repr=False)
 class Estimate(Result):
@@ -138,6 +141,7 @@ REASONS = {
     "no_equilibrium": "No equilibrium at the values to begin with: give a prior near what is felt.",
     "singular": "A limit or bifurcation point: no derivatives there.",
     "not_found": "The search found no least misfit.",
+    BEHIND: "The search led through an obstacle or a rod, which no load brings the rods past: give a nearer prior.",
     NOT_DETERMINED: "Neither data nor priors determine the unknowns: give priors, or measure more.",
 }
 """Why a case was not found, by its outcome."""

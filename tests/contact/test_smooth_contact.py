@@ -34,6 +34,7 @@ from cosserat_casadi.control import embedded, motion_stage
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_passage import past_no_obstacle
 from cosserat_casadi.errors import SceneError
+from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
 from cosserat_casadi.loads.load_trace import traced
 from cosserat_casadi.scene import with_exact_contact
@@ -700,6 +701,35 @@ def test_no_inverse_problem_is_met_behind_a_wire(force: float) -> None:
     assert not found.met
     assert "led through an obstacle or a rod" in found.solution.message
     assert found.solution.pose(0.9).position[2] > -0.1
+
+
+FELT_TIP = """
+[[measurements]]
+quantity = "position"
+file = "tip.csv"
+rod = "rod"
+columns = ["x", "y", "z"]
+sigma = 1e-3
+[[unknowns]]
+input = "push.force.z"
+per_row = true
+prior = { mean = -0.05, sigma = 1.0 }
+"""
+
+
+@pytest.mark.slow
+def test_no_row_of_estimates_is_found_behind_a_wire() -> None:
+    """Tips above the wire, and below it where no force brings the rod from above; without the wire all are found."""
+    few = ["accuracy.modes=3", "accuracy.nodes=8"]
+    head = 'inputs = ["push.force"]\n' + ROD + PUSH.replace("-0.6", "-0.05")
+    free = build(parse_scene(head, few))
+    tips = [solve(free, {"push.force": [0.0, 0.0, -force]}).tip().position for force in (0.05, 0.3)]
+    data = {"tip.csv": dict(zip("xyz", np.transpose(tips), strict=True))}
+    for obstacle, outcomes in (("", ("found", "found")), (WIRE, ("found", "behind"))):
+        found = estimate(build(parse_scene(head + obstacle + FELT_TIP, few).with_unknowns()), data)
+        assert found.outcomes == outcomes
+        assert_allclose(found.values[0], [-0.05], rtol=0, atol=1e-4)
+        assert np.isnan(found.values[1, 0]) == bool(obstacle)
 
 
 MEASURED_TIP = """
