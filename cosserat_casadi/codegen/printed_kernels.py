@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
@@ -247,21 +248,39 @@ def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
 
 
 def _tables(kernels: Sequence[PrintedKernel], stem: str) -> dict[ConstantTable, str]:
-    """Constant arrays of kernels as they are read in C: one for all that are equal, one of all whole numbers."""
+    """Constant arrays of kernels as they are read in C: one for all that it begins with, one of all whole numbers."""
     name_of: dict[ConstantTable, str] = {}
     integers = 0
-    for table in dict.fromkeys(table for kernel in kernels for table in kernel.tables.values()):
+    every = list(dict.fromkeys(table for kernel in kernels for table in kernel.tables.values()))
+    longest = _longest_with_each(every)
+    for table in every:
         if table.type == "int":
             name_of[table] = f"INTEGERS({integers})"
             integers += len(table.numbers)
-        else:
+        elif longest[table] == table:
             name_of[table] = f"{stem}_table_{len(name_of)}"
-    return name_of
+    return name_of | {table: name_of[longest[table]] for table in every}
+
+
+def _longest_with_each(tables: Sequence[ConstantTable]) -> dict[ConstantTable, ConstantTable]:
+    """For each constant array the longest one that begins with it; of whole numbers the array itself."""
+    by_first: dict[tuple[str, ...], list[ConstantTable]] = defaultdict(list)
+    longest = {}
+    for table in sorted(tables, key=lambda table: -len(table.numbers)):
+        alike = [] if table.type == "int" else by_first[table.numbers[:1]]
+        holders = [other for other in alike if other.numbers[: len(table.numbers)] == table.numbers]
+        longest[table] = holders[0] if holders else table
+        if not holders:
+            alike.append(table)
+    return longest
 
 
 def _tables_in_c(name_of: Mapping[ConstantTable, str], stem: str) -> str:
     """The constant arrays in C, from the names by which they are read."""
-    texts = [table.text(name) for table, name in name_of.items() if table.type != "int"]
+    # Of arrays under one name the longest comes last.
+    by_length = sorted(name_of, key=lambda table: len(table.numbers))
+    longest = {name_of[table]: table for table in by_length if table.type != "int"}
+    texts = [longest[name].text(name) for name in dict.fromkeys(name_of.values()) if name in longest]
     integers = [number for table in name_of if table.type == "int" for number in table.numbers]
     if integers:
         texts += [_array("int", f"{stem}_integers", integers), INTEGERS.format(stem=stem)]

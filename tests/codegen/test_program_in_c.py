@@ -269,6 +269,17 @@ def test_constant_matrices_are_multiplied_block_by_block() -> None:
     assert_same(compiled, ca.Function("whole", [y], [small @ y]), 1e-14)
 
 
+def test_an_array_that_another_one_begins_with_is_read_there() -> None:
+    """Of a matrix and its first columns there is one array, whichever is read first; other columns have their own."""
+    matrix = ca.DM(np.random.default_rng(8).uniform(-1, 1, (60, 12)))
+    x, y, z = (ca.MX.sym(name, size) for name, size in (("x", 9), ("y", 12), ("z", 9)))
+    function = ca.Function("first", [x, y, z], [matrix[:, :9] @ x, matrix @ y, matrix[:, 3:] @ z])
+    texts, compiled = in_c(function, "first_in_c")
+    assert texts["first_in_c.c"].count("static const casadi_real first_in_c_table_") == 2
+    assert texts["first_in_c.c"].count("(first_in_c_table_0, ") == 2
+    assert_same(compiled, function, 1e-14)
+
+
 def test_columns_of_sparse_matrices_are_read_in_groups() -> None:
     """Columns with equal rows, rows that move down or up by equal steps, no rows, and columns alone."""
     of_columns = [[0, 4], [2, 6], [4, 8], [7, 9], [5, 7], [3, 5], [], [], [1, 2, 9], [1, 2, 9], [1, 9], [0, 9], [3]]
