@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.event_restart import LAID_DOWN
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.scene.simulation import Simulation
@@ -107,6 +108,19 @@ def told_passage(history: History, duration: float, model: Model | None = None) 
                 "or a rod, or is deep inside: give their contact more width or stiffness, or take shorter steps."
             )
     return ""
+
+
+def laid_down(history: History) -> list[str]:
+    """Sentences on rods that were laid down because their contacts changed over and over, one for each obstacle."""
+    times: dict[tuple[str, str], list[float]] = {}
+    for event in history.events:
+        if event.kind == LAID_DOWN:
+            times.setdefault((event.owner, event.obstacle), []).append(event.time)
+    return [
+        f"Contacts of {owner!r} with {obstacle!r} changed over and over in next to no time ({len(found)} times, first "
+        f"at t = {found[0]:.6g} s): the rod was laid down there, and may have gone on otherwise."
+        for (owner, obstacle), found in times.items()
+    ]
 
 
 def told_inside(history: History, duration: float, deepest: float) -> str:

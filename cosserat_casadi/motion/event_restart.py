@@ -19,6 +19,9 @@ HeldPhases = TypeVar("HeldPhases", covariant=True)
 """The same, of what only holds and does not take it."""
 
 
+LAID_DOWN = "laid_down"
+"""Kind of the event in which a rod is laid down because its contacts change over and over."""
+
 Settling = Callable[[Instant], Instant]
 """The end of a step, in the unknowns of the model and the forces of contacts ↦ the corrected end."""
 
@@ -28,8 +31,8 @@ class ContactEvent:
     """A change of contact in a motion, of a cable that may go slack, or of a joint with a stop.
 
     Attributes:
-        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint" or "lie_down"; of a cable
-            "taut" or "slack", of a joint "stop_hit" or "stop_left".
+        kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint", "lie_down" or "laid_down";
+            of a cable "taut" or "slack", of a joint "stop_hit" or "stop_left".
         time: s.
         owner: name of the rod, or of the body, that touches; or of the cable or the joint.
         obstacle: name of the obstacle, "lower_stop" or "upper_stop"; empty of a cable.

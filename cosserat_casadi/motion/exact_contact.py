@@ -33,7 +33,7 @@ from cosserat_casadi.motion.contact_guards import (
 )
 from cosserat_casadi.motion.contact_onset import Onset, Struck
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.event_restart import ContactEvent, Restart
+from cosserat_casadi.motion.event_restart import LAID_DOWN, ContactEvent, Restart
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.numerics.consistent_start import least_change, saddle_at
@@ -267,7 +267,9 @@ class ExactContacts:
             held[k] = touch._replace(slides=True)
         return replace(known, held=tuple(held), laid=known.laid - {number})
 
-    def _lying(self, known: _Known, first: MovingContact, before: Instant, inputs: FloatArray) -> _Known:
+    def _lying(
+        self, known: _Known, first: MovingContact, before: Instant, inputs: FloatArray, kind: str = "lie_down"
+    ) -> _Known:
         """Contacts where a rod lies down: what slides on the obstacle stays at the section that touches now."""
         facing = self.facings[first.facing]
         nodes = facing.nodes(before.x, inputs)
@@ -277,14 +279,14 @@ class ExactContacts:
             if touch.facing == first.facing and touch.slides:
                 stays = touch._replace(slides=False, height=facing.at(nodes, touch.place).value)
             held.append(stays)
-        event = self._event("lie_down", before.time, first)
+        event = self._event(kind, before.time, first)
         return replace(known, held=tuple(held), laid=known.laid | {first.facing}, events=(*known.events, event))
 
     def _all_lie(self, known: _Known, before: Instant, inputs: FloatArray) -> _Known:
         """Contacts that change over and over in next to no time: all rods that touch lie down, but no bodies."""
         for touch in (*known.held, *known.left):
             if touch.facing not in known.laid and not self.facings[touch.facing].of_body:
-                known = self._lying(known, touch, before, inputs)
+                known = self._lying(known, touch, before, inputs, LAID_DOWN)
         return known
 
     def _struck(self, onset: Onset, known: _Known) -> Restart[ContactPhase]:

@@ -20,7 +20,7 @@ from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
-from cosserat_casadi.motion.contact_checks import told_inside, told_passage, too_deep
+from cosserat_casadi.motion.contact_checks import laid_down, told_inside, told_passage, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
@@ -603,7 +603,7 @@ def motion_of(
         start=simulator.start.sentence,
         interpolant=history.at,
         account=partial(_account, history, times, simulator.begun, tuple(strands), error),
-        warnings=tuple(warnings(history, simulator.start, simulator.moving, duration)),
+        warnings=(*warnings(history, simulator.start, simulator.moving, duration), *laid_down(history)),
         contacts=tuple(history.touching(float(time)) for time in times),
         events=tuple(sorted([*history.events, *simulator.watch.crossings(history)], key=lambda event: event.time)),
         impacts_spread=spread,

@@ -10,12 +10,13 @@ from cosserat_casadi import build, parse_scene, read_scene, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion import exact_contact
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, GuardKind
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
 from cosserat_casadi.motion.history import equations_of
-from cosserat_casadi.motion.simulate import Simulator, moving_inputs, started
+from cosserat_casadi.motion.simulate import Simulator, motion_of, moving_inputs, started
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
 from tests.families import mostly_slow
@@ -447,6 +448,27 @@ def test_a_rod_lies_down_where_two_of_its_sections_have_slid_to_one_place() -> N
     assert "lie_down" in [event.kind for event in restart.events]
     assert restart.phases.laid == {0}
     assert not any(touch.slides for touch in restart.phases.touches)
+
+
+def test_a_rod_that_is_laid_down_because_its_contacts_change_too_often_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With no change in a moment allowed, a rod that touches lies down where its contacts change."""
+    scene = read_scene("examples/rod_hits_floor.toml", ["simulation.duration=0.36", "accuracy.modes=2"])
+    model = build(scene.with_motion_inputs(), moving=True)
+    assert scene.simulation is not None
+    simulator = Simulator(model, scene.simulation, started(model, scene.simulation, None))
+    motions = []
+    for most in (exact_contact.MOST_IN_A_MOMENT, -1):
+        monkeypatch.setattr(exact_contact, "MOST_IN_A_MOMENT", most)
+        motions.append(motion_of(simulator, simulator.controlled(1e-2), MotionOutcome.COMPLETED, 0.0, ""))
+    rolled, forced = motions
+    assert "lift_off" in [event.kind for event in rolled.events]
+    assert "laid_down" not in [event.kind for event in rolled.events]
+    assert rolled.warnings == ()
+    times = [event.time for event in forced.events if event.kind == "laid_down"]
+    assert times
+    (warning,) = forced.warnings
+    assert "'rod' with 'floor' changed over and over in next to no time" in warning
+    assert f"({len(times)} times, first at t = {times[0]:.6g} s)" in warning
 
 
 @pytest.mark.slow
