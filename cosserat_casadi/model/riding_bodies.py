@@ -165,13 +165,10 @@ class RidingBody:
         given = _Given()
         origin, rotation = given(_sparse(self.in_section.position)), given(self._rotation)
         mass, centre, moments = (given(part) for part in (self.body.mass, as_vector(self.body.centre_of_mass), inertia))
-        # With damping in proportion to mass a rod accelerates by more than it does: a body does not.
-        mass_damping = motion.rod.properties.mass_damping
-        damping = given(0.0 if mass_damping is None else mass_damping)
 
         def wrench(section: _Section) -> Sequence[Matrix]:
             arm = section.rotation @ origin
-            moved = FrameMotion(*section.rates).damped(-damping).at(arm)
+            moved = FrameMotion(*section.rates).at(arm)
             of_body = BodyInertia(mass, centre, moments, section.rotation @ rotation, moved)
             return of_body.force, of_body.moment + ca.cross(arm + of_body.arm, of_body.force)
 

@@ -6,7 +6,7 @@ of the rods. So the derivative with x at fixed inertia is the Jacobian of static
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -176,10 +176,6 @@ class SceneMotionEquations:
         floating = base is not None
         tangent = MotionTangent(self.system.tangents[rod], self.system.inertia_of(rod), floating=floating, unit=unit)
         matrices = motion_matrices(tangent, self.system.rods[rod].statics.pose_loads)
-        damping = discrete.rods[rod].properties.mass_damping
-        if damping is not None:
-            # Inertia sees accelerations with a share of the velocities in them.
-            matrices = replace(matrices, damping=matrices.damping + damping * matrices.mass)
         strains = discrete.unknowns.strain(rod)
         if base is None:
             return [(strains, strains, matrices)]

@@ -14,7 +14,7 @@ section 11.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -35,6 +35,10 @@ def motion_matrices(tangent: MotionTangent, loads: Sequence[LoadedSections]) -> 
     They are in units of ``tangent.unit``.
     """
     total = tangent.matrices
+    mass_damping = tangent.motion.rod.properties.mass_damping
+    if mass_damping is not None:
+        # The rod's own inertia sees accelerations with a share of the velocities in them; loads do not.
+        total = replace(total, damping=total.damping + mass_damping * total.mass)
     for load in loads:
         if load.load.kernel.rates:
             added = MotionLoad(tangent, load).matrices
@@ -103,10 +107,16 @@ class MotionLoad:
         if rate == "velocity":
             return r.rate, r.value, None
         if rate == "acceleration":
-            return r.acceleration, 2 * r.rate, r.value
+            return self._undamped(r.acceleration, r.rate), 2 * r.rate, r.value
         spin = hat_operator(self.tangent.motion.angular_velocity[:, self.load.nodes])
         if rate == "angular_velocity":
             return theta.rate - spin @ theta.value, theta.value, None
         spin_rate = hat_operator(self.tangent.motion.angular_acceleration[:, self.load.nodes])
         by_position = theta.acceleration - spin_rate @ theta.value - spin @ theta.rate
+        by_position = self._undamped(by_position, theta.rate - spin @ theta.value)
         return by_position, 2 * theta.rate - spin @ theta.value, theta.value
+
+    def _undamped(self, acceleration: Matrix, velocity: Matrix) -> Matrix:
+        """The variation of an acceleration, from that of r̈ + α ṙ, which inertia sees, and that of the velocity ṙ."""
+        mass_damping = self.tangent.motion.rod.properties.mass_damping
+        return acceleration if mass_damping is None else acceleration - mass_damping * velocity

@@ -174,7 +174,7 @@ class LoadedSections:
         """The rates that the kernel depends on at the loaded sections, 3×k each, axes of the base."""
         if self.load.motion is None:
             return []
-        return [getattr(self.load.motion, rate)[:, self.nodes] for rate in self.load.kernel.rates]
+        return [self.load.motion.undamped(rate)[:, self.nodes] for rate in self.load.kernel.rates]
 
     def _scaled(self, part: Matrix) -> Matrix | None:
         if not part.nnz():

@@ -18,6 +18,7 @@ from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.section_kernel import RATES
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.transport import ARGUMENTS, KEPT, IntervalKernels, interval_kernels, interval_turns
 
@@ -97,6 +98,9 @@ class StrainRates:
 NO_CHANGE = ca.DM(1, 1)
 """Rate of a length that is fixed: it takes the intrinsic strain out of the rates of strains."""
 
+
+VELOCITIES = {"acceleration": "velocity", "angular_acceleration": "angular_velocity"}
+"""The velocity of which damping in proportion to mass adds a share to an acceleration."""
 
 SPINS = ("angular_velocity", "angular_acceleration")
 """Further arguments of a kernel of an interval in motion: of the section at which it begins."""
@@ -281,12 +285,17 @@ class RodMotion:
         """Accelerations of the nodes in the world, 3×M, m/s²."""
         return self._integrated(self.base.acceleration, self.tangent_acceleration)
 
+    def undamped(self, rate: str) -> Matrix:
+        """One of the rates of the nodes as others than the rod's own inertia see it, 3×M: without damping by mass."""
+        field: Matrix = getattr(self, rate)
+        damping = self.rod.properties.mass_damping
+        if damping is None or rate not in VELOCITIES:
+            return field
+        return field - damping * getattr(self, VELOCITIES[rate])
+
     def at(self, node: int) -> FrameMotion:
-        """Motion of the section of a node, as inertia does not see it: without damping in proportion to mass."""
-        rate = self.rod.properties.mass_damping
-        fields = (self.velocity, self.angular_velocity, self.acceleration, self.angular_acceleration)
-        moved = FrameMotion(*(field[:, node] for field in fields))
-        return moved if rate is None else moved.damped(-rate)
+        """Motion of the section of a node, without damping in proportion to mass."""
+        return FrameMotion(*(self.undamped(rate)[:, node] for rate in RATES))
 
     def director_rate(self, axis: int) -> Matrix:
         """ḋ = ω × d of one director at the nodes, 3×M, 1/s."""

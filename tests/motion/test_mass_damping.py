@@ -14,6 +14,7 @@ from tests.motion.stepping import moving_model
 from tests.moving_scenes import FOLLOW, WEIGHT, rod, scene
 
 RATE = 3.0
+WATER = {"name": "water", "kind": "flow", "density": 1000.0, "diameter": 0.04, "velocity": [0.3, 0.1, -0.2]}
 
 
 def arm(free: bool, strain: str = "kirchhoff", **damping: float) -> dict[str, Any]:
@@ -48,9 +49,20 @@ def test_every_mode_decays_at_half_the_rate() -> None:
     assert_allclose([mode.eigenvalue.real for mode in modes], -RATE / 2.0, rtol=1e-8, atol=0)
 
 
+def test_the_water_that_moves_along_is_not_damped() -> None:
+    """Across a uniform rod in still water each mode has α ρA/(ρA + m) in the place of α."""
+    water = {"name": "water", "kind": "flow", "density": 1000.0, "diameter": 0.04, "normal": 0.0, "tangential": 0.0}
+    slender = {"strain": "planar", "linear_density": 0.8, "rotary_inertia": [0.0, 0.0, 0.0]}
+    along = 1000.0 * np.pi / 4.0 * 0.04**2
+    tables = scene({**arm(free=False), **slender}, loads=[water], accuracy={"modes": 4, "nodes": 12})
+    modes = modes_of(scene_from_dict(tables), count=4).modes
+    assert_allclose([mode.eigenvalue.real for mode in modes], -RATE / 2.0 * 0.8 / (0.8 + along), rtol=1e-8, atol=0)
+
+
+@pytest.mark.parametrize("loads", [[WEIGHT, FOLLOW], [WEIGHT, WATER]], ids=["loads", "water"])
 @pytest.mark.parametrize("free", [False, True])
-def test_derivatives_are_those_of_the_residual(free: bool) -> None:
-    model = moving_model(scene(arm(free, "reissner", bending_x=0.02), loads=[WEIGHT, FOLLOW]))
+def test_derivatives_are_those_of_the_residual(free: bool, loads: list[dict[str, Any]]) -> None:
+    model = moving_model(scene(arm(free, "reissner", bending_x=0.02), loads=loads))
     rng = np.random.default_rng(5)
     x, v, a = (0.1 * rng.normal(size=model.size) for _ in range(3))
     still = np.zeros(model.inputs.size)
