@@ -27,7 +27,7 @@ BARRED = (
     " The search led through an obstacle or a rod: these are its inputs, with rods on the side on which they began. "
     "Other starts may lead to the targets."
 )
-"""Sentence where the optimiser ended behind what is in the way."""
+"""Sentence where the optimiser ended behind an obstacle or a rod."""
 
 
 @dataclass(frozen=True, repr=False)

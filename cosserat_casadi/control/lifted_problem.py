@@ -110,10 +110,10 @@ class LiftedProblem(SoughtInputs):
         return self.on_this_side(start, result)
 
     def on_this_side(self, start: Equilibrium[Any], result: Inverse) -> Inverse:
-        """The result; where that is behind a smooth obstacle or a rod, what a path leads to at its inputs.
+        """The result; where that is behind a smooth obstacle or a rod, the equilibrium a path leads to at its inputs.
 
         Unknowns of the optimiser go anywhere. The path is that of the inputs from the start, or of the loads where the
-        start is no equilibrium, without steps through what is in the way.
+        start is no equilibrium, without steps through obstacles or rods.
         """
         end = result.solution
         if not isinstance(end, Solution) or not end.converged:

@@ -288,7 +288,7 @@ def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progr
 def _relaxed_past_no_obstacle(
     solution: Solution, limits: ContinuationSettings, progress: Progress | None
 ) -> Solution | None:
-    """What a solution relaxes to; None where nothing is found, or a smooth obstacle or a rod is on the way."""
+    """The equilibrium that a solution relaxes to; None where it is not reached, or through an obstacle or a rod."""
     settled = relaxed(solution, limits.newton, progress)
     barriers = SmoothBarriers(solution.model)
     if settled is None or not barriers.any:

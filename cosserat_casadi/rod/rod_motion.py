@@ -291,7 +291,8 @@ class RodMotion:
         damping = self.rod.properties.mass_damping
         if damping is None or rate not in VELOCITIES:
             return field
-        return field - damping * getattr(self, VELOCITIES[rate])
+        velocity: Matrix = getattr(self, VELOCITIES[rate])
+        return field - damping * velocity
 
     def at(self, node: int) -> FrameMotion:
         """Motion of the section of a node, without damping in proportion to mass."""

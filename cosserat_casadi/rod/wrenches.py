@@ -72,6 +72,11 @@ class SeenMotion:
     velocity: Matrix
     angular_velocity: Matrix
 
+    def undamped(self, rate: str) -> Matrix:
+        """One of the rates, as :meth:`RodMotion.undamped`: damping in proportion to mass changes no velocity."""
+        field: Matrix = getattr(self, rate)
+        return field
+
 
 @dataclass(frozen=True)
 class PoseWrench:
