@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
 from cosserat_casadi.codegen.manifest import MANIFEST, described_unknowns, input_entries
-from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
+from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_kb
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES, motion_words
 from cosserat_casadi.codegen.names import Names
@@ -290,6 +290,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     functions = public_functions(model, names)
     margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights
+    owners = "each rod,\n   then each body" if names.bodies else "each rod"
     return {
         **sizes,
         **dict.fromkeys(("of_rods", "on_cores", "with_axes"), True),
@@ -309,8 +310,8 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         "igm": names.function("igm", names.rods[0]),
         "tip": names.function("tip", names.rods[0]),
         "first_pose": pose_name(names, "tip", names.rods[0]),
-        "workspace_kb": _workspace_kb(sizes, linear, in_motion),
-        **_pose_words(names),
+        "workspace_kb": workspace_kb({**sizes, **linear, **in_motion}),
+        "pose_owners": f"{owners}: position, then quaternion",
         **linear,
         **in_motion,
         "prototypes": "".join(function.prototype(sizes) for function in functions),
@@ -333,14 +334,6 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "max_reuses": newton.MAX_REUSES,
         "kept_steps": newton.MAX_REUSES + STEPS_OF_ESTIMATE,
     }
-
-
-def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
-    own = (in_motion.get("motion_reals", 0), in_motion.get("motion_integers", 0))
-    room = (sizes["kernel_reals"] + own[0], sizes["kernel_integers"] + own[1])
-    counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["kept_steps"])
-    extra = linear["linear_reals"] + sizes["parameter_reals"] + sizes["error_reals"]
-    return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
 
 
 def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
@@ -419,13 +412,6 @@ def _unknown_words(model: Model) -> dict[str, str]:
         lines.append(f"   {entry['first']} .. {last}: {words}")
         rows.append(f"| {entry['first']} … {last} | {words} |")
     return {"unknown_lines": "\n".join(lines), "unknown_rows": "\n".join(rows)}
-
-
-def _pose_words(names: Names) -> dict[str, Any]:
-    """Whose poses the sensitivities are of."""
-    if not names.bodies:
-        return {"pose_owners": "each rod: position, then quaternion"}
-    return {"pose_owners": "each rod,\n   then each body: position, then quaternion"}
 
 
 def _file_rows(name: str, files: Collection[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
+from typing import Any
 
 REAL, INTEGER = 8, 4
 """Bytes of a number in double precision, of an int."""
@@ -85,21 +86,14 @@ def _variables(declared: list[str]) -> int:
     return sum(line.count(",") + 1 for line in declared)
 
 
-def workspace_bytes(size: int, inputs: int, factors: int, reuses: int, room: tuple[int, int], extra: int) -> int:
-    """Size of the workspace in double precision.
-
-    Args:
-        size: number of unknowns.
-        inputs: number of inputs, at least one.
-        factors: numbers in a factorised Jacobian.
-        reuses: most steps with one Jacobian.
-        room: numbers and integers that kernels ask for.
-        extra: numbers that the block elimination works in.
-    """
-    jacobian = factors + reuses * (size + 1)
+def workspace_kb(words: Mapping[str, Any]) -> str:
+    """Size of the workspace in double precision, kB, from the words of a library's sources."""
+    size, inputs = words["unknowns"], words["input_room"]
+    jacobian = words["factor_count"] + words["kept_steps"] * (size + 1)
     point = 3 * size + 1
     vectors = 7 * size + 2 * inputs
     derivatives = size * inputs + 7 * size
-    reals = 2 * jacobian + 3 * point + vectors + derivatives + extra + room[0]
-    integers = 2 * (size + 3) + room[1]
-    return REAL * reals + INTEGER * integers
+    rooms = ("kernel_reals", "linear_reals", "parameter_reals", "error_reals", "motion_reals")
+    reals = 2 * jacobian + 3 * point + vectors + derivatives + sum(words.get(room, 0) for room in rooms)
+    integers = 2 * (size + 3) + words["kernel_integers"] + words.get("motion_integers", 0)
+    return f"{(REAL * reals + INTEGER * integers) / 1000:.1f}"

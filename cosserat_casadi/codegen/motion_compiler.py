@@ -132,15 +132,11 @@ class MotionCompiler:
             residual = interpreted_residual(model)
             # In centred coordinates steps have a residual of their own.
             if stepper is not None and not can_be_centred(model):
-                residual.program = self._program(model)
+                residual.program = _program_of(model, write=self._pays(model, PROGRAM))
                 residual.program_after = partial(_program_after, model)
         if jacobians is None:
             return StepKernels(residual, interpreted_jacobians(model), stepper)
         return StepKernels(residual, jacobians.matrices, stepper, jacobians.library)
-
-    def _program(self, model: Model) -> ScalarProgram | None:
-        """Inverse dynamics as a program; None where to write it does not pay, or where it has none."""
-        return _program_of(model, write=self._pays(model, PROGRAM))
 
     def library(self, model: Model) -> str | None:
         """The shared object with the residual and all that is written beside it; None where it is not at hand."""

@@ -5,7 +5,6 @@ Simulators that couple models, and environments for learning, see these quantiti
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import casadi as ca
@@ -61,7 +60,8 @@ def motion_outputs(model: Model) -> MotionOutputs:
     p = [ca.MX.sym(PARAMETERS, model.parameters.size)] if model.parameters.size else []
     entries: list[MotionOutput] = []
     values: list[Matrix] = []
-    for name, pose in _poses(model):
+    poses = {f"{rod}.tip": tip for rod, tip in model.tip.items()}
+    for name, pose in [*poses.items(), *model.body.items()]:
         position, quaternion = pose(x, inputs, *p)[:2]
         velocity = ca.jtimes(position, x, v) + ca.jtimes(position, inputs, inputs_rate)
         entries += [MotionOutput(f"{name}.position.{axis}", "m", f"Position of {name}.") for axis in POSITION]
@@ -86,13 +86,6 @@ def motion_outputs(model: Model) -> MotionOutputs:
         function=ca.Function("motion_outputs", arguments, [stacked], names, ["outputs"]),
         jacobian=_jacobian(stacked, arguments, names),
     )
-
-
-def _poses(model: Model) -> Iterator[tuple[str, ca.Function]]:
-    """What has a pose, by the name of its outputs."""
-    for rod, tip in model.tip.items():
-        yield f"{rod}.tip", tip
-    yield from model.body.items()
 
 
 def _jacobian(stacked: Matrix, arguments: list[ca.MX], names: list[str]) -> ca.Function:

@@ -609,22 +609,17 @@ def _is_kernel(step: Step) -> bool:
 
 
 def _in_bundles(unit: Unit) -> list[Unit]:
-    """Small steps in bundles that are written together, a unit each: a bundle keeps what later ones read."""
+    """A unit; small steps in bundles of bounded length, a unit each: a bundle keeps what later ones read."""
     if unit.kind is not UnitKind.STRAIGHT:
         return [unit]
-    return [Unit(unit.kind, steps) for steps in _bundles(unit.steps)]
-
-
-def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
-    """Small steps in bundles of bounded length."""
-    bundles: list[list[Step]] = [[]]
+    bundles = [Unit(unit.kind, [])]
     length = 0.0
-    for step in steps:
+    for step in unit.steps:
         length += step.instructions
         if length > LONGEST_BUNDLE:
-            bundles.append([])
+            bundles.append(Unit(unit.kind, []))
             length = step.instructions
-        bundles[-1].append(step)
+        bundles[-1].steps.append(step)
     return bundles
 
 

@@ -26,7 +26,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.scene import Actuator, Scene
+from cosserat_casadi.scene import Scene
 
 NAME = "sweep"
 """What every symbol of these libraries begins with."""
@@ -161,7 +161,10 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
     """
     tips = [*[rod.name for rod in scene.rods], *[tube.name for tube in scene.tubes]]
     posed = [*tips, *[body.name for body in scene.bodies]]
-    states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
+    states = []
+    for actuator in scene.actuators:
+        member = EFFECTS[actuator.kind]
+        states += [f"{actuator.name}.{member.effort}", f"{actuator.name}.{member.conjugate}"]
     if scene.tubes:
         states.append(ENERGY)
     poses = [f"{name}.{axis}" for name in posed for axis in POSE]
@@ -171,12 +174,6 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
     errors = ERRORS if estimate_errors else ()
     verdict = TUBE_STABILITY if scene.tubes else STABILITY
     return (*JUDGED, *poses, *states, *contacts, *errors, *(verdict if stability else ()))
-
-
-def _state(actuator: Actuator) -> tuple[str, str]:
-    """Names of the effort of an actuator and of what it works on."""
-    member = EFFECTS[actuator.kind]
-    return member.effort, member.conjugate
 
 
 def _rows_source(model: Model, columns: tuple[str, ...], *, lanes: bool) -> str:

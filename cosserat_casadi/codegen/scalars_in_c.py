@@ -303,7 +303,8 @@ class _Writing:
         for calls in groups.values():
             call = self.listing.calls[calls[0]]
             kernel = self._kernel(calls)
-            width = LANES if self._are_made_together(len(calls)) and kernel is None else 1
+            together = self.arithmetic.together
+            width = LANES if together is not None and len(calls) >= together and kernel is None else 1
             batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
             batches |= dict.fromkeys(calls, batch)
             if kernel is not None:
@@ -312,10 +313,6 @@ class _Writing:
             self._room(width * batch.turns * batch.results)
             self._place_results(batch)
         return batches
-
-    def _are_made_together(self, calls: int) -> bool:
-        """Whether so many calls of one function are made four at a time."""
-        return self.arithmetic.together is not None and calls >= self.arithmetic.together
 
     def _depths(self) -> list[int]:
         """For each value the number of calls that one needs of another for it, itself included."""
@@ -465,11 +462,9 @@ class _Writing:
             function = self.listing.calls[batch.calls[0]].function
             wanted[self._callee_name(function, batch.width)] = (function, batch.width)
         for name, (function, width) in wanted.items():
-            self._write_callee(name, Listing(function), width)
-
-    def _write_callee(self, name: str, listing: Listing, width: int) -> None:
-        self.callees[name], statements = callee(listing, FOURS if width == LANES else self.arithmetic)
-        self.statements += statements
+            arithmetic = FOURS if width == LANES else self.arithmetic
+            self.callees[name], statements = callee(Listing(function), arithmetic)
+            self.statements += statements
 
     # Columns
 

@@ -149,8 +149,7 @@ def chosen_arrangements(
         met.add(state_in(case.model.scene))
         before = inputs
     met.add(ContactState(()))
-    _refuse_lines_from_the_base(list(met.states.values()))
-    _refuse_split_lines(list(met.states.values()))
+    _refuse_lines(list(met.states.values()))
     count = len(met.states)
     if count > MOST_ARRANGEMENTS:
         problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
@@ -183,39 +182,24 @@ def _check(solution: Solution, what: str) -> None:
         raise ExportError(Problem("--over", f"{what}: {solution.message}", "leave it out, or lead there by others"))
 
 
-def _refuse_split_lines(states: Sequence[ContactState]) -> None:
-    """Refuse lines of contact that a load inside them splits.
+def _refuse_lines(states: Sequence[ContactState]) -> None:
+    """Refuse lines of contact that begin where the rod does, and those that a load inside them splits.
 
     Raises:
         ExportError: there are some.
     """
-    split = {(touch.owner, touch.obstacle, X) for state in states for touch in state.touches for X in touch.seams}
-    problems = [
-        Problem(
-            "loads",
-            f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: not written in C",
-            "give each obstacle a width, m, for a contact that is smooth",
+    touches = [touch for state in states for touch in state.touches]
+    from_base = sorted({(touch.owner, touch.obstacle) for touch in touches if touch.starts_at_base})
+    split = sorted({(touch.owner, touch.obstacle, X) for touch in touches for X in touch.seams})
+    problems = []
+    for rod, obstacle in from_base:
+        problem = f"it lies on {obstacle!r} from its base on: such a line of contact is not written in C"
+        problems.append(Problem(f"rods.{rod}", problem, "give the obstacle a width, m, or move it off the base"))
+    for rod, obstacle, X in split:
+        problem = (
+            f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: not written in C"
         )
-        for rod, obstacle, X in sorted(split)
-    ]
-    refuse(problems, ExportError)
-
-
-def _refuse_lines_from_the_base(states: Sequence[ContactState]) -> None:
-    """Refuse lines of contact that begin where the rod does.
-
-    Raises:
-        ExportError: there are some.
-    """
-    lines = {(touch.owner, touch.obstacle) for state in states for touch in state.touches if touch.starts_at_base}
-    problems = [
-        Problem(
-            f"rods.{rod}",
-            f"it lies on {obstacle!r} from its base on: such a line of contact is not written in C",
-            "give the obstacle a width, m, or move it off the base",
-        )
-        for rod, obstacle in sorted(lines)
-    ]
+        problems.append(Problem("loads", problem, "give each obstacle a width, m, for a contact that is smooth"))
     refuse(problems, ExportError)
 
 
