@@ -80,8 +80,8 @@ TO_COMPILE_STEPS = 0.35
 MOTIONS_TO_COME = 2.0
 """Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
 
-MOTIONS_OF_ALL_MODELS = 4.0
-"""The same of a search that may go on to further models: 2.3 to 5.2 times the work of its first motion."""
+MOTIONS_AFTER_FIRST = 4.0
+"""Work of a search after its first motion, over that of it: 2.3 to 5.2 in searches for modes."""
 
 
 @dataclass
@@ -92,7 +92,7 @@ class MotionCompiler:
         always: whether to compile even where that takes longer than it saves.
         last: the work of the motion before; None before the first.
         asked: for each function the model that it was looked for, and its machine code, None where there was none.
-        saved_by_steps: time that steps in C would have saved of the motion before, s.
+        saved_by_steps: time that steps in C would have saved of the first motion, s.
         spent_on_steps: that of all motions in this process, s.
     """
 
@@ -109,15 +109,18 @@ class MotionCompiler:
 
     def learn(self, statistics: StepStatistics) -> None:
         """Take note of the work of the motion for which kernels were asked last."""
+        is_first = self.last is None
         self.last = statistics
-        self.saved_by_steps = ITERATION * statistics.iterations
+        saved_by_steps = ITERATION * statistics.iterations
         for name, (model, found) in self.asked.items():
             if found is None:
                 _spent(model)[name] += _interpreted_time(model, name, statistics)
                 if name == RESIDUAL and not can_be_centred(model):
                     # Programs are run by steps in C alone.
-                    self.saved_by_steps += SAVED[PROGRAM] * _interpreted_time(model, name, statistics)
-        MotionCompiler.spent_on_steps += self.saved_by_steps
+                    saved_by_steps += SAVED[PROGRAM] * _interpreted_time(model, name, statistics)
+        if is_first:
+            self.saved_by_steps = saved_by_steps
+        MotionCompiler.spent_on_steps += saved_by_steps
 
     def kernels(self, model: Model) -> StepKernels:
         """The kernels for the next motion of a model.
@@ -158,8 +161,11 @@ class MotionCompiler:
         return CompiledSteps
 
     def _steps_pay(self) -> bool:
-        """Whether steps in machine code save more time than they take to compile; foreseen as :meth:`_pays` does."""
-        return max(MOTIONS_OF_ALL_MODELS * self.saved_by_steps, self.spent_on_steps) > TO_COMPILE_STEPS
+        """Whether steps in machine code save more time than they take to compile.
+
+        That is foreseen of the rest of the search, or where steps in Python have taken so long in this process.
+        """
+        return max(MOTIONS_AFTER_FIRST * self.saved_by_steps, self.spent_on_steps) > TO_COMPILE_STEPS
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""
