@@ -379,7 +379,7 @@ def test_the_start_of_a_hinged_rod_is_the_turn_nearest_to_its_base() -> None:
 
 def test_a_loop_that_is_closed_unloaded_and_bears_nothing_takes_no_step() -> None:
     tables = on_an_arm({"kind": "revolute", "axis": Y}, tangent=[1, 0, 0])
-    slide = {"kind": "prismatic", "axis": [1, 0, 0], "between": [{"world": True}, {"body": "slider"}]}
+    slide: dict[str, Any] = {"kind": "prismatic", "axis": [1, 0, 0], "between": [{"world": True}, {"body": "slider"}]}
     slide["between"][0]["position"] = [CRANK + tables["rods"][0]["length"], 0, 0]
     tables["joints"] += [hinge({"rod": "a"}, {"body": "slider"}), slide]
     tables["bodies"] += [{"name": "slider", "mass": 0.2, "inertia": [1e-3, 1e-3, 1e-3]}]
