@@ -155,16 +155,17 @@ class RodFacing(Facing):
         ]
         if not others:
             return float("inf")
-        lowest = min(others, key=lambda i: float(gaps[i]))
-        # Far from zero no one asks how much lower it is beside that section.
-        if gaps[lowest] > OFF * _step_down(gaps, lowest):
-            return float(gaps[lowest])
-        return self._refined(nodes, lowest).gap
+        # Far from zero no one asks how much lower it is beside a section.
+        return min(
+            float(gaps[i]) if gaps[i] > OFF * _step_down(gaps, i) else self._refined(nodes, i).gap
+            for i in _maybe_lowest(gaps, others)
+        )
 
     def deepest(self, nodes: FloatArray) -> Minimum:
         """The section whose gap is the least of all, the base included."""
         gaps = self.gaps(nodes)
-        return self._refined(nodes, int(np.argmin(gaps)))
+        found = [self._refined(nodes, i) for i in _maybe_lowest(gaps, _valleys(gaps))]
+        return min(found, key=lambda minimum: minimum.gap)
 
     def _stationary(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
         """Newton's method for a place where the slope is zero; not a number where it leads nowhere."""
@@ -209,17 +210,13 @@ class RodFacing(Facing):
         return index
 
     def _lowest(self, gaps: FloatArray) -> list[int]:
-        """Numbers of the sections that are no higher than their neighbours, of equal ones the first and the last.
+        """Numbers of the sections in valleys, but for ends that are not watched.
 
         An end that is held has a gap that does not change, and one that is another rod's too is watched there.
         """
-        padded = np.concatenate([[np.inf], gaps, [np.inf]])
-        falls = padded[:-2] - gaps
-        rises = padded[2:] - gaps
-        lowest = np.flatnonzero((falls >= 0.0) & (rises >= 0.0) & (falls + rises > 0.0))
         last = len(gaps) - 1
         base, tip = self.watched_ends
-        return [int(i) for i in lowest if (base or i > 0) and (tip or i < last)]
+        return [i for i in _valleys(gaps) if (base or i > 0) and (tip or i < last)]
 
     def _refined(self, nodes: FloatArray, index: int) -> Minimum:
         """The minimum next to a section that is looked at."""
@@ -345,6 +342,23 @@ def _step_down(gaps: FloatArray, index: int) -> float:
     """How much lower than a section that is looked at the minimum next to it may be."""
     neighbours = gaps[max(index - 1, 0) : index + 2]
     return float(neighbours.max() - gaps[index])
+
+
+def _valleys(gaps: FloatArray) -> list[int]:
+    """Numbers of the sections that are no higher than their neighbours, of equal ones the first and the last."""
+    padded = np.concatenate([[np.inf], gaps, [np.inf]])
+    falls = padded[:-2] - gaps
+    rises = padded[2:] - gaps
+    return [int(i) for i in np.flatnonzero((falls >= 0.0) & (rises >= 0.0) & (falls + rises > 0.0))]
+
+
+def _maybe_lowest(gaps: FloatArray, indices: Sequence[int]) -> list[int]:
+    """Which of some sections that are looked at may have the lowest minimum next to them.
+
+    A valley between two sections may be lower than another one at a section, such as an end, whose gap is less.
+    """
+    lowest = min(float(gaps[i]) for i in indices)
+    return [i for i in indices if gaps[i] - _step_down(gaps, i) <= lowest]
 
 
 def facings(model: Model, libraries: Libraries = INTERPRETED) -> list[Facing]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
 
 from cosserat_casadi import build, parse_scene, read_scene, simulate
 from cosserat_casadi.maths.typing import FloatArray
@@ -13,6 +14,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion import exact_contact
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, GuardKind
+from cosserat_casadi.motion.contact_sections import RodFacing, facings
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
 from cosserat_casadi.motion.history import equations_of
@@ -448,6 +450,42 @@ def test_a_rod_lies_down_where_two_of_its_sections_have_slid_to_one_place() -> N
     assert "lie_down" in [event.kind for event in restart.events]
     assert restart.phases.laid == {0}
     assert not any(touch.slides for touch in restart.phases.touches)
+
+
+def test_the_lowest_valley_between_sections_that_are_looked_at_is_not_missed_beside_a_lower_end() -> None:
+    """The gap of an end is that of its section, a valley is lower than the sections about it.
+
+    A rod entered the floor in a valley by 2e-7 of its length while its end was thought lowest, and came to a halt.
+    """
+    model = free_rod(tangent="1, 0, -0.1")
+    (facing,) = facings(model)
+    assert isinstance(facing, RodFacing)
+    (piece,) = moving_inputs(model).pieces(0.1)
+    inputs = piece.at(0.0).value
+    ((_, pose),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
+
+    def nodes(tilt: float, sunk: float = 0.0) -> FloatArray:
+        x = model.unloaded()
+        x[model.discrete.unknowns.strain("rod")] = [-0.205, 1.5]
+        x[pose][2] = -sunk
+        x[pose][4] = tilt
+        return facing.nodes(x, inputs)
+
+    def rise(tilt: float) -> float:
+        valley, tip = facing.minima(nodes(tilt), 1.0)
+        return tip.gap - valley.gap
+
+    for wanted in (1e-7, -1e-7, 1e-6):
+        tilt = brentq(lambda at, wanted=wanted: rise(at) - wanted, -0.6, -0.55, xtol=1e-14)
+        valley, _ = facing.minima(nodes(tilt), 1.0)
+        sunk = nodes(tilt, valley.gap)
+        valley, tip = facing.minima(sunk, 1e-5)
+        # Of the sections that are looked at, the tip is the lowest.
+        assert facing.gaps(sunk).argmin() == len(facing.looked_at) - 1
+        assert_allclose(tip.gap - valley.gap, wanted, rtol=0, atol=1e-10)
+        lowest = facing.lowest(sunk, ())
+        assert_allclose(lowest, min(valley.gap, tip.gap), rtol=0, atol=1e-12)
+        assert_allclose(facing.deepest(sunk).gap, lowest, rtol=0, atol=1e-12)
 
 
 def test_a_rod_that_is_laid_down_because_its_contacts_change_too_often_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
