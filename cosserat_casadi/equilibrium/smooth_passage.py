@@ -66,6 +66,16 @@ class SmoothBarriers:
         """Whether there is anything to watch."""
         return bool(self.watched or self.watched_bodies or self.model.discrete.pairs)
 
+    def compares_with(self, other: SmoothBarriers) -> bool:
+        """Whether another model has the same rods and bodies beside the same obstacles, by name."""
+        return self._names == other._names
+
+    @property
+    def _names(self) -> tuple[list[tuple[str, str]], list[tuple[str | None, str]], list[tuple[object, ...]]]:
+        of_rods = [(rod, obstacle.name) for rod, obstacle in self.watched]
+        of_bodies = [(layer.body or layer.rod, layer.obstacle.name) for layer in self.watched_bodies]
+        return of_rods, of_bodies, [(pair.rods, pair.sections) for pair in self.model.discrete.pairs]
+
     def are_between(
         self,
         before: FloatArray,
@@ -209,7 +219,7 @@ def past_no_obstacle(
         model: the model.
         inputs: stacked inputs at t = 0 and 1.
         parameters: of a model that has them, at t = 0 and 1.
-        before_it: the model with the parameters that the start of the path is an equilibrium of, where it is another.
+        before_it: the model that the start of the path is an equilibrium of, where it is another.
     """
     barriers = SmoothBarriers(model)
     if not barriers.any:
@@ -228,8 +238,9 @@ def past_no_obstacle(
         except SceneError:
             # The scene refuses such parameters: where its rods would be is not known.
             return False
-        if before_it is not None and t == target == 0.0:
-            earlier = SmoothBarriers(before_it)
+        of_start = None if before_it is None else SmoothBarriers(before_it)
+        if of_start is not None and t == target == 0.0 and of_start.compares_with(later):
+            earlier = of_start
         return not later.are_between(first, last, at_ends, earlier)
 
     return replace(path, admits=admits)

@@ -76,11 +76,10 @@ class _Task:
 
     @property
     def model_of_start(self) -> Model | None:
-        """The model of a solution to start from, where it is this one with other parameters."""
+        """The model of a solution to start from, where it is not this one: it has other numbers, or is built anew."""
         if not isinstance(self.start, Solution) or self.start.model is self.model:
             return None
-        same = self.start.model.discrete.nominal is self.model.discrete.nominal
-        return self.start.model if same else None
+        return self.start.model
 
     @property
     def first_iterate(self) -> FloatArray:
@@ -345,7 +344,14 @@ def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationRes
         return failed
     named = model.scene.parameters
     scenes = (bound.scene.model_copy(update={"parameters": named}) for bound in (model_of_start, task.model))
-    before, after = (parameter_layout(scene).pack() for scene in scenes)
+    try:
+        before, after = (parameter_layout(scene).pack() for scene in scenes)
+        is_alike = model.at(before).scene == model_of_start.scene
+    except SceneError:
+        # Of another scene: its numbers are refused here, or it has none by these names.
+        is_alike = False
+    if not is_alike:
+        return failed
     path = input_path(model, start.x, start.inputs, task.inputs, (before, after))
     path = past_no_obstacle(path, model, (start.inputs, task.inputs), (before, after))
     result = follow(path, task.limits, task.progress)
