@@ -30,6 +30,7 @@ from cosserat_casadi import (
 from cosserat_casadi.codegen.acados import acados_expressions
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.codegen.fmu import write_fmu
+from cosserat_casadi.codegen.motion_stage import compiled_motion_stage
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import embedded, motion_stage, relaxed_contact
 from cosserat_casadi.errors import CosseratError
@@ -193,6 +194,17 @@ def _loaded(contact: str, folder: Path) -> str:
     return started.message
 
 
+def _compiled_stage_in_motion(contact: str, _: Path) -> str:
+    stage = motion_stage(model(contact, moving=True), 1e-2)
+    compiled = compiled_motion_stage(stage, "verb")
+    written = stage.equations.function
+    random = np.random.default_rng(0)
+    arguments = [1e-3 * random.standard_normal(written.size1_in(k)) for k in range(written.n_in())]
+    values = [np.array(function(*arguments)).ravel() for function in (compiled.equations.function, written)]
+    np.testing.assert_allclose(values[0], values[1], rtol=1e-10, atol=1e-10 * np.abs(values[1]).max())
+    return ""
+
+
 VERBS: dict[str, Verb] = {
     "`solve`": _solved,
     "stability": _judged,
@@ -224,6 +236,7 @@ VERBS: dict[str, Verb] = {
     ),
     "`compiled_stage`": lambda contact, _: compiled_stage(model(contact), "verb", curvature=False),
     "`motion_stage`": lambda contact, _: motion_stage(model(contact, moving=True), 1e-2).equations,
+    "`compiled_motion_stage`": _compiled_stage_in_motion,
     "`acados_expressions`": lambda contact, _: acados_expressions(model(contact), "robot"),
 }
 """The cheapest use of each row of the table; what it returns has the sentences that the user is told."""
