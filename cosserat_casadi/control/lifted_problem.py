@@ -110,7 +110,7 @@ class LiftedProblem(SoughtInputs):
         return self.on_this_side(start, result)
 
     def on_this_side(self, start: Equilibrium[Any], result: Inverse) -> Inverse:
-        """The result; where that is behind a smooth obstacle or a rod, the equilibrium a path leads to at its inputs.
+        """The result; where that is behind a smooth obstacle or a rod, the end of a path to its inputs.
 
         Unknowns of the optimiser go anywhere. The path is that of the inputs from the start, or of the loads where the
         start is no equilibrium, without steps through obstacles or rods.
