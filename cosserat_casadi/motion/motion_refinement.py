@@ -100,6 +100,9 @@ SLOWEST = 0.25
 FASTEST = 8.0
 """Largest such power that is believed."""
 
+FASTEST_OF_WAVES = 4.0
+"""The same of waves of sudden loads that no damping takes: theirs falls from 5 to 2 as modes become more."""
+
 ORDERS = 200
 """Powers between these that are compared with two distances."""
 
@@ -178,7 +181,8 @@ class ResolvedMotion:
             modes enough.
         unseen: displacement over the length by coefficients that strains lack, as their last ones tell: of strains that
             have no more modes than on the level before the distance tells nothing.
-        fronts: displacement over the length that fronts of undamped waves lack, which sudden loads send.
+        waves: whether sudden loads send waves along rods without damping.
+        fronts: displacement over the length that the fronts of these waves lack.
     """
 
     simulator: Simulator
@@ -188,6 +192,7 @@ class ResolvedMotion:
     modes: int = 0
     distance: float = float("inf")
     unseen: float = 0.0
+    waves: bool = False
     fronts: float = 0.0
 
 
@@ -234,8 +239,10 @@ class _Search:
         first, second, third = (level.modes for level in self.levels[-3:])
         told = self.last.distance / self.levels[-2].distance
         # Impacts fall at other times and sections on other modes: distances may shrink by chance.
-        fastest = UNKNOWN_ORDER if _has_blows(self.last.history) else FASTEST
-        orders = np.linspace(SLOWEST, fastest, ORDERS)
+        slowest, fastest = (ORDER_OF_FRONTS, FASTEST_OF_WAVES) if self.last.waves else (SLOWEST, FASTEST)
+        if _has_blows(self.last.history):
+            slowest, fastest = SLOWEST, UNKNOWN_ORDER
+        orders = np.linspace(slowest, fastest, ORDERS)
         # By the law, the distance of the last two levels over that of the two before falls with the order.
         by_law = (1.0 - (third / second) ** -orders) / ((second / first) ** orders - 1.0)
         return float(np.interp(-told, -by_law, orders))
@@ -306,7 +313,7 @@ class _Search:
             return UNDAMPED.format(**self.told, most=most) if far else None
         # Of sudden loads two distances tell the power. It grows no more, as it does where modes begin to see a pulse.
         order = max(self.order, ORDER_OF_WAVES)
-        if len(self.levels) < 3 or self.foreseen(most, order) <= self.tolerance or not _is_sudden(self.last):
+        if len(self.levels) < 3 or self.foreseen(most, order) <= self.tolerance or not self.last.waves:
             return None
         return WAVES.format(
             **self.told, most=most, wanted=self.last.modes * self.finer_modes(max(self.order, ORDER_OF_FRONTS))
@@ -408,7 +415,7 @@ def _with_fixed(search: _Search) -> Motion:
     timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=_first_step_tolerance(search))
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
-    level = ResolvedMotion(simulator, timed.history, simulator.paths(timed.history))
+    level = _with_waves(search, ResolvedMotion(simulator, timed.history, simulator.paths(timed.history)))
     search.levels.append(level)
 
     finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
@@ -419,12 +426,14 @@ def _with_fixed(search: _Search) -> Motion:
         history = witness.controlled(_step_tolerance(search, timed))
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
-        # After impacts errors fall as slowly with the modes as in a search.
+        # After impacts, and with waves, errors fall as slowly with the modes as in a search.
         struck = is_struck(timed.history) or is_struck(history)
         modes = most_modes(model.discretisation)
-        left = told_by_modes(modes, modes + FINER_MODES, UNKNOWN_ORDER) if struck else SAFETY
+        left = SAFETY
+        if struck or level.waves:
+            left = told_by_modes(modes, modes + FINER_MODES, UNKNOWN_ORDER if struck else ORDER_OF_WAVES)
         if history.completed:
-            space_error = left * path_distance(level.paths, witness.paths(history))
+            space_error = max(left * path_distance(level.paths, witness.paths(history)), level.fronts)
     companions = [timed.companion]
     if witness.start.found:
         companions.append(Companion(history, left))
@@ -472,9 +481,7 @@ def _with_tolerance(search: _Search) -> Motion:
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen)
-        if not search.is_damped and _is_sudden(level):
-            level = replace(level, fronts=lacking_at_fronts(history, search.simulation.duration))
-        search.levels.append(level)
+        search.levels.append(_with_waves(search, level))
         hopeless = search.hopeless
         if hopeless is not None:
             return _given_up(search, hopeless)
@@ -499,10 +506,13 @@ def _with_tolerance(search: _Search) -> Motion:
     return _judged(search, finest, search.space_error + timed.error, companions)
 
 
-def _is_sudden(level: ResolvedMotion) -> bool:
-    """Whether loads of a motion act at once at its start, or jump."""
+def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
+    """A level that knows of waves: of loads that act at once at its start, or jump, along rods without damping."""
     simulator = level.simulator
-    return is_sudden(level.history, simulator.start, simulator.moving, simulator.simulation.duration)
+    duration = search.simulation.duration
+    if search.is_damped or not is_sudden(level.history, simulator.start, simulator.moving, duration):
+        return level
+    return replace(level, waves=True, fronts=lacking_at_fronts(level.history, duration))
 
 
 def _is_erratic(search: _Search) -> bool:
