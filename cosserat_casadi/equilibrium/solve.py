@@ -18,7 +18,7 @@ from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
-from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
+from cosserat_casadi.equilibrium.load_path import column, continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, are_one, past_no_obstacle
@@ -31,7 +31,7 @@ from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
-from cosserat_casadi.numerics.newton import NewtonResult
+from cosserat_casadi.numerics.newton import NewtonResult, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
@@ -46,6 +46,9 @@ NONE_STABLE = " No stable equilibrium was found by letting the rod settle to les
 
 AT_ONCE = " The start has other parameters, and rods would pass through an obstacle or a rod: change them by less."
 """Sentence in the message where a solution with other parameters does not lead to one."""
+
+NOTHING = 1e-14
+"""Relative norm of a residual that is rounding alone: of the unloaded scene where nothing acts."""
 
 Start = Solution | FloatArray | None
 """Where a solve starts: a solution, unknowns, or the unloaded rod."""
@@ -284,7 +287,7 @@ def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progr
 def _relaxed_past_no_obstacle(
     solution: Solution, limits: ContinuationSettings, progress: Progress | None
 ) -> Solution | None:
-    """The solution that another relaxes to; None where none is found, or a smooth obstacle or a rod is on the way."""
+    """The equilibrium that a solution relaxes to; None where it is not reached, or through an obstacle or a rod."""
     settled = relaxed(solution, limits.newton, progress)
     barriers = SmoothBarriers(solution.model)
     if settled is None or not barriers.any:
@@ -323,6 +326,8 @@ def _continuation(task: _Task) -> _End:
         corrected = _corrected_guess(task)
         if corrected is not None:
             return _End(corrected.x, corrected.outcome, corrected.iterations)
+        if _rests_unloaded(task):
+            return _End(task.model.unloaded(), Outcome.CONVERGED, iterations=0)
         path = load_path(task.model, task.inputs)
     first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
     path = past_no_obstacle(path, task.model, (first, task.inputs), before_it=task.model_of_start)
@@ -362,6 +367,13 @@ def _corrected_guess(task: _Task) -> NewtonResult | None:
     if not np.any(task.start):
         return None
     return correct(task.model, task.inputs, task.start, task.limits.newton)
+
+
+def _rests_unloaded(task: _Task) -> bool:
+    """Whether the unloaded scene is an equilibrium of the scene: it has nothing to follow loads for."""
+    unloaded = task.model.unloaded()
+    residual = column(task.model.path_residual(unloaded, task.inputs, 1.0))
+    return bool(relative_norm(residual, unloaded) <= NOTHING)
 
 
 def _rootfinder(task: _Task) -> _End:

@@ -152,8 +152,8 @@ def is_inside_between(
     Args:
         obstacle: the obstacle.
         properties: of the rod.
-        start: positions at the abscissae SECTIONS, in the axes that the obstacle is given in, shape (k, 3), m; or those
-            of several ways, shape (ways, k, 3).
+        start: positions at the abscissae SECTIONS, in the axes of the obstacle, shape (k, 3), m; or those of
+            several ways, shape (ways, k, 3).
         end: others, likewise.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
             :data:`MIDDLE` of the radius of a bar or ball.
