@@ -22,7 +22,7 @@ from work_precision.record import CSV, JSON
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.main import run
 from cosserat_casadi.cli.options import SceneFile, Settings, check_inputs_stay
-from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.scene import read_scene
 from tests.fine_reference import NoReferenceError
@@ -49,8 +49,8 @@ def bench(
         check_inputs_stay({"--output": output / CSV, "the record of --output": output / JSON}, scene, settings)
     plan = make_plan(read_scene(scene, tuple(settings or ())), output, methods, points, quick)
     try:
-        with progress_bar() as bar:
-            interrupted = run_plan(plan, Console(), count_reporter(bar, "Finding the reference"))
+        with count_display("Finding the reference") as show_count:
+            interrupted = run_plan(plan, Console(), show_count)
     except NoReferenceError as error:
         Console(stderr=True).print(str(error))
         raise typer.Exit(NOT_FOUND) from error

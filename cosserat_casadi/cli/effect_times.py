@@ -10,9 +10,9 @@ from math import isfinite
 import numpy as np
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.cli.reports.format import table_of
 from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.codegen.timed_program import Program, Times, best_time
 from cosserat_casadi.model.build import Model, build
@@ -105,12 +105,11 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
     igm = "IGM"
     if len(rods) > 1:
         igm = f"IGM of {escape(rods[0])} alone"
-    table = Table(title="Compiled with -O2: what each effect adds")
-    for heading in ("effect", f"{igm}, µs", "residual + Jacobian, µs", "cold solve, µs"):
-        table.add_column(heading, justify="left" if heading == "effect" else "right")
     if isinstance(whole, str):
         console.print(f"Not timed: {escape(whole)}", highlight=False)
         return
+    table = table_of("effect", right=(f"{igm}, µs", "residual + Jacobian, µs", "cold solve, µs"))
+    table.title = "Compiled with -O2: what each effect adds"
     table.add_row("the whole scene", f"{whole.igm:.2f}", f"{whole.jacobian:.2f}", f"{whole.cold:.2f}")
     for name, without in parts.items():
         if isinstance(without, str):
@@ -135,10 +134,8 @@ def print_motion_times(console: Console, unknowns: int, motion: MotionCost, unda
         motion: cost of the model in motion.
         undamped: cost of the model without its damping; None where the scene names none.
     """
-    table = Table(title=f"In motion, {unknowns} unknowns, in CasADi's virtual machine (not compiled)")
-    table.add_column("function")
-    for heading in ("operations", "µs", "over statics"):
-        table.add_column(heading, justify="right")
+    table = table_of("function", right=("operations", "µs", "over statics"))
+    table.title = f"In motion, {unknowns} unknowns, in CasADi's virtual machine (not compiled)"
     for at_rest, moving in (("residual", "inverse_dynamics"), ("jacobian", "dynamics_jacobian")):
         operations, time_at_rest = motion[at_rest]
         table.add_row(LABELS[at_rest], str(operations), compact_number(time_at_rest), "")

@@ -77,7 +77,7 @@ def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> Fl
     return cases
 
 
-SUFFIXES = {"--csv": ".csv", "--write": ".toml"}
+SUFFIXES = {"--csv": ".csv", "--sobol": ".json", "--write": ".toml"}
 """Suffixes of options that write one format in all commands."""
 
 
@@ -87,8 +87,8 @@ def check_files(
     settings: list[str] | None,
     problems: list[Problem],
     *others: Path | None,
-    output_suffix: str = ".json",
-    meshes: bool = False,
+    output_suffix: str | None = ".json",
+    meshes: str = "",
 ) -> None:
     """Add the faults of files that cannot be written, before time is spent on a solve.
 
@@ -99,21 +99,21 @@ def check_files(
         problems: list that the faults are added to: a file cannot be written, would be written over one that is read,
             or has the suffix of another format.
         others: files that the command reads beside the scene.
-        output_suffix: suffix of the format of the result.
-        meshes: whether the figure may be a file of meshes.
+        output_suffix: suffix of the format of the result; None where the command looks at such a file itself.
+        meshes: option of a figure or an animation that may be a file of meshes.
 
     Raises:
         PlotUnavailableError: a figure is asked for and matplotlib is not installed.
     """
     for option, file in files.items():
         if option == "--animation":
-            check_animation(file, problems)
+            check_animation(file, problems, meshes=meshes == option)
             continue
         with collect_problems(problems):
             if option == "--plot":
-                check_plot(file, meshes=meshes)
-            else:
-                check_file(file, option, SUFFIXES.get(option, output_suffix))
+                check_plot(file, meshes=meshes == option)
+            elif suffix := SUFFIXES.get(option, output_suffix):
+                check_file(file, option, suffix)
     with collect_problems(problems):
         check_inputs_stay(files, scene, settings, *others)
 

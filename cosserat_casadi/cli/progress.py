@@ -131,27 +131,18 @@ def _stopped_without_files(bar: Progress) -> Iterator[None]:
 
 
 @contextmanager
-def count_display(description: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar for what tells how much of it is done, and of how much, with the time left.
+def count_display(description: str, *columns: ProgressColumn) -> Iterator[CountCallback]:
+    """A bar for the stages of a task, one after the other, with more columns.
 
     An interrupt is raised at the next report.
+
+    Args:
+        description: of the first stage.
+        columns: such as the rate, or the time left.
     """
-    with progress_bar(TimeRemainingColumn()) as bar, remembered_interrupt() as raise_interrupt:
+    with progress_bar(*columns) as bar, remembered_interrupt() as raise_interrupt:
         task = bar.add_task(description, total=None)
-
-        def show_count(done: int, total: int) -> None:
-            raise_interrupt()
-            bar.update(task, completed=done, total=total)
-
-        yield show_count
-
-
-@contextmanager
-def sweep_display() -> Iterator[CountCallback]:
-    """A bar for the stages of a sweep, one after the other, each with its rate."""
-    with progress_bar(RateColumn()) as bar, remembered_interrupt() as raise_interrupt:
-        task = bar.add_task("Reading the table", total=None)
-        shown_stage = ""
+        shown_stage = description
 
         def show_count(stage: str, done: int, total: int) -> None:
             nonlocal shown_stage
@@ -164,18 +155,3 @@ def sweep_display() -> Iterator[CountCallback]:
             shown_stage = stage
 
         yield show_count
-
-
-def count_reporter(bar: Progress, description: str) -> CountCallback:
-    """Shows the work under way, how much of it is done, and of how much, on an existing bar.
-
-    Args:
-        bar: where to show it.
-        description: of the work before the first report.
-    """
-    task = bar.add_task(description, total=None)
-
-    def show_count(stage: str, done: int, total: int) -> None:
-        bar.update(task, description=stage, completed=done, total=total or None)
-
-    return show_count

@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from cosserat_casadi import read_scene
+from cosserat_casadi import read_scene, solve
 from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.fixing import with_accuracy
-from cosserat_casadi.cli.commands.choosing import solve_for_ranges
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.scene.writing import scene_text
@@ -34,7 +33,8 @@ def bar(tmp_path: Path) -> Path:
 def test_modes_in_contact_are_verified_where_the_inputs_go() -> None:
     """At the ends of a range, and not at the scene's own inputs alone."""
     few = with_accuracy(over_bar(), tolerance=1e-6, modes=2, nodes=6)
-    solution, choice = solve_for_ranges(few, cases=[{}, {"push.force": [0.0, 0.0, -4.0]}])
+    choice = choose(few, cases=[{}, {"push.force": [0.0, 0.0, -4.0]}])
+    solution = solve(choice.model)
     assert solution.contacts
     assert choice.solves == 2
     assert choice.within_tolerance is False

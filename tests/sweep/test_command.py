@@ -125,7 +125,7 @@ def test_an_interrupt_that_is_lost_stops_the_command(
     # What this process has received is no signal to the commands of other tests.
     monkeypatch.setattr("cosserat_casadi.cli.signals._received", [])
     monkeypatch.setattr("cosserat_casadi.sweeps.choice.solve", losing(solve))
-    monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve", losing(solve))
+    monkeypatch.setattr("cosserat_casadi.cli.commands.solve.solve_scene", losing(solve))
     words = {"sweep": ["--over", "grid.toml", "--output", "out.csv"], "solve": ["--output", "out.json"]}[command]
     monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words])
     before = signal.getsignal(signal.SIGINT)

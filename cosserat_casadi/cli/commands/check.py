@@ -10,7 +10,7 @@ import typer
 from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay, check_plot
-from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
@@ -61,8 +61,7 @@ def check(
     # A pipe cannot be read again.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
-    with progress_bar() as bar:
-        show_count = count_reporter(bar, "Building the model")
+    with count_display("Building the model") as show_count:
         model = build(checked_scene)
         of_effects = prices_of_effects(checked_scene, show_count)
         show_count("Counting the operations of residual and Jacobian", 0, 0)
@@ -99,8 +98,7 @@ def _draw(scene: Scene, file: Path) -> None:
 
 
 def _print_times(scene: Scene) -> None:
-    with progress_bar() as bar:
-        show_count = count_reporter(bar, "Building the scene without each effect")
+    with count_display("Building the scene without each effect") as show_count:
         whole, parts = effect_times(scene, find_compiler(), show_count)
     rods = [rod.name for rod in scene.rods]
     print_effects(Console(), rods, whole, parts)

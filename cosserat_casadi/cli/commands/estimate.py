@@ -11,15 +11,8 @@ from rich.table import Table
 
 from cosserat_casadi import estimation
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_inputs_stay,
-    check_plot,
-    given_files,
-    read_checked,
-)
-from cosserat_casadi.cli.progress import sweep_display
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files, given_files, read_checked
+from cosserat_casadi.cli.progress import RateColumn, count_display
 from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.cli.terminal import Console
@@ -50,15 +43,12 @@ def estimate(
     problems: list[Problem] = []
     with collect_problems(problems):
         check_writable(output, "--output")
-    with collect_problems(problems):
-        check_plot(plot)
-    with collect_problems(problems):
-        check_inputs_stay({"--output": output, "--plot": plot}, scene, settings)
+    check_files({"--output": output, "--plot": plot}, scene, settings, problems, output_suffix=None)
     suffix = output.suffix.lower()
     if suffix not in FORMATS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))
     checked_scene = read_checked(scene, settings, problems)
-    with sweep_display() as show_count:
+    with count_display("Reading the table", RateColumn()) as show_count:
         found = estimation.estimate(checked_scene, cores=cores, progress=show_count)
     text = csv_of(found) if suffix == ".csv" else json_text(found.to_dict())
     write_atomically(output, text.encode())

@@ -16,7 +16,7 @@ from cosserat_casadi.accuracy.choose import SAMPLES, Choice
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.ranges import Given
-from cosserat_casadi.cli.commands.choosing import solve_for_ranges
+from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_inputs_stay
 from cosserat_casadi.cli.reports.format import print_plain
@@ -33,6 +33,7 @@ from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
@@ -256,7 +257,8 @@ def export(
     # In exact contact the samples are load cases: choosing modes at as many would take minutes.
     in_ranges = None if solved_scene.touches_exactly else samples
     chosen_ranges = asked if given_cases is None else {}
-    solution, choice = solve_for_ranges(solved_scene, chosen_ranges, chosen_cases, in_ranges)
+    choice = choose_with_progress(solved_scene, chosen_ranges, in_ranges, chosen_cases)
+    solution = solve(choice.model)
     _check_solved(solution)
     _write(targets, sources, name, exported_scene, solution, choice, cases, asked)
     print_choice(Console(), choice)

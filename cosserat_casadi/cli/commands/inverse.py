@@ -11,8 +11,9 @@ from cosserat_casadi import control
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files
 from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
-from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
+from cosserat_casadi.cli.reports.solution import print_inverse
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.control.inverse_accuracy import inverse_rows
 from cosserat_casadi.control.target_table import read_targets
@@ -21,6 +22,12 @@ from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.inverse_table import MET, row_outcome, table_text
 from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.scene import read_scene
+
+UNSTABLE = (
+    "the equilibrium at these inputs is not stable: a real rod leaves it. Add --stable to look for a stable one, or "
+    "--unstable to accept this one."
+)
+"""A warning, with what to do about it."""
 
 
 def inverse(
@@ -61,7 +68,7 @@ def inverse(
         solved = control.inverse(given_scene, stable=stable, report=display.show_stage)
     print_inverse(Console(), solved, write_all(solved, output, plot))
     if solved.unstable and not unstable and not stable:
-        print_unstable_inverse(Console(stderr=True))
+        print_warnings(Console(stderr=True), [UNSTABLE])
     # The files hold the closest pose then.
     refused = solved.unstable and not unstable
     if refused or not solved.met:

@@ -8,14 +8,7 @@ from typing import Annotated
 import typer
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_animation,
-    check_inputs_stay,
-    check_plot,
-    given_files,
-)
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files, given_files
 from cosserat_casadi.cli.progress import motion_display, share_display
 from cosserat_casadi.cli.reports.format import print_warnings
 from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion
@@ -84,12 +77,18 @@ def simulate(
     keys = {"step": step, "duration": duration, "frames": frames, "tolerance": tolerance}
     overrides = [f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None]
     problems: list[Problem] = []
-    _check_files(output, plot, animation, speed, problems)
+    if output is not None:
+        with collect_problems(problems):
+            check_writable(output, "--output")
+        with collect_problems(problems):
+            check_motion_path(output)
+    files = {"--output": output, "--plot": plot, "--animation": animation}
+    check_files(files, scene, settings, problems, start, output_suffix=None, meshes="--animation")
+    if not speed > 0.0:
+        problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
     if part is not None:
         with collect_problems(problems):
             check_parts(output, part)
-    with collect_problems(problems):
-        check_inputs_stay({"--output": output, "--plot": plot, "--animation": animation}, scene, settings, start)
     checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
 
     motion = _simulate_with_progress(checked_scene, start_solution, compiled, output, part)
@@ -113,22 +112,6 @@ def simulate(
     print_warnings(Console(stderr=True), motion.warnings)
     if not motion.converged:
         raise typer.Exit(NOT_FOUND)
-
-
-def _check_files(
-    output: Path | None, plot: Path | None, animation: Path | None, speed: float, problems: list[Problem]
-) -> None:
-    """Add the faults of output files, before time is spent on a simulation."""
-    if output is not None:
-        with collect_problems(problems):
-            check_writable(output, "--output")
-        with collect_problems(problems):
-            check_motion_path(output)
-    with collect_problems(problems):
-        check_plot(plot)
-    if not speed > 0.0:
-        problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
-    check_animation(animation, problems, meshes=True)
 
 
 def _check_scene(

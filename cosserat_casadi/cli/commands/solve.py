@@ -7,20 +7,26 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.accuracy.refine import solve as solve_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files
-from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
+from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.format import print_warnings
+from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.cli.terminal import Console, binary_output
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.errors import Problem, collect_problems, refuse
 from cosserat_casadi.files import MESHES, write_whole
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.results.presentation import write_all
-from cosserat_casadi.scene import read_scene, with_exact_contact
+from cosserat_casadi.scene import Scene, read_scene, with_exact_contact
 
 if TYPE_CHECKING:
     from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
+    from cosserat_casadi.tubes.tube_solution import TubeSolution
+
+UNSTABLE = "this equilibrium is not stable: a real rod leaves it. Add --stable to find one that it keeps."
+"""A warning, with what to do about it."""
 
 
 def solve(
@@ -49,7 +55,7 @@ def solve(
     """
     # A file that cannot be written is refused before the solve, not after it.
     problems: list[Problem] = []
-    check_files({"--output": output, "--plot": plot}, scene, settings, problems, meshes=True)
+    check_files({"--output": output, "--plot": plot}, scene, settings, problems, meshes="--plot")
     with collect_problems(problems):
         read = read_scene(scene, tuple(settings or ()))
         if every and not read.tubes:
@@ -78,13 +84,19 @@ def solve(
     _give(solution, output, plot, as_json=as_json)
     # On standard error, so that --json stays pure; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
-        print_unstable(Console(stderr=True))
+        print_warnings(Console(stderr=True), [UNSTABLE])
     # Where stability cannot be judged, --stable has not found what it was asked for.
     found = solution.converged and (solution.stable or not stable)
     # Where no tolerance is asked for, None is no miss.
     missed = solution.within_tolerance is False
     if not found or missed:
         raise typer.Exit(NOT_FOUND)
+
+
+def solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution | TubeSolution:
+    """Solve a scene and show how far the solve is."""
+    with solve_display("Solving") as display:
+        return solve_scene(scene, stable=stable, progress=display.show_share, report=display.show_stage)
 
 
 def _give(

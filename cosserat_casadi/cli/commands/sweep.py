@@ -10,14 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import (
-    SceneFile,
-    Settings,
-    check_file,
-    check_inputs_stay,
-    check_plot,
-)
-from cosserat_casadi.cli.progress import CountCallback, sweep_display
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files
+from cosserat_casadi.cli.progress import CountCallback, RateColumn, count_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
@@ -93,13 +87,8 @@ def sweep(
     3 rows miss the tolerance, or no row has an equilibrium, 130 interrupted.
     """
     problems: list[Problem] = []
-    with collect_problems(problems):
-        check_file(sobol, "--sobol", ".json")
-    with collect_problems(problems):
-        check_plot(plot)
-    with collect_problems(problems):
-        outputs = {"--output": output, "the record of --output": record_file(output), "--sobol": sobol, "--plot": plot}
-        check_inputs_stay(outputs, scene, settings, over)
+    outputs = {"--output": output, "the record of --output": record_file(output), "--sobol": sobol, "--plot": plot}
+    check_files(outputs, scene, settings, problems, over, output_suffix=None)
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
     part = _check_shard(shard, merge, plot, problems)
@@ -140,7 +129,7 @@ def sweep(
 def _stoppable(kept: Path | None) -> Iterator[CountCallback]:
     """Show how far a sweep is; where it is stopped, say in which file the rows stand that are done."""
     try:
-        with sweep_display() as show_count:
+        with count_display("Reading the table", RateColumn()) as show_count:
             yield show_count
     except KeyboardInterrupt:
         print_stopped_sweep(Console(stderr=True), kept)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.progress import TimeRemainingColumn
 
-from cosserat_casadi.accuracy.choose import SAMPLES, SAMPLES_IN_CONTACT
+from cosserat_casadi.accuracy.choose import SAMPLES, SAMPLES_IN_CONTACT, Choice, choose
+from cosserat_casadi.accuracy.common_modes import Values
 from cosserat_casadi.accuracy.fixing import unfixed
-from cosserat_casadi.cli.commands.choosing import choose_with_progress
+from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import (
     Ranges,
@@ -20,12 +24,13 @@ from cosserat_casadi.cli.options import (
     check_file,
     check_inputs_stay,
 )
+from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.model import print_choice
 from cosserat_casadi.cli.reports.numbers import discretisation_table
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.load_cases import case_layout
-from cosserat_casadi.scene import read_scene
+from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
 
@@ -67,3 +72,12 @@ def tune(
         raise typer.Exit(NOT_FOUND)
     write_atomically(output, scene_text(choice.scene).encode())
     Console().print(f"wrote {output}", highlight=False)
+
+
+def choose_with_progress(
+    scene: Scene, ranges: Given | None = None, samples: int | None = None, cases: Sequence[Values] | None = None
+) -> Choice:
+    """One discretisation for ranges or for load cases; see :func:`cosserat_casadi.accuracy.choose.choose`."""
+    stage = "Choosing modes and nodes"
+    with count_display(stage, TimeRemainingColumn()) as show_count:
+        return choose(scene, ranges, progress=partial(show_count, stage), samples=samples, cases=cases)

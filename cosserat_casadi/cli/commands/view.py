@@ -7,18 +7,19 @@ from typing import Annotated, Any
 
 import typer
 
-from cosserat_casadi.cli.commands.choosing import solve_for_ranges
-from cosserat_casadi.cli.commands.solving import solve_rods_with_progress, solve_with_progress
+from cosserat_casadi.cli.commands.solve import solve_with_progress
+from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
-from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import locking_note, locking_sentence
-from cosserat_casadi.equilibrium.solution import Equilibrium
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.scene import read_scene
 
 
@@ -50,18 +51,18 @@ def view(
     solution: Equilibrium[Any]
     # Every answer in the view tells its error: modes that the scene fixes need not be verified beforehand, and in exact
     # contact, where a choice takes up to minutes, modes suit the scene's own inputs.
-    if viewed_scene.tubes:
+    if viewed_scene.tubes or (not asked and (viewed_scene.accuracy.fixed or viewed_scene.touches_exactly)):
         solution = solve_with_progress(viewed_scene)
-    elif not asked and (viewed_scene.accuracy.fixed or viewed_scene.touches_exactly):
-        solution = solve_rods_with_progress(viewed_scene)
-        print_locking(Console(stderr=True), locking_note(solution))
+        if isinstance(solution, Solution):
+            print_locking(Console(stderr=True), locking_note(solution))
     else:
-        solution, choice = solve_for_ranges(viewed_scene, asked)
+        choice = choose_with_progress(viewed_scene, asked)
+        solution = solve(choice.model)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
-    with progress_bar() as bar:
-        session = opened(solution, count_reporter(bar, "Writing the model in C"), asked)
+    with count_display("Writing the model in C") as show_count:
+        session = opened(solution, show_count, asked)
     console = Console()
     if choice is not None:
         print_choice(console, choice)

@@ -33,11 +33,13 @@ def print_written(console: Console, files: Iterable[Path], *, soft_wrap: bool = 
         print_plain(console, f"wrote {escape(str(file))}", soft_wrap=soft_wrap)
 
 
-def table_of(*headings: str) -> Table:
-    """An empty table."""
+def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
+    """An empty table, whose last columns, under headings of their own, hold numbers that stand on the right."""
     table = Table()
     for heading in headings:
         table.add_column(heading)
+    for heading in right:
+        table.add_column(heading, justify="right")
     return table
 
 

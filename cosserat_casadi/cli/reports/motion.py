@@ -38,9 +38,7 @@ def print_hasty_animation(console: Console, frames: int, speed: float) -> None:
 
 def _end_table(motion: Motion) -> Table:
     """Tips of rods and positions of bodies at the last time, in world axes."""
-    table = table_of(f"at t = {motion.times[-1]:.6g} s", "quantity")
-    for axis in ("x", "y", "z"):
-        table.add_column(axis, justify="right")
+    table = table_of(f"at t = {motion.times[-1]:.6g} s", "quantity", right="xyz")
     longest = max(rod.length for rod in motion.model.discrete.rods.values())
     for name in motion.model.discrete.rods:
         position = motion.tip(name).position[-1]

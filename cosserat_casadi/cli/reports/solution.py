@@ -53,26 +53,6 @@ def _print_equilibrium(console: Console, solution: Solution, work: str, written:
     print_written(console, written)
 
 
-def print_unstable(console: Console) -> None:
-    """Warn of an unstable equilibrium, and say what to do about it."""
-    print_plain(
-        console,
-        "[bold yellow]Warning:[/] this equilibrium is not stable: a real rod leaves it. "
-        "Add --stable to find one that it keeps.",
-        soft_wrap=True,
-    )
-
-
-def print_unstable_inverse(console: Console) -> None:
-    """Say what to do about inputs that lead to an unstable equilibrium."""
-    print_plain(
-        console,
-        "[bold yellow]Warning:[/] the equilibrium at these inputs is not stable: a real rod leaves it. "
-        "Add --stable to look for a stable one, or --unstable to accept this one.",
-        soft_wrap=True,
-    )
-
-
 def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
     """Print the verdict, the inputs found, how far the targets are missed, then the equilibrium."""
     _print_end(console, inverse.solution, missed=not inverse.met)
@@ -111,9 +91,7 @@ def _with_error(gap: float, error: float | None) -> str:
 
 def _rod_table(solution: Solution) -> Table:
     """Tips and clamps of rods, poses of bodies, in world axes."""
-    table = table_of("rod", "quantity")
-    for axis in ("x", "y", "z"):
-        table.add_column(axis, justify="right")
+    table = table_of("rod", "quantity", right="xyz")
     longest = max(rod.length for rod in solution.model.discrete.rods.values())
     for name, rod in solution.model.discrete.rods.items():
         tip = solution.tip(name)
@@ -133,9 +111,7 @@ def _rod_table(solution: Solution) -> Table:
 
 def _contact_table(solution: Solution) -> Table:
     """Where rods touch obstacles, with the resultant on the rod in world axes; a row that says so where none does."""
-    table = table_of("obstacle or rod", "on", "contact")
-    for axis in ("x", "y", "z"):
-        table.add_column(f"force {axis}, N", justify="right")
+    table = table_of("obstacle or rod", "on", "contact", right=[f"force {axis}, N" for axis in "xyz"])
     for contact in solution.contacts:
         where = f"at X = {contact.start:.6g}"
         if contact.of_body:

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, table_of, title_line
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweeps.outcome_file import STABLE, record_file
@@ -88,10 +88,7 @@ def print_shard(console: Console, shard: Shard, rows: int, output: Path, *, fini
 
 
 def _outcome_table(sweep: Sweep) -> Table:
-    table = Table()
-    table.add_column("outcome")
-    for heading in ("rows", "share"):
-        table.add_column(heading, justify="right")
+    table = table_of("outcome", right=("rows", "share"))
     for label, count in sweep.counts.items():
         table.add_row(label, f"{count:,}", f"{count / len(sweep.outcomes):.1%}")
     return table
