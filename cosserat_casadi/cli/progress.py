@@ -22,13 +22,11 @@ from rich.text import Text
 
 from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt, take_time
 from cosserat_casadi.cli.terminal import Console
+from cosserat_casadi.numerics.progress import StageProgress
 
 # Only named in a signature: a solve shows how far it is without any module of motions.
 if TYPE_CHECKING:
     from cosserat_casadi.motion.trajectory import MotionProgress
-
-CountCallback = Callable[[str, int, int], None]
-"""Takes a stage, how much of it is done, and how much there is; 0 of 0 where that is not known."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +129,7 @@ def _stopped_without_files(bar: Progress) -> Iterator[None]:
 
 
 @contextmanager
-def count_display(description: str, *columns: ProgressColumn) -> Iterator[CountCallback]:
+def count_display(description: str, *columns: ProgressColumn) -> Iterator[StageProgress]:
     """A bar for the stages of a task, one after the other, with more columns.
 
     An interrupt is raised at the next report.

@@ -8,7 +8,7 @@ section A.3; the Gaussian approximation of Laplace.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -53,6 +53,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.numerics.progress import StageProgress, not_told
 from cosserat_casadi.sweeps.local import available_cores
 
 CHUNK = 256
@@ -61,19 +62,16 @@ CHUNK = 256
 CHECKED = 3
 """Cases that are solved again on a finer discretisation."""
 
-Progress = Callable[[str, int, int], None]
-"""Called with the work under way, how much of it is done, and of how much."""
-
 
 def estimate_model(
     model: Model,
     data: Data | None = None,
     *,
     cores: int | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> Estimate:
     """As :func:`estimate`, of a model on its modes and nodes."""
-    report = progress or _ignore
+    report = progress or not_told
     check_unknowns(model.scene)
     model = with_unknown_parameters(model)
     layout = unknown_layout(model)
@@ -235,7 +233,7 @@ class Search:
     known: Knowledge
     indices: Sequence[int]
     cores: int
-    report: Progress
+    report: StageProgress
 
     @property
     def own(self) -> int:
@@ -299,7 +297,7 @@ def estimate(
     data: Data | None = None,
     *,
     cores: int | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> Estimate:
     """Estimate the unknowns of each measured case of a scene, or of a model.
 
@@ -322,7 +320,7 @@ def estimate(
     if isinstance(subject, Model):
         return estimate_model(subject, data, cores=cores, progress=progress)
     scene = subject
-    report = progress or _ignore
+    report = progress or not_told
     refuse_tubes(scene)
     check_unknowns(scene)
     completed = scene.with_unknowns().model_copy(update={"parameters": unknown_parameters(scene)})
@@ -338,10 +336,6 @@ def estimate(
         completed = choose(completed, cases=list(expected)).scene
     result = estimate_model(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
-
-
-def _ignore(doing: str, done: int, total: int) -> None:
-    """Progress that nobody asked for."""
 
 
 def start_tables(
@@ -369,7 +363,7 @@ def start_tables(
 
 
 def _found(
-    library: RowSolver, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: Progress
+    library: RowSolver, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: StageProgress
 ) -> list[Estimates]:
     """Estimates from each table of starts, in chunks on all cores."""
     count = len(tables[0].inputs)
@@ -386,7 +380,7 @@ def _found(
     return [Estimates.joined(found[first : first + each]) for first in range(0, len(found), each)]
 
 
-def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | None]]:
+def _checked(result: Estimate, report: StageProgress) -> Iterator[tuple[int, float | None]]:
     """Some cases solved again in Python, with the error that a finer discretisation tells."""
     found = np.flatnonzero(result.found)
     if not found.size:

@@ -23,7 +23,7 @@ from cosserat_casadi.identification.measured_modes import check_vibrations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.numerics.progress import Report
+from cosserat_casadi.numerics.progress import Report, not_told
 from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.scene.measurements import ModeMeasurement
 from cosserat_casadi.spelling import counted
@@ -58,16 +58,12 @@ def identify_model(
         Loss(options.loss, options.loss_width),
         options,
         options.starts if starts is None else starts,
-        report or _untold,
+        report or not_told,
         progress,
     )
     found = task.run(fitted, held_out)
     task.report("judging the error of the model")
     return with_model_error(found, {case.where: case for case in fitted})
-
-
-def _untold(stage: str) -> None:
-    """Take no note of a stage that nobody asked for."""
 
 
 def identify(
@@ -108,7 +104,7 @@ def identify(
     unknown_layout(draft)
     check_measured(draft)
     cases = read_cases(completed, draft.inputs, data)
-    tell = report or _untold
+    tell = report or not_told
     tell("choosing the discretisation")
     choice = with_discretisation(completed, draft, cases, tell)
     found = identify_model(choice.model, data, hold_out=hold_out, starts=starts, report=report, progress=progress)

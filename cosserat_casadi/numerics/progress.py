@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
+
+StageProgress = Callable[[str, int, int], None]
+"""Told the stage under way, how much of it is done, and of how much; 0 of 0 where that is not known."""
 
 
 class Progress(Protocol):
@@ -25,3 +29,7 @@ class Report(Protocol):
 
     def __call__(self, stage: str, /) -> None:
         """Take note of the stage."""
+
+
+def not_told(*news: object) -> None:
+    """Take no note of progress that nobody asked for."""

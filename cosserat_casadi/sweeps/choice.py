@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.numerics.progress import StageProgress
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
@@ -28,9 +29,6 @@ from cosserat_casadi.sweeps.variants import Variants
 
 CHECKED = 6
 """Rows that are solved again at the end."""
-
-Progress = Callable[[str, int, int], None]
-"""Told the work under way, how much of it is done, and of how much."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +55,12 @@ class Choice:
 
     def plain(self) -> dict[str, Any]:
         """The choice as data of a JSON file."""
+        chosen = self.discretisation
+        discretisation = None
+        if chosen is not None:
+            discretisation = {"modes": list(chosen.modes), "nodes": chosen.nodes, "rotation": chosen.transport}
         return {
-            "discretisation": _plain_discretisation(self.discretisation),
+            "discretisation": discretisation,
             "rows": list(self.rows),
             "converged": self.converged,
             "error_estimate": self.error_estimate,
@@ -72,15 +74,10 @@ class Choice:
         if entries:
             modes = tuple(entries["modes"])
             discretisation = Discretisation(modes, entries["nodes"], transport=entries["rotation"])
-        return cls(
-            discretisation,
-            tuple(plain["rows"]),
-            plain["converged"],
-            plain["error_estimate"],
-        )
+        return cls(discretisation, tuple(plain["rows"]), plain["converged"], plain["error_estimate"])
 
 
-def choose(variants: Variants, table: Table, samples: int, progress: Progress) -> Choice:
+def choose(variants: Variants, table: Table, samples: int, progress: StageProgress) -> Choice:
     """The smallest discretisation found that meets the tolerance on rows that stand for all.
 
     A scene that fixes modes, nodes or rotation is taken at its word. Rows without an equilibrium do not take part,
@@ -126,7 +123,7 @@ def check(
     outcomes: npt.NDArray[np.int64],
     poses: FloatArray,
     scratch: Scratch,
-    progress: Progress,
+    progress: StageProgress,
 ) -> list[dict[str, Any]]:
     """Some rows solved again in Python, with the estimates of their errors, whatever the rows tell of themselves.
 
@@ -189,13 +186,3 @@ def pose_difference(poses: FloatArray, solution: Solution) -> float:
     distances = np.linalg.norm(swept[:, :3] - solved[:, :3], axis=1)
     angles = rotation_angles(swept[:, 3:], solved[:, 3:])
     return float(max(distances.max() / length, angles.max()))
-
-
-def _plain_discretisation(chosen: Discretisation | None) -> dict[str, Any] | None:
-    if chosen is None:
-        return None
-    return {
-        "modes": list(chosen.modes),
-        "nodes": chosen.nodes,
-        "rotation": chosen.transport,
-    }

@@ -143,18 +143,11 @@ def _leaves(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
     """Columns of nested tables: ``push.force.x`` may be written with its dots as TOML takes them, or in quotes."""
     for key, entry in tables.items():
         name = f"{prefix}{key}"
-        if _is_nested(entry):
+        # An entry that is no column itself holds columns.
+        if isinstance(entry, dict) and entry and not set(entry) & {*RANGE, *RANDOM}:
             yield from _leaves(entry, f"{name}.")
         else:
             yield name, entry
-
-
-def _is_nested(entry: Any) -> bool:
-    """Whether an entry holds columns, and is not one itself."""
-    if not isinstance(entry, dict) or not entry:
-        return False
-    column_keys = {*RANGE, *RANDOM}
-    return not set(entry) & column_keys
 
 
 def _axis(entry: Any) -> FloatArray | _Random:

@@ -102,7 +102,9 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
     try:
         if _is_dataset(path):
             with atomic_folder(path) as folder:
-                _write_dataset(sweep, folder)
+                # Names of the parts sort as their rows do.
+                for number, rows in enumerate(_blocks(range(len(sweep.values)), PART_ROWS)):
+                    _write_parquet(sweep, rows, folder / f"part-{number:05}.parquet")
         else:
             with atomic_file(path) as temporary:
                 if _is_parquet(path):
@@ -183,12 +185,6 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
             cells.insert(swept_count, LABELS[number])
             yield cells
         sweep.scratch.let_go()
-
-
-def _write_dataset(sweep: Sweep, folder: Path) -> None:
-    """Write the parts of a dataset; their names sort as their rows do."""
-    for number, rows in enumerate(_blocks(range(len(sweep.values)), PART_ROWS)):
-        _write_parquet(sweep, rows, folder / f"part-{number:05}.parquet")
 
 
 def _write_parquet(sweep: Sweep, rows: range, path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -16,7 +16,7 @@ from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_state import with_contacts
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.equilibrium.judge import correct
-from cosserat_casadi.equilibrium.solution import Contact, Equilibrium, Solution
+from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -54,16 +54,12 @@ class RowModel:
         columns = row_results(scene, estimate_errors=self.estimate_errors, stability=self.stability)
         width = len(columns)
         rows = []
-        for solution in self._of_tubes(inputs) if scene.tubes else self._of_rods(inputs):
+        # Straight tubes each, with as many steps as the tolerance asks for.
+        of_tubes = (solve_inputs(_tube_models(self.scene), row) for row in inputs)
+        for solution in of_tubes if scene.tubes else self._of_rods(inputs):
             judged = self._counted_in_measure(solution) if self.stability else None
             rows.append(result_row(solution, width, judged, estimate_errors=self.estimate_errors))
         return np.array(rows).reshape(len(inputs), width)
-
-    def _of_tubes(self, inputs: FloatArray) -> Iterator[TubeSolution]:
-        """Solutions of rows, from straight tubes each, with as many steps as the tolerance asks for."""
-        models = _tube_models(self.scene)
-        for row in inputs:
-            yield solve_inputs(models, row)
 
     def _of_rods(self, inputs: FloatArray) -> Iterator[Solution]:
         """Solutions of rows, on the discretisation of the scene."""
@@ -123,7 +119,8 @@ def result_row(
     numbers: list[float] = solved_poses(solution).tolist()
     numbers += [solution.energy] if isinstance(solution, TubeSolution) else _efforts_and_contacts(solution)
     if estimate_errors:
-        numbers += error_numbers(solution.error_estimate)
+        # Columns ERRORS: an unknown error is NaN, and so is the verdict, which the sweep passes.
+        numbers += [np.nan if solution.error_estimate is None else solution.error_estimate, np.nan]
     if judged is not None:
         numbers += [np.nan if number is None else float(number) for number in _verdict(judged)]
     row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
@@ -145,9 +142,9 @@ def _efforts_and_contacts(solution: Any) -> list[float]:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
     for rod, obstacle in pairs(scene):
-        numbers += contact_numbers(_contacts_of(solution, rod, obstacle.name, of_body=False))
+        numbers += _contact_numbers(solution, rod, obstacle.name, of_body=False)
     for body, obstacle in body_pairs(scene):
-        numbers += body_contact_numbers(_contacts_of(solution, body.name, obstacle.name, of_body=True))
+        numbers += _contact_numbers(solution, body.name, obstacle.name, of_body=True)
     return numbers
 
 
@@ -158,32 +155,17 @@ def solved_poses(solution: Any) -> FloatArray:
     return np.concatenate([np.ravel(part) for pose in (*tips, *bodies) for part in (pose.position, pose.quaternion)])
 
 
-def error_numbers(estimate: float | None) -> list[float]:
-    """Columns :data:`ERRORS` of a row; an unknown error is NaN, and so is the verdict, which the sweep passes."""
-    return [np.nan if estimate is None else estimate, np.nan]
+def _contact_numbers(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[float]:
+    """Number of the contacts of a rod or a body with an obstacle, and their resultant.
 
-
-def _contacts_of(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[Contact]:
-    """The contacts of a rod, or of a body, with an obstacle."""
+    Of a rod between the two where the contacts begin and end, NaN without any.
+    """
     wanted = (name, obstacle, of_body)
-    return [contact for contact in solution.contacts if (contact.owner, contact.obstacle, contact.of_body) == wanted]
-
-
-def body_contact_numbers(contacts: Sequence[Contact]) -> list[float]:
-    """Number of the contacts of a body with an obstacle, and their resultant."""
-    return [float(len(contacts)), *_resultant(contacts)]
-
-
-def _resultant(contacts: Sequence[Contact]) -> list[float]:
-    resultant: list[float] = sum((contact.force for contact in contacts), start=np.zeros(3)).tolist()
-    return resultant
-
-
-def contact_numbers(contacts: Sequence[Contact]) -> list[float]:
-    """Number of the contacts of a rod with an obstacle, where they begin and end, NaN without any, their resultant."""
+    contacts = [own for own in solution.contacts if (own.owner, own.obstacle, own.of_body) == wanted]
     first = min((contact.start for contact in contacts), default=np.nan)
     last = max((contact.end for contact in contacts), default=np.nan)
-    return [float(len(contacts)), first, last, *_resultant(contacts)]
+    resultant = sum((contact.force for contact in contacts), start=np.zeros(3)).tolist()
+    return [float(len(contacts)), *([] if of_body else [first, last]), *resultant]
 
 
 def _in_units_of(measure: Scene, solution: Solution) -> Solution:

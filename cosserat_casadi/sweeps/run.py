@@ -24,16 +24,16 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import with_discretisation
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.numerics.progress import StageProgress, not_told
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM
-from cosserat_casadi.sweeps.choice import Choice, Progress, check, choose
+from cosserat_casadi.sweeps.choice import Choice, check, choose
 from cosserat_casadi.sweeps.cluster import Cluster
 from cosserat_casadi.sweeps.device_rows import DEVICE_ROWS, device_problems, device_rows
 from cosserat_casadi.sweeps.local import Cores
 from cosserat_casadi.sweeps.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
-from cosserat_casadi.sweeps.potential import rows_with_potential
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import representative_rows
 from cosserat_casadi.sweeps.scratch import Scratch
@@ -208,7 +208,7 @@ def sweep(
     stability: bool = False,
     estimate_errors: bool = True,
     device: str | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> Sweep:
     """Solve a scene for every row of a table of inputs and parameters.
 
@@ -254,7 +254,7 @@ def run_sweep(
     *,
     scheduler: str | None = None,
     cores: int | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> Sweep:
     """Do the work of a plan, or the rest of it; of a finished one, read the results.
 
@@ -268,8 +268,7 @@ def run_sweep(
         # A kill between the last two steps of the run before leaves it.
         plan.part.unlink(missing_ok=True)
         return read_sweep(plan.output)
-    if progress is None:
-        progress = _ignore
+    progress = progress or not_told
     # A cluster that does not answer is told of before the discretisation is chosen.
     with _machine(scheduler, cores, plan.device) as machine:
         work = plan.work
@@ -293,7 +292,7 @@ def run_shard(
     *,
     scheduler: str | None = None,
     cores: int | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> int:
     """Do the rest of one shard of a sweep, and keep it beside the file of the results; returns its rows.
 
@@ -314,7 +313,7 @@ def run_shard(
     count = sum(len(chunk.rows) for chunk in work)
     if plan.finished:
         return count
-    told = progress or _ignore
+    told = progress or not_told
     file = shard.file(plan.output)
     begun = Store(file).head()
     if begun is not None and begun["sweep"] != plan.identity:
@@ -335,7 +334,7 @@ def _choice_of_others(plan: Plan, shard: Shard) -> Choice | None:
     return None
 
 
-def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
+def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
     """Write the results of a sweep from its shards, and remove these.
 
     Args:
@@ -370,7 +369,7 @@ def merge_shards(plan: Plan, *, progress: Progress | None = None) -> Sweep:
         unfinished = [shard for shard in files if any(shard.has(chunk) for chunk in missing)]
         raise SceneError(Problem("--merge", f"not done to the end: {named(unfinished)}", "run these shards again"))
     choice = Choice.read(_known(heads)[0]["choice"])
-    sweep = _sweep(plan, choice, work, _results_of(done, rows, width), progress or _ignore)
+    sweep = _sweep(plan, choice, work, _results_of(done, rows, width), progress or not_told)
     write_sweep(sweep, plan.output)
     for file in files.values():
         file.unlink(missing_ok=True)
@@ -430,10 +429,6 @@ def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[
     refuse(problems)
 
 
-def _ignore(doing: str, done: int, total: int) -> None:
-    """Progress that nobody asked for."""
-
-
 def _machine(scheduler: str | None, cores: int | None, device: str | None) -> Cores | Cluster:
     """The workers: cores of this machine, or a cluster."""
     if scheduler is None:
@@ -446,7 +441,9 @@ def _machine(scheduler: str | None, cores: int | None, device: str | None) -> Co
     return Cluster(scheduler)
 
 
-def _begun(plan: Plan, work: Sequence[Chunk], store: Store, progress: Progress, choice: Choice | None = None) -> Choice:
+def _begun(
+    plan: Plan, work: Sequence[Chunk], store: Store, progress: StageProgress, choice: Choice | None = None
+) -> Choice:
     """The discretisation of a sweep whose store is ready for more; that of a new one is chosen now, unless given."""
     head = store.head()
     if head is not None:
@@ -459,7 +456,7 @@ def _begun(plan: Plan, work: Sequence[Chunk], store: Store, progress: Progress, 
     return choice
 
 
-def _choice(plan: Plan, progress: Progress) -> Choice:
+def _choice(plan: Plan, progress: StageProgress) -> Choice:
     """The discretisation of all rows."""
     if plan.scene.tubes:
         # Each row of tubes has as many steps as its own tolerance asks for.
@@ -473,7 +470,7 @@ def _solve_rest(
     machine: Cores | Cluster,
     work: Sequence[Chunk],
     store: Store | Memory,
-    progress: Progress,
+    progress: StageProgress,
 ) -> None:
     """Solve every chunk that is not done, and keep it."""
     rest = [chunk for chunk in work if chunk.number not in store.done]
@@ -493,14 +490,15 @@ def _tasks(
     plan: Plan,
     choice: Choice,
     rest: Sequence[Chunk],
-    progress: Progress,
+    progress: StageProgress,
 ) -> Iterator[tuple[Chunk, list[Part]]]:
     """Chunks with what solves them; sources are generated when their first chunk comes."""
     answer: Answer | None = None
     answer_of: int | None = None
     for chunk in rest:
         if not chunk.compiled and not chunk.in_contact:
-            yield chunk, _modelled_parts(plan, choice, chunk)
+            # A model in Python for each variant that the chunk has rows of.
+            yield chunk, [(_row_model(plan, choice, k), plan.variants.given(rows)) for k, rows in chunk.pieces]
             continue
         # A compiled chunk has rows of one variant.
         ((variant, rows),) = chunk.pieces
@@ -541,11 +539,6 @@ def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:
     return InContact(library, in_python)
 
 
-def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
-    """Solver of a chunk in Python: a model for each variant that it has rows of."""
-    return [(_row_model(plan, choice, variant), plan.variants.given(rows)) for variant, rows in chunk.pieces]
-
-
 def _row_model(plan: Plan, choice: Choice, variant: int) -> RowModel:
     """A variant in Python."""
     # Text, since models of CasADi do not travel to other processes.
@@ -559,7 +552,7 @@ def _sweep(
     choice: Choice,
     work: Sequence[Chunk],
     answered: Iterable[tuple[int, FloatArray]],
-    progress: Progress,
+    progress: StageProgress,
 ) -> Sweep:
     """All results in the order of the table, some of them checked.
 
@@ -587,7 +580,9 @@ def _sweep(
             scratch.let_go()
     judged = None
     if plan.stability and not plan.scene.tubes:
-        judged = rows_with_potential(plan.variants, work, scratch)
+        # Chunks that are solved in Python have been judged there.
+        in_c = {variant for chunk in work if chunk.compiled or chunk.in_contact for variant, _ in chunk.pieces}
+        judged = plan.variants.with_potential(in_c, scratch)
     estimate, verdict = (plan.columns.index(name) for name in ERRORS) if plan.estimate_errors else (None, None)
     for block in scratch.blocks(count):
         values[block, :swept] = plan.table.values[block]
@@ -671,12 +666,9 @@ def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
         return list(error.problems)
     if plan is None or plan.part is None:
         return []
-    return _foreign_files(output, plan.part, plan.identity)
-
-
-def _foreign_files(output: Path, part: Path, identity: str) -> list[Problem]:
-    """Files of other sweeps that the results would be written over."""
+    # Files of other sweeps that the results would be written over.
     problems = []
+    part, identity = plan.part, plan.identity
     head = Store(part).head() or {}
     # A file without content is what a kill before the first line leaves.
     unfinished = part.exists() and (not part.is_file() or part.stat().st_size > 0)

@@ -11,7 +11,6 @@ import os
 import struct
 import zlib
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
@@ -70,7 +69,8 @@ class Store:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: FileIO | None = None
-        self._places: dict[int, _Place] = {}
+        self._places: dict[int, tuple[int, int, int]] = {}
+        """By the number of a chunk where its entry begins, the rows of its results, and their bytes."""
 
     @property
     def done(self) -> Collection[int]:
@@ -117,7 +117,7 @@ class Store:
         with self.path.open("rb") as file:
             end = len(file.readline())
             for number, content in _entries(file, {chunk: 8 * width * count for chunk, count in rows.items()}):
-                self._places[number] = _Place(end, rows[number], len(content))
+                self._places[number] = (end, rows[number], len(content))
                 end += ENTRY.size + len(content)
         # What was being written when the process was killed is cut off.
         self._file = self.path.open("r+b", buffering=0)
@@ -136,7 +136,7 @@ class Store:
         with write_errors(self.path):
             end = self._file.seek(0, os.SEEK_END)
             write_whole(self._file, header + content)
-        self._places[number] = _Place(end, len(results), len(content))
+        self._places[number] = (end, len(results), len(content))
 
     def results(self) -> Iterator[tuple[int, FloatArray]]:
         """Every chunk that is done with its results, one at a time.
@@ -146,13 +146,13 @@ class Store:
         """
         if self._file is None:
             raise ValueError("the store is not open")
-        for number, place in self._places.items():
-            self._file.seek(place.start)
-            entry = next(_entries(self._file, {number: place.size}), None)
+        for number, (start, rows, size) in self._places.items():
+            self._file.seek(start)
+            entry = next(_entries(self._file, {number: size}), None)
             if entry is None:
                 raise StoreChangedError(self.path)
             _, content = entry
-            yield number, np.frombuffer(content, dtype="<f8").reshape(place.rows, -1)
+            yield number, np.frombuffer(content, dtype="<f8").reshape(rows, -1)
 
     def remove(self) -> None:
         """The sweep is finished and written."""
@@ -169,21 +169,6 @@ class Store:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()
-
-
-@dataclass(frozen=True)
-class _Place:
-    """Where a chunk lies in the file.
-
-    Attributes:
-        start: of its entry, in bytes from the beginning of the file.
-        rows: of its results.
-        size: of its results, in bytes.
-    """
-
-    start: int
-    rows: int
-    size: int
 
 
 def _checksum(head: Mapping[str, Any]) -> int:

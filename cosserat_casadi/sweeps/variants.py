@@ -19,7 +19,9 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import build
 from cosserat_casadi.model.constraint_rank import check_constraints
+from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.parameters import parameter_layout
@@ -30,6 +32,7 @@ from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.sweeps.arguments import accepts_parameters, argument_columns, extreme_rows
 from cosserat_casadi.sweeps.sampling import farthest_rows
+from cosserat_casadi.sweeps.scratch import Scratch
 from cosserat_casadi.sweeps.table import Table
 from cosserat_casadi.tubes.robot import robot_of
 
@@ -91,6 +94,38 @@ class Variants:
     def inputs_of_row(self, row: int) -> dict[str, FloatArray]:
         """Inputs of a row by name."""
         return self.layout.unpack(self.inputs[row])
+
+    def with_potential(self, chosen: Iterable[int], scratch: Scratch) -> npt.NDArray[np.bool_]:
+        """Which rows have loads with a potential, so that the stability of an equilibrium has a meaning, shape (rows,).
+
+        Whether they have depends on which inputs and parameters are zero, and on nothing else of them: one row of each
+        pattern is asked about.
+
+        Args:
+            chosen: numbers of the scenes whose rows are asked about; rows of others count as having one.
+            scratch: where the result is to lie.
+        """
+        judged: npt.NDArray[np.bool_] = scratch.array((len(self.inputs),), np.bool_)
+        judged[:] = True
+        for variant in chosen:
+            rows_of_variant = self.entries[variant].rows
+            verdicts: dict[bytes, bool] = {}
+            for block in scratch.blocks(len(rows_of_variant)):
+                rows = rows_of_variant[block]
+                patterns, first, pattern_of_row = np.unique(
+                    self.given(rows) != 0.0, axis=0, return_index=True, return_inverse=True
+                )
+                for pattern, row in zip(patterns, rows[first].tolist(), strict=True):
+                    if pattern.tobytes() not in verdicts:
+                        verdicts[pattern.tobytes()] = self._has_potential(row)
+                of_patterns = np.array([verdicts[pattern.tobytes()] for pattern in patterns])
+                judged[rows] = of_patterns[pattern_of_row.ravel()]
+        return judged
+
+    def _has_potential(self, row: int) -> bool:
+        scene = self.scene_of_row(row)
+        # The coarsest model: loads are the same on each.
+        return build(scene, discretise(scene, 1, 2)).has_potential(self.inputs[row])
 
 
 def variants_of(scene: Scene, table: Table) -> Variants:

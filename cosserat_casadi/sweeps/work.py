@@ -103,7 +103,9 @@ def chunks(
         if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
             continue
-        for rows in _cut(entry.rows, compiled_rows or COMPILED_ROWS):
+        size = compiled_rows or COMPILED_ROWS
+        for first in range(0, len(entry.rows), size):
+            rows = entry.rows[first : first + size]
             listed.append(Chunk(len(listed), ((index, rows),), not in_contact, in_contact))
     # Variants of few rows share chunks, so that none is too small to be worth its transport.
     for first in range(0, len(modelled), MODELLED_ROWS):
@@ -125,8 +127,3 @@ def _pieces(rows: Sequence[tuple[int, int]]) -> Iterator[tuple[int, npt.NDArray[
         rows_of.setdefault(variant, []).append(row)
     for variant, own_rows in rows_of.items():
         yield variant, np.array(own_rows)
-
-
-def _cut(rows: npt.NDArray[np.int64], size: int) -> list[npt.NDArray[np.int64]]:
-    starts = range(0, len(rows), size)
-    return [rows[start : start + size] for start in starts]

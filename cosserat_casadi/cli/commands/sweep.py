@@ -11,13 +11,14 @@ import typer
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files
-from cosserat_casadi.cli.progress import CountCallback, RateColumn, count_display
+from cosserat_casadi.cli.progress import RateColumn, count_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.numerics.progress import StageProgress
 from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweeps.outcome_file import record_file
@@ -126,7 +127,7 @@ def sweep(
 
 
 @contextmanager
-def _stoppable(kept: Path | None) -> Iterator[CountCallback]:
+def _stoppable(kept: Path | None) -> Iterator[StageProgress]:
     """Show how far a sweep is; where it is stopped, say in which file the rows stand that are done."""
     try:
         with count_display("Reading the table", RateColumn()) as show_count:
