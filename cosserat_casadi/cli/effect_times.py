@@ -106,7 +106,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
     if len(rods) > 1:
         igm = f"IGM of {escape(rods[0])} alone"
     if isinstance(whole, str):
-        console.print(f"Not timed: {escape(whole)}", highlight=False)
+        console.print(f"Not timed: {escape(whole)}")
         return
     table = table_of("effect", right=(f"{igm}, µs", "residual + Jacobian, µs", "cold solve, µs"))
     table.title = "Compiled with -O2: what each effect adds"

@@ -14,7 +14,6 @@ from rich.markup import escape
 
 from cosserat_casadi.cli.command_group import CommandGroup
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
-from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.signals import (
     StoppedError,
     end_in_time,
@@ -150,7 +149,7 @@ def _failed(console: Console, error: Exception) -> int:
         _print_error(console, sentence)
         context = getattr(error, "ctx", None)
         if context is not None:
-            print_plain(console, f"Help: {context.command_path} --help")
+            console.print(f"Help: {context.command_path} --help")
         return int(error.exit_code)
     raise error
 
@@ -170,16 +169,16 @@ def _system_sentence(error: OSError) -> str:
 def _print_refusal(console: Console, error: SceneError | ExportError) -> None:
     """Print every reason for which an input is refused."""
     count = counted(len(error.problems), "problem")
-    print_plain(console, f"[bold red]Refused:[/] {count}.")
+    console.print(f"[bold red]Refused:[/] {count}.")
     for problem in error.problems:
         # Not wrapped: a path cut in two cannot be copied.
-        print_plain(console, f"  {escape(str(problem))}", soft_wrap=True)
+        console.print(f"  {escape(str(problem))}", soft_wrap=True)
 
 
 def _print_page(console: Console, error: CosseratError) -> None:
     """Name the page of the documentation that helps."""
-    print_plain(console, f"Help: cosserat docs {error.page}")
+    console.print(f"Help: cosserat docs {error.page}")
 
 
 def _print_error(console: Console, sentence: str) -> None:
-    console.print(f"[bold red]Error:[/] {escape(sentence)}", highlight=False)
+    console.print(f"[bold red]Error:[/] {escape(sentence)}")

@@ -39,10 +39,13 @@ HANDLER = "cosserat_plain"
 
 
 class Console(console.Console):
-    """A console that shows colons as they are: rich makes an emoji of the ``:b:`` in ``x=a:b:3``."""
+    """A console that shows words as they are, in the colours of their markup.
+
+    rich makes an emoji of the ``:b:`` in ``x=a:b:3``, and colours numbers and paths.
+    """
 
     def __init__(self, *, stderr: bool = False) -> None:
-        super().__init__(stderr=stderr, emoji=False)
+        super().__init__(stderr=stderr, emoji=False, highlight=False)
 
 
 def prepare_streams() -> None:

@@ -9,7 +9,7 @@ import typer
 from rich.markdown import Markdown
 from rich.markup import escape
 
-from cosserat_casadi.cli.reports.format import print_plain, table_of
+from cosserat_casadi.cli.reports.format import table_of
 from cosserat_casadi.cli.shipped import page_title, pages
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
@@ -28,7 +28,7 @@ def docs(
         for name, file in found.items():
             table.add_row(name, escape(page_title(file)))
         console.print(table)
-        print_plain(console, "Show one: cosserat docs PAGE")
+        console.print("Show one: cosserat docs PAGE")
         return
     if page not in found:
         raise SceneError(Problem("PAGE", f"there is no page {page}", "cosserat docs lists them"))

@@ -13,7 +13,7 @@ from cosserat_casadi import estimation
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files, given_files, read_checked
 from cosserat_casadi.cli.progress import RateColumn, count_display
-from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import print_written, title_line
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
@@ -57,16 +57,16 @@ def estimate(
     _print(Console(), found, checked_scene.title)
     print_written(Console(), given_files(output, plot), soft_wrap=True)
     for warning in found.warnings:
-        print_plain(Console(stderr=True), f"[bold yellow]{escape(warning)}[/]", soft_wrap=True)
+        Console(stderr=True).print(f"[bold yellow]{escape(warning)}[/]", soft_wrap=True)
     if not found.holds:
         raise typer.Exit(NOT_FOUND)
 
 
 def _print(console: Console, found: Estimate, title: str | None) -> None:
     """How many rows were found, and how well each unknown is known in the middle one."""
-    print_plain(console, title_line(title))
+    console.print(title_line(title))
     endings = ", ".join(f"{word}: {counted(count, 'row')}" for word, count in found.counts.items())
-    print_plain(console, f"{endings}.", soft_wrap=True)
+    console.print(f"{endings}.", soft_wrap=True)
     table = Table()
     for heading in ("unknown", "unit"):
         table.add_column(heading, no_wrap=True)
@@ -86,7 +86,7 @@ def _print(console: Console, found: Estimate, title: str | None) -> None:
             table.add_row(escape(label), unit, f"{value:.4g}", f"{value:.4g}", f"{sigma:.4g}")
     console.print(table)
     if found.checked:
-        print_plain(console, _checked_sentence(found), soft_wrap=True)
+        console.print(_checked_sentence(found), soft_wrap=True)
 
 
 def _checked_sentence(found: Estimate) -> str:

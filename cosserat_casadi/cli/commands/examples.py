@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from cosserat_casadi.cli.reports.format import print_plain, print_written, table_of
+from cosserat_casadi.cli.reports.format import print_written, table_of
 from cosserat_casadi.cli.shipped import Example, shipped_folder
 from cosserat_casadi.cli.shipped import examples as shipped_examples
 from cosserat_casadi.cli.terminal import Console
@@ -47,7 +47,7 @@ def _print_list(chosen: list[Example]) -> None:
     for example in chosen:
         table.add_row(escape(example.name), escape(example.title))
     console.print(table)
-    print_plain(console, "Copy them: cosserat examples NAME… --output FOLDER")
+    console.print("Copy them: cosserat examples NAME… --output FOLDER")
 
 
 def _copy(chosen: list[Example], folder: Path) -> None:

@@ -19,7 +19,6 @@ from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_inputs_stay
-from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.cli.terminal import Console
@@ -329,11 +328,11 @@ def _write(
     if targets.fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
             write_fmu(model, targets.fmu, name, error_estimate=estimate, verified=verified)
-        print_plain(console, f"wrote {escape(str(targets.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
+        console.print(f"wrote {escape(str(targets.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
     if targets.page is not None:
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, targets.page, ranges, cases)
-        print_plain(console, f"wrote {escape(str(targets.page))}; any browser opens it", soft_wrap=True)
+        console.print(f"wrote {escape(str(targets.page))}; any browser opens it", soft_wrap=True)
 
 
 def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
@@ -341,14 +340,14 @@ def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
     model = mjcf_of(scene, links)
     model.write(path)
     for sentence in model.left_out:
-        print_plain(Console(stderr=True), escape(sentence), soft_wrap=True)
-    print_plain(Console(), f"wrote {escape(str(path))}; MuJoCo opens it", soft_wrap=True)
+        Console(stderr=True).print(escape(sentence), soft_wrap=True)
+    Console().print(f"wrote {escape(str(path))}; MuJoCo opens it", soft_wrap=True)
 
 
 def _check_solved(solution: Solution | TubeSolution) -> None:
     """Write nothing where there is no equilibrium, and say why."""
     if not solution.converged:
-        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}")
         raise typer.Exit(NOT_FOUND)
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from cosserat_casadi.cli.reports.format import print_plain, print_written
+from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
@@ -38,4 +38,4 @@ def new(
     write_atomically(scene, (TEMPLATES / f"{template.value}.toml").read_bytes())
     console = Console()
     print_written(console, [scene], soft_wrap=True)
-    print_plain(console, f"Solve it: cosserat solve {escape(str(scene))} --plot picture.png", soft_wrap=True)
+    console.print(f"Solve it: cosserat solve {escape(str(scene))} --plot picture.png", soft_wrap=True)

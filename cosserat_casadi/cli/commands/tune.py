@@ -71,7 +71,7 @@ def tune(
     if not choice.met:
         raise typer.Exit(NOT_FOUND)
     write_atomically(output, scene_text(choice.scene).encode())
-    Console().print(f"wrote {output}", highlight=False)
+    Console().print(f"wrote {output}")
 
 
 def choose_with_progress(

@@ -12,7 +12,6 @@ from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges
 from cosserat_casadi.cli.progress import count_display
-from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.cli.terminal import Console
@@ -59,7 +58,7 @@ def view(
         choice = choose_with_progress(viewed_scene, asked)
         solution = solve(choice.model)
     if not solution.converged:
-        Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)
+        Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}")
         raise typer.Exit(NOT_FOUND)
     with count_display("Writing the model in C") as show_count:
         session = opened(solution, show_count, asked)
@@ -68,11 +67,11 @@ def view(
         print_choice(console, choice)
         print_locking(Console(stderr=True), locking_sentence(choice.locked))
     with RobotServer(session, port) as server:
-        print_plain(console, f"The robot is at {server.address} until you press Ctrl-C.")
+        console.print(f"The robot is at {server.address} until you press Ctrl-C.")
         if browser:
             webbrowser.open(server.address_for_once)
         try:
             server.serve_forever()
         except KeyboardInterrupt:
-            print_plain(console, "Ended.")
+            console.print("Ended.")
             raise StoppedError from None

@@ -10,11 +10,6 @@ from rich.markup import escape
 from rich.table import Table
 
 
-def print_plain(console: Console, sentence: str, *, soft_wrap: bool = False) -> None:
-    """Print a sentence with its markup, without rich's colours for numbers and paths."""
-    console.print(sentence, highlight=False, soft_wrap=soft_wrap)
-
-
 def title_line(title: str | None) -> str:
     """The title of a scene, bold."""
     return f"[bold]{escape(title or 'Untitled scene')}[/]"
@@ -23,14 +18,14 @@ def title_line(title: str | None) -> str:
 def print_outcome(console: Console, title: str | None, message: str, *, good: bool, doubtful: bool = False) -> None:
     """Print the title of a scene and how its computation ended: in green, yellow where it is doubtful, or red."""
     colour = "yellow" if doubtful else "green"
-    print_plain(console, title_line(title))
-    print_plain(console, f"[bold {colour if good else 'red'}]{escape(message)}[/]")
+    console.print(title_line(title))
+    console.print(f"[bold {colour if good else 'red'}]{escape(message)}[/]")
 
 
 def print_written(console: Console, files: Iterable[Path], *, soft_wrap: bool = False) -> None:
     """Name the files that were written."""
     for file in files:
-        print_plain(console, f"wrote {escape(str(file))}", soft_wrap=soft_wrap)
+        console.print(f"wrote {escape(str(file))}", soft_wrap=soft_wrap)
 
 
 def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
@@ -54,4 +49,4 @@ def listed(numbers: Sequence[int], noun: str) -> str:
 def print_warnings(console: Console, warnings: Iterable[str]) -> None:
     """Print what limits a result, such as a load that jumps."""
     for warning in warnings:
-        print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
+        console.print(f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
+from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
@@ -28,19 +28,19 @@ def print_identification(console: Console, found: Identification, written: Seque
     if found.converged and found.layout.own:
         console.print(_own_unknowns(found))
     if found.rows:
-        print_plain(console, _residuals(found))
-        print_plain(console, escape("; ".join(found.model.resolution_words)))
+        console.print(_residuals(found))
+        console.print(escape("; ".join(found.model.resolution_words)))
     if found.error_estimate is not None:
         tolerance = found.model.scene.accuracy.tolerance
         error = error_words(found.error_estimate, found.within_tolerance, tolerance)
-        print_plain(console, f"estimated error of the model at most {error} ({escape(str(found.error_case))})")
+        console.print(f"estimated error of the model at most {error} ({escape(str(found.error_case))})")
     print_written(console, written)
 
 
 def print_refused_scene(console: Console, refusal: SceneError) -> None:
     """Print why the values make no scene: nothing was written."""
     for problem in refusal.problems:
-        print_plain(console, f"[bold red]No scene was written:[/] {escape(str(problem))}", soft_wrap=True)
+        console.print(f"[bold red]No scene was written:[/] {escape(str(problem))}", soft_wrap=True)
 
 
 def _unknowns(found: Identification) -> Table:

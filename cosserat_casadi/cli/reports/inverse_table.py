@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi.cli.reports.format import print_plain, print_written
+from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
@@ -30,17 +30,17 @@ def print_inverse_table(
     failed = [row for row, outcome in enumerate(outcomes) if outcome != MET]
     rows = counted(len(outcomes), "row")
     if not failed:
-        print_plain(console, f"[bold green]The targets of {rows} are met.[/]")
+        console.print(f"[bold green]The targets of {rows} are met.[/]")
     else:
-        print_plain(console, f"[bold red]{len(failed)} of {rows}: the target is not met.[/]")
+        console.print(f"[bold red]{len(failed)} of {rows}: the target is not met.[/]")
     for row in failed[:MOST_TOLD]:
         message = escape(found[row].solution.message)
-        print_plain(console, f"line {targets.lines[row]}: {outcomes[row]}. {message}", soft_wrap=True)
+        console.print(f"line {targets.lines[row]}: {outcomes[row]}. {message}", soft_wrap=True)
     if len(failed) > MOST_TOLD:
-        print_plain(console, f"… and {len(failed) - MOST_TOLD} more; {escape(str(output))} names the outcome of each.")
+        console.print(f"… and {len(failed) - MOST_TOLD} more; {escape(str(output))} names the outcome of each.")
     sentence = _error_sentence(targets, found)
     if sentence is not None:
-        print_plain(console, sentence, soft_wrap=True)
+        console.print(sentence, soft_wrap=True)
     print_written(console, [output])
 
 

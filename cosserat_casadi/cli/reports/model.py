@@ -13,7 +13,7 @@ from rich.table import Table
 
 from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
-from cosserat_casadi.cli.reports.format import print_plain, table_of, title_line
+from cosserat_casadi.cli.reports.format import table_of, title_line
 from cosserat_casadi.cli.reports.numbers import discretisation_table, error_words
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
@@ -51,7 +51,7 @@ def print_check(
         of_effects: operations that each load, actuator and obstacle with a width adds to the residual, by name.
     """
     scene = model.scene
-    print_plain(console, f"{title_line(scene.title)}: the scene is valid.")
+    console.print(f"{title_line(scene.title)}: the scene is valid.")
     console.print(discretisation_table(model))
     if of_effects:
         console.print(_load_table(model, of_effects))
@@ -61,20 +61,19 @@ def print_check(
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in scene.supports))
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
     if closing:
-        print_plain(console, "Ties: " + "; ".join(closing))
+        console.print("Ties: " + "; ".join(closing))
     for note in chain(_notes_on_orientations(model), notes_on_planes(model)):
-        print_plain(console, f"Note: {note}")
+        console.print(f"Note: {note}")
     _print_price(console, model, cost)
     if scene.accuracy.chosen_for:
-        print_plain(console, "Modes and nodes were chosen for " + ", ".join(map(escape, scene.accuracy.chosen_for)))
+        console.print("Modes and nodes were chosen for " + ", ".join(map(escape, scene.accuracy.chosen_for)))
     if scene.accuracy.modes is None:
-        print_plain(
-            console,
+        console.print(
             f"The solve picks modes and nodes for a tolerance of {scene.accuracy.tolerance:g}; "
             "the figures are for the default ones.",
         )
     if scene.touches_exactly:
-        print_plain(console, "The figures are those of the free rods: where they touch obstacles, contact costs more.")
+        console.print("The figures are those of the free rods: where they touch obstacles, contact costs more.")
 
 
 def _notes_on_orientations(model: Model) -> Iterator[str]:
@@ -115,14 +114,13 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     estimate = "not known"
     if solution.error_estimate is not None:
         estimate = error_words(solution.error_estimate, None, model.scene.accuracy.tolerance)
-    print_plain(console, title_line(model.scene.title))
+    console.print(title_line(model.scene.title))
     console.print(discretisation_table(model))
-    print_plain(
-        console,
+    console.print(
         f"{model.size} unknowns, {inputs} inputs; estimated error of the tip pose at the scene's own "
         f"inputs: {estimate}.",
     )
-    print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
+    console.print(f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
 def print_choice(console: Console, choice: Choice) -> None:
@@ -133,18 +131,18 @@ def print_choice(console: Console, choice: Choice) -> None:
         cases = f"{choice.solves - failed} load cases"
         if failed:
             cases += " that have an equilibrium"
-        print_plain(console, f"[bold green]All {cases} are within {tolerance:g}.[/]")
+        console.print(f"[bold green]All {cases} are within {tolerance:g}.[/]")
     elif choice.within_tolerance is None:
-        print_plain(console, "The scene fixes modes and asks for no tolerance.")
+        console.print("The scene fixes modes and asks for no tolerance.")
     else:
-        print_plain(console, f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]")
+        console.print(f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]")
     print_ranges(console, choice.ranges)
     if failed:
         point = escape(_point(choice.without_equilibrium[0]))
-        print_plain(console, f"[bold yellow]No equilibrium was found at {failed} load cases[/], such as {point}")
+        console.print(f"[bold yellow]No equilibrium was found at {failed} load cases[/], such as {point}")
     if choice.error_estimate is not None:
         error = error_words(choice.error_estimate, None, tolerance)
-        print_plain(console, f"Worst case: {escape(_point(choice.worst))}: estimated error {error}")
+        console.print(f"Worst case: {escape(_point(choice.worst))}: estimated error {error}")
 
 
 def print_missed(console: Console, *, fixed: bool) -> None:
@@ -157,13 +155,13 @@ def print_missed(console: Console, *, fixed: bool) -> None:
     remedy = "narrow the ranges, or ask for a larger tolerance"
     if fixed:
         remedy = "leave modes, nodes and rotation out of the scene, and they are chosen"
-    print_plain(console, f"[bold red]What was written does not keep the tolerance all over the ranges:[/] {remedy}.")
+    console.print(f"[bold red]What was written does not keep the tolerance all over the ranges:[/] {remedy}.")
 
 
 def print_locking(console: Console, sentence: str) -> None:
     """Print that modes are locked, where they are."""
     if sentence:
-        print_plain(console, f"[bold red]{escape(sentence)}[/]")
+        console.print(f"[bold red]{escape(sentence)}[/]")
 
 
 def print_ranges(console: Console, ranges: CaseRanges) -> None:
@@ -198,7 +196,7 @@ def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
     for value in varying:
         if value.plain:
             read_as = f"the list of {escape(value.key)} was read as {value.profile.notation.value}"
-            print_plain(console, f"Note: {read_as}; {escape(value.profile.table)} says the same.")
+            console.print(f"Note: {read_as}; {escape(value.profile.table)} says the same.")
 
 
 def _print_parameters(console: Console, model: Model) -> None:
@@ -227,8 +225,7 @@ def _print_price(console: Console, model: Model, cost: Price) -> None:
     igm = "IGM"
     if len(model.igm) > 1:
         igm = f"IGM of all {len(model.igm)} rods"
-    print_plain(
-        console,
+    console.print(
         f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm}, residual {cost.residual}, "
         f"residual and Jacobian {cost.jacobian}.",
     )

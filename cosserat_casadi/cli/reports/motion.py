@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
+from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
 from cosserat_casadi.results.facts import digits
@@ -23,14 +23,13 @@ def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> N
     if len(motion.times):
         console.print(_end_table(motion))
     for sentence in _merit_sentences(motion):
-        print_plain(console, escape(sentence))
+        console.print(escape(sentence))
     print_written(console, written)
 
 
 def print_hasty_animation(console: Console, frames: int, speed: float) -> None:
     """Say how an animation that is over at once can be slowed down."""
-    print_plain(
-        console,
+    console.print(
         f"The animation has {counted(frames, 'frame')}: add --speed {speed:g} to see the motion slowly.",
         soft_wrap=True,
     )
@@ -110,7 +109,7 @@ def print_modes(console: Console, modes: Modes, written: Sequence[Path]) -> None
     print_outcome(console, modes.model.scene.title, modes.message, good=modes.converged, doubtful=grows)
     if modes.modes:
         console.print(_modes_table(modes))
-        print_plain(console, escape("; ".join(modes.model.resolution_words)))
+        console.print(escape("; ".join(modes.model.resolution_words)))
     print_written(console, written)
 
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written
+from cosserat_casadi.cli.reports.format import print_outcome, print_written
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 from cosserat_casadi.results.facts import digits
@@ -22,7 +22,7 @@ def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path])
     print_outcome(console, path.model.scene.title, path.message, good=path.converged)
     if len(path.factor):
         console.print(_path_table(path))
-    print_plain(console, _merit_sentence(path))
+    console.print(_merit_sentence(path))
     print_written(console, written)
 
 

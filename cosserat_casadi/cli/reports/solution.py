@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of
+from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
 from cosserat_casadi.cli.reports.model import notes_on_planes
 from cosserat_casadi.cli.reports.numbers import error_words
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
@@ -47,9 +47,9 @@ def _print_equilibrium(console: Console, solution: Solution, work: str, written:
         console.print(_joint_table(solution))
     if solution.model.scene.has_contact:
         console.print(_contact_table(solution))
-    print_plain(console, _merit_sentence(solution, work))
+    console.print(_merit_sentence(solution, work))
     for note in notes_on_planes(solution.model):
-        print_plain(console, f"Note: {note}")
+        console.print(f"Note: {note}")
     print_written(console, written)
 
 
@@ -68,7 +68,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
         targets.add_row(escape(gap.what), _with_error(gap.position, gap.position_error), angle)
     console.print(targets)
     if any(gap.position_error is not None for gap in inverse.gaps):
-        print_plain(console, "± is the estimated error of the model that the gap was measured on.")
+        console.print("± is the estimated error of the model that the gap was measured on.")
     # The equilibrium was found by the optimiser: the solve that judges it has next to nothing left to do.
     work = f"{counted(inverse.rounds, 'round')} of the optimiser from {counted(inverse.starts, 'start')}"
     if isinstance(inverse.solution, Solution):
@@ -78,7 +78,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     from cosserat_casadi.cli.reports.tubes import print_tubes_and_merit
 
     print_tubes_and_merit(console, inverse.solution)
-    print_plain(console, work)
+    console.print(work)
     print_written(console, written)
 
 

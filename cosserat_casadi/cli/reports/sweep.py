@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.format import listed, print_written, table_of, title_line
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweeps.outcome_file import STABLE, record_file
@@ -36,16 +36,16 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
     """
     record = sweep.record
     tolerance = record["tolerance"]
-    print_plain(console, title_line(record["title"]))
+    console.print(title_line(record["title"]))
     console.print(_outcome_table(sweep))
     if "tubes" in record:
         chosen = f"Each row has as many steps as the tolerance {tolerance:g} asks for."
     else:
         chosen = _choice_sentence(record["chosen"], tolerance)
-    print_plain(console, chosen, soft_wrap=True)
+    console.print(chosen, soft_wrap=True)
     checked = _check_sentences(record["checked"], tolerance)
     for sentence in (*_error_sentences(sweep), *checked, *_stability_sentences(sweep)):
-        print_plain(console, sentence, soft_wrap=True)
+        console.print(sentence, soft_wrap=True)
 
     written: list[Path] = []
     if finished:
@@ -62,11 +62,11 @@ def print_stopped_sweep(console: Console, part: Path | None) -> None:
     if part is None or not part.exists():
         console.print("Stopped before any row was solved. Nothing was written.")
         return
-    print_plain(console, f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
+    console.print(f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
 
 
 def _print_finished(console: Console, output: Path) -> None:
-    print_plain(console, f"{escape(str(output))} holds this sweep already: nothing was computed")
+    console.print(f"{escape(str(output))} holds this sweep already: nothing was computed")
 
 
 def print_shard(console: Console, shard: Shard, rows: int, output: Path, *, finished: bool) -> None:
@@ -84,7 +84,7 @@ def print_shard(console: Console, shard: Shard, rows: int, output: Path, *, fini
         return
     file = escape(str(shard.file(output)))
     sentence = f"Shard {shard}: {counted(rows, 'row')} kept in {file}. When all are done, --merge writes the results."
-    print_plain(console, sentence)
+    console.print(sentence)
 
 
 def _outcome_table(sweep: Sweep) -> Table:
@@ -218,13 +218,13 @@ def print_sobol(console: Console, indices: SobolIndices) -> None:
             table.add_row(shown, escape(factor), first, total)
     console.print(table)
     if constant:
-        print_plain(console, f"Does not vary: {escape(', '.join(constant))}.", soft_wrap=True)
+        console.print(f"Does not vary: {escape(', '.join(constant))}.", soft_wrap=True)
     if indices.left_out:
         sentence = (
             f"[bold yellow]Left out: {counted(indices.left_out, 'draw')} of {indices.samples + indices.left_out}, "
             "of which some row has no equilibrium.[/] The indices are those of the others."
         )
-        print_plain(console, sentence, soft_wrap=True)
+        console.print(sentence, soft_wrap=True)
 
 
 def _with_interval(value: float, bounds: FloatArray) -> str:

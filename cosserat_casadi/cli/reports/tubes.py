@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_outcome, print_plain, print_written, table_of, title_line
+from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of, title_line
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.results.facts import digits
@@ -48,18 +48,16 @@ def print_tubes_and_merit(console: Console, solution: Equilibrium[Any]) -> None:
         f"determinant {solution.stability.determinant:.6g}",
         f"energy {solution.energy:.6g} J",
     ]
-    print_plain(console, "; ".join(parts))
+    console.print("; ".join(parts))
 
 
 def print_tubes_export(console: Console, solution: TubeSolution, folder: Path) -> None:
     """Print the files, their accuracy, and how to try them."""
     robot = solution.robot
-    print_plain(console, title_line(robot.scene.title))
+    console.print(title_line(robot.scene.title))
     sizes = f"{solution.model.size} unknowns, {robot.inputs.size} inputs, {solution.model.steps} steps a piece"
-    print_plain(
-        console, f"{sizes}; estimated error of the tips at the scene's own inputs: {solution.error_estimate:.1e}."
-    )
-    print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
+    console.print(f"{sizes}; estimated error of the tips at the scene's own inputs: {solution.error_estimate:.1e}.")
+    console.print(f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
 def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
@@ -77,10 +75,8 @@ def _print_equilibria(console: Console, equilibria: TubeEquilibria) -> None:
         )
     console.print(table)
     count = len(equilibria.solutions)
-    noun = "equilibria"
-    if count == 1:
-        noun = "equilibrium"
-    print_plain(console, f"{count} {noun}, {len(equilibria.stable)} of them stable")
+    noun = "equilibrium" if count == 1 else "equilibria"
+    console.print(f"{count} {noun}, {len(equilibria.stable)} of them stable")
 
 
 def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
@@ -91,20 +87,20 @@ def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -
     parts = [counted(len(path.values), "point"), counted(len(path.events), "event")]
     if path.error_estimate is not None:
         parts.append(f"estimated error of events and end {path.error_estimate:.1e}")
-    print_plain(console, "; ".join(parts))
+    console.print("; ".join(parts))
     print_written(console, written)
 
 
 def print_tubes_check(console: Console, robot: Robot) -> None:
     """Print what a valid scene of tubes holds."""
-    print_plain(console, f"{title_line(robot.scene.title)}: the scene is valid.")
+    console.print(f"{title_line(robot.scene.title)}: the scene is valid.")
     table = table_of("tube", "EI, N m²", "GJ, N m²", "curvature, 1/m", "straight, m", "curved, m")
     for index, name in enumerate(robot.names):
         columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
     unknowns = model_of(robot, FEWEST_STEPS).size
-    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
+    console.print(f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.columns)}")
 
 
 def _path_table(path: TubePath) -> Table:
