@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+
+FEW = 3
+"""Names that a sentence tells of many."""
 
 
 def closest(word: str, known: Iterable[str]) -> str:
@@ -24,3 +27,9 @@ def counted(count: int, noun: str) -> str:
     if count == 1:
         return f"1 {noun}"
     return f"{count:,} {noun}s"
+
+
+def named(names: Sequence[object], most: int = FEW) -> str:
+    """The first of some names, and how many more there are, such as "a, b, c and 2 more"."""
+    told = ", ".join(map(str, names[:most]))
+    return told if len(names) <= most else f"{told} and {len(names) - most} more"

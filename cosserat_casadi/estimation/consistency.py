@@ -15,16 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.spelling import counted
+from cosserat_casadi.spelling import counted, named
 
 DOUBTED = 4.0
 """Deviations of a normal distribution beyond which chance is no explanation: 1 of 30 000 times on one side."""
 
 ROW_DOUBTED = 5.0
 """The same for a single row: of a million rows none."""
-
-TOLD = 3
-"""Rows, or sensors, that a sentence names."""
 
 
 @dataclass(frozen=True)
@@ -72,19 +69,16 @@ class Consistency:
             )
         biased = list(self.biased.items())
         if biased:
-            told = ", ".join(f"{name} by {bias:+.1f}" for name, bias in biased[:TOLD])
-            more = f" and {len(biased) - TOLD} more" if len(biased) > TOLD else ""
+            told = named([f"{name} by {bias:+.1f}" for name, bias in biased])
             yield (
                 "Model, or means of priors, are off to one side in all rows together, in deviations of the mean: "
-                f"{told}{more}. No noise does that."
+                f"{told}. No noise does that."
             )
         rows = [case for case, outlies in zip(cases, self.outlying, strict=True) if outlies]
         # Where most rows stand out, the sum over all of them does, and tells it.
         if rows and 2 * len(rows) <= len(cases):
-            names = ", ".join(rows[:TOLD])
-            more = f" and {len(rows) - TOLD} more" if len(rows) > TOLD else ""
             verb = "stands" if len(rows) == 1 else "stand"
-            yield f"{counted(len(rows), 'row')} {verb} out, which chance does not explain: {names}{more}."
+            yield f"{counted(len(rows), 'row')} {verb} out, which chance does not explain: {named(rows)}."
 
 
 def consistency(

@@ -46,7 +46,6 @@ from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact, RowSolver
 from cosserat_casadi.estimation.shared import Searched, SharedLabels, SharedNumbers, find_shared
 from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
-from cosserat_casadi.identification.concluding import TOLD, named
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
 from cosserat_casadi.identification.measured_cases import Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray
@@ -54,6 +53,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.progress import StageProgress, not_told
+from cosserat_casadi.spelling import FEW, named
 from cosserat_casadi.sweeps.local import available_cores
 
 CHUNK = 256
@@ -411,7 +411,7 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
             f"{len(unstable)} of {seen} rows are explained by an equilibrium that is not stable: {named(unstable)}. "
             "A real rod leaves it. Do not believe what was found there; give priors near what is felt, or measure more."
         )
-    for direction, count in list(result.unseen.items())[:TOLD]:
+    for direction, count in list(result.unseen.items())[:FEW]:
         yield f"The data do not see {direction} in {count} of {seen} rows: there the prior alone speaks."
     at_bound = (result.values <= known.lower) | (result.values >= known.upper)
     for k in np.flatnonzero(at_bound.any(axis=0)):

@@ -16,14 +16,11 @@ from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.statistics import Direction, Statistics
 from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
 from cosserat_casadi.numerics.outcome import Outcome
-from cosserat_casadi.spelling import counted
+from cosserat_casadi.spelling import counted, named
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 POOR = 2.0
 """Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
-
-TOLD = 3
-"""Cases that a sentence names."""
 
 
 @dataclass
@@ -243,12 +240,6 @@ class Ending:
                 sentence += f" {', '.join(names)} {verb} them, which their mean does not see: begin elsewhere."
             remarks.append(sentence)
         return remarks
-
-
-def named(cases: Sequence[str]) -> str:
-    """Some cases by name, and how many more there are."""
-    names = ", ".join(cases[:TOLD])
-    return names if len(cases) <= TOLD else f"{names} and {len(cases) - TOLD} more"
 
 
 def described(direction: Direction) -> str:

@@ -27,6 +27,7 @@ from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.progress import StageProgress, not_told
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.spelling import named
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM
 from cosserat_casadi.sweeps.choice import Choice, check, choose
 from cosserat_casadi.sweeps.cluster import Cluster
@@ -37,7 +38,7 @@ from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import representative_rows
 from cosserat_casadi.sweeps.scratch import Scratch
-from cosserat_casadi.sweeps.shards import Shard, named, shard_files
+from cosserat_casadi.sweeps.shards import TOLD, Shard, shard_files
 from cosserat_casadi.sweeps.store import Memory, Store, StoreChangedError
 from cosserat_casadi.sweeps.table import Table, read_table, table_of
 from cosserat_casadi.sweeps.variants import Variants, variants_of
@@ -367,7 +368,9 @@ def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
     missing = [chunk for chunk in work if chunk.number not in known]
     if missing:
         unfinished = [shard for shard in files if any(shard.has(chunk) for chunk in missing)]
-        raise SceneError(Problem("--merge", f"not done to the end: {named(unfinished)}", "run these shards again"))
+        raise SceneError(
+            Problem("--merge", f"not done to the end: {named(unfinished, TOLD)}", "run these shards again")
+        )
     choice = Choice.read(_known(heads)[0]["choice"])
     sweep = _sweep(plan, choice, work, _results_of(done, rows, width), progress or not_told)
     write_sweep(sweep, plan.output)
@@ -411,7 +414,7 @@ def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[
     problems = []
     others = [shard for shard, head in heads.items() if head is None or head["sweep"] != plan.identity]
     if others:
-        problem = f"of another sweep, or damaged: {named(others)}"
+        problem = f"of another sweep, or damaged: {named(others, TOLD)}"
         problems.append(Problem("--merge", problem, "remove their files; scene, table and options must be the same"))
     counts = sorted({shard.count for shard in heads})
     if len(counts) > 1:
@@ -421,7 +424,7 @@ def _check_shards(plan: Plan, work: Sequence[Chunk], heads: Mapping[Shard, dict[
         wanted = [Shard(number, counts[0]) for number in range(1, counts[0] + 1)]
         absent = [shard for shard in wanted if shard not in heads and any(shard.has(chunk) for chunk in work)]
         if absent:
-            problems.append(Problem("--merge", f"missing: {named(absent)}", "run these shards first"))
+            problems.append(Problem("--merge", f"missing: {named(absent, TOLD)}", "run these shards first"))
     choices = {json.dumps(head["choice"], sort_keys=True) for head in _known(heads)}
     if len(choices) > 1 and not others:
         remedy = "tune the scene first, and sweep that, so that modes and nodes are fixed"

@@ -7,7 +7,6 @@ killed goes on, and shards on one file system need no word between them.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -69,9 +68,3 @@ def shard_files(output: Path) -> dict[Shard, Path]:
         if match is not None:
             found[Shard(int(match.group(1)), int(match.group(2)))] = path
     return found
-
-
-def named(shards: Sequence[Shard]) -> str:
-    """Some shards by name, and how many more there are."""
-    names = ", ".join(str(shard) for shard in shards[:TOLD])
-    return names if len(shards) <= TOLD else f"{names} and {len(shards) - TOLD} more"
