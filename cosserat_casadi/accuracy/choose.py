@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.common_modes import Answers, CommonModes, LoadCase, Progress, Values, no_more
+from cosserat_casadi.accuracy.common_modes import Answers, CommonModes, LoadCase, Progress, Values
 from cosserat_casadi.accuracy.fixing import fixed_by_rod, on_elements_of, unfixed, with_accuracy
 from cosserat_casadi.accuracy.ranges import CaseRanges, Given, input_ranges, ranges_of_cases
 from cosserat_casadi.accuracy.verified import Verified
@@ -120,7 +120,6 @@ def choose(
         if samples is None:
             samples = SAMPLES_IN_CONTACT if scene.touches_exactly else SAMPLES
         search.begin(samples)
-        more = search.more
     else:
         if not cases:
             raise SceneError(Problem("cases", "must have at least one case"))
@@ -128,11 +127,12 @@ def choose(
         rows = np.array([layout.pack(values) for values in cases])
         search = _Search(scene, ranges_of_cases(layout, rows), progress)
         search.add(rows)
-        more = no_more
     if scene.accuracy.fixed:
         answers = Answers(discretise(scene))
+    elif cases is None:
+        answers = search.modes.refined(search.more)
     else:
-        answers = search.modes.refined(more)
+        answers = search.modes.refined()
     return search.verdict(answers, every=cases is not None)
 
 

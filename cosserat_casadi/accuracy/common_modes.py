@@ -8,8 +8,9 @@ Newton steps.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 import numpy as np
 import numpy.typing as npt
@@ -142,11 +143,12 @@ class CommonModes:
             return ()
         return locked_inputs(first)
 
-    def refined(self, more: Callable[[Answers], Iterator[list[int]]]) -> Answers:
+    def refined(self, more: Callable[[Answers], Iterable[list[int]]] = lambda answers: ()) -> Answers:
         """Answers on a discretisation on which no case is beyond its tolerance; on the last that was tried without.
 
         Args:
-            more: adds cases, batch after batch, once those before are within the tolerance on a discretisation.
+            more: adds cases, batch after batch, once those before are within the tolerance on a discretisation; none by
+                default.
         """
         chosen = self._unlocked(self._first())
         hardest: list[int] = []
@@ -165,14 +167,11 @@ class CommonModes:
         return answers
 
     def _first_beyond(
-        self, answers: Answers, hardest: list[int], more: Callable[[Answers], Iterator[list[int]]]
+        self, answers: Answers, hardest: list[int], more: Callable[[Answers], Iterable[list[int]]]
     ) -> list[int]:
         """Cases beyond the tolerance of the first batch that has any, the worst first."""
-        for batch in (hardest, range(len(self.cases))):
-            beyond = self._beyond(answers, batch)
-            if beyond:
-                return beyond
-        for batch in more(answers):
+        # One batch after the other: what adds cases looks at the answers at those before.
+        for batch in chain((hardest, range(len(self.cases))), more(answers)):
             beyond = self._beyond(answers, batch)
             if beyond:
                 return beyond
@@ -282,11 +281,6 @@ class CommonModes:
         self._hopeless |= self._failed.difference(lost)
         self._failed = set(lost)
         return bool(lost)
-
-
-def no_more(answers: Answers) -> Iterator[list[int]]:
-    """Add no cases to those that a search begins with."""
-    yield from ()
 
 
 def _estimate(solution: Solution) -> float:

@@ -64,23 +64,20 @@ class SharedNumbers:
         return np.sqrt(np.diagonal(self.covariance))
 
 
-@dataclass(frozen=True)
-class SharedLabels:
-    """Names and units of the shared numbers."""
-
-    labels: tuple[str, ...]
-    units: tuple[str, ...]
-
-
 def find_shared(
-    search: Callable[[FloatArray], Searched], limits: Limits, names: SharedLabels, own: tuple[FloatArray, FloatArray]
+    search: Callable[[FloatArray], Searched],
+    limits: Limits,
+    labels: tuple[str, ...],
+    units: tuple[str, ...],
+    own: tuple[FloatArray, FloatArray],
 ) -> tuple[Searched, SharedNumbers, FloatArray]:
     """Estimate the numbers that all rows share, and the rows with them.
 
     Args:
         search: shared numbers ↦ the rows with these held; their own numbers stand before the shared ones.
         limits: bounds and priors of the shared numbers; each has a prior.
-        names: of the shared numbers.
+        labels: names of the shared numbers.
+        units: of these.
         own: least and largest values of the numbers of each row.
 
     Returns:
@@ -105,7 +102,7 @@ def find_shared(
     _, curvature, moves = _expansion(search, limits, values, found, own)
     covariance = np.asarray(np.linalg.inv(curvature + np.diag(weights)), dtype=np.float64)
     added = np.einsum("cij,jk,clk->cil", moves, covariance, moves)
-    return found, SharedNumbers(names.labels, names.units, values, covariance, settled), added
+    return found, SharedNumbers(labels, units, values, covariance, settled), added
 
 
 def _step(curvature: FloatArray, slope: FloatArray, held: npt.NDArray[np.bool_]) -> FloatArray:

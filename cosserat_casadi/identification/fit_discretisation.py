@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
+from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase
 from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of, with_accuracy
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.identification.case_motions import StartInputs
@@ -144,7 +144,7 @@ def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray, repor
         return []
     cases = [LoadCase(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
     search = CommonModes(cases, lambda done, total: report(f"discretisation for equilibria: {done} of {total} solves"))
-    answers = search.refined(no_more)
+    answers = search.refined()
     if len(search.without_equilibrium) == len(cases):
         return []
     return list(answers.chosen.values())

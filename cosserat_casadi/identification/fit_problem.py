@@ -54,17 +54,8 @@ Progress = Callable[[int, float], None]
 """Told the number of steps and half the sum of squares."""
 
 
-@dataclass(frozen=True)
-class _Missing:
-    """A case that takes no part.
-
-    Attributes:
-        case: the case.
-        reason: why, as a sentence.
-    """
-
-    case: Case
-    reason: str
+_Missing = list[tuple[Case, str]]
+"""Cases that take no part, each with the reason as a sentence."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +70,7 @@ class _Started:
 
     misfit: Misfit
     state: MisfitState
-    missing: list[_Missing]
+    missing: _Missing
 
 
 @dataclass(frozen=True)
@@ -111,14 +102,14 @@ class Task:
         shared, _ = self.layout.start(len(fitted))
         started, missing = self._first(fitted, shared)
         if started is None or (missing and self.options.failures == "stop"):
-            ending.left_out += [LeftOut(one.case.where, one.reason) for one in missing]
+            ending.left_out += [LeftOut(case.where, reason) for case, reason in missing]
             return ending.without_equilibrium(stopped=started is not None)
         fit, ended_here = self._best(started.misfit, started.state)
         started, fit = self._with_others(started, fit)
         started, fit, step_error = self._with_short_steps(started, fit)
         misfit = started.misfit
         self.report("judging what was found")
-        ending.left_out += [LeftOut(one.case.where, one.reason) for one in started.missing]
+        ending.left_out += [LeftOut(case.where, reason) for case, reason in started.missing]
         arrow = self._arrow_fit(misfit).linear(fit.shared, fit.own, fit.state)
         known = self._statistics(arrow, fit, misfit)
         predicted = self._predicted(held_out, fit, ending.left_out)
@@ -141,7 +132,7 @@ class Task:
             return found
         return ending.with_steps(found, misfit.motions.size, step_error)
 
-    def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, list[_Missing]]:
+    def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, _Missing]:
         """The misfit of the cases that have an equilibrium or a motion at the start, and the other cases."""
         _, own = self.layout.start(len(cases))
         moves = moving(cases)
@@ -152,23 +143,22 @@ class Task:
         point, reasons = everyone.started(
             start.of(inputs, moves), wanted, self.layout.p, self.layout.parameters(shared)
         )
-        missing = [_Missing(case, reason) for case, reason in zip(cases, reasons, strict=True) if reason]
+        missing = [(case, reason) for case, reason in zip(cases, reasons, strict=True) if reason]
         kept = [i for i, reason in enumerate(reasons) if not reason]
         if not kept:
             return None, missing
         return self._of_finite([cases[i] for i in kept], point.chosen(kept), shared, own[kept], missing)
 
     def _of_finite(
-        self, cases: list[Case], point: Point, shared: FloatArray, own: FloatArray, missing: list[_Missing]
-    ) -> tuple[_Started | None, list[_Missing]]:
+        self, cases: list[Case], point: Point, shared: FloatArray, own: FloatArray, missing: _Missing
+    ) -> tuple[_Started | None, _Missing]:
         """The misfit of the cases whose residuals are finite, and the other cases, with those missing before."""
         misfit = self._misfit(cases)
         state = with_steps(misfit, misfit.first(point, shared, own))
         spoilt = set(misfit.row_cases[~np.isfinite(state.residual)].tolist())
         if spoilt:
             for i in sorted(spoilt):
-                reason = NOT_MOVING if cases[i].moves else NOT_SWINGING
-                missing.append(_Missing(cases[i], reason))
+                missing.append((cases[i], NOT_MOVING if cases[i].moves else NOT_SWINGING))
             kept = [i for i in range(len(cases)) if i not in spoilt]
             if not kept:
                 return None, missing
@@ -195,7 +185,7 @@ class Task:
         for _ in range(MOST_RETRIES):
             if not started.missing:
                 break
-            further, missing = self._first([one.case for one in started.missing], fit.shared)
+            further, missing = self._first([case for case, _ in started.missing], fit.shared)
             if further is None:
                 break
             point = fit.state.point.joined(further.state.point)
@@ -305,7 +295,7 @@ class Task:
         if not cases:
             return None
         started, failed = self._first(cases, fit.shared)
-        left_out += [LeftOut(one.case.where, f"Held out: {one.reason}") for one in failed]
+        left_out += [LeftOut(case.where, f"Held out: {reason}") for case, reason in failed]
         if started is None:
             return None
         misfit, state = started.misfit, started.state

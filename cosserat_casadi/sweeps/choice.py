@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase, no_more
+from cosserat_casadi.accuracy.common_modes import CommonModes, LoadCase
 from cosserat_casadi.accuracy.fixing import fixed_alike, unfixed, union_of
 from cosserat_casadi.codegen.rows import POSE
 from cosserat_casadi.equilibrium.solution import Solution
@@ -107,7 +107,7 @@ def choose(variants: Variants, table: Table, samples: int, progress: StageProgre
         progress("Choosing the discretisation", done, total)
 
     search = CommonModes(cases, show)
-    answers = search.refined(no_more)
+    answers = search.refined()
     _, error = search.worst(answers)
     return Choice(
         union_of(list(answers.chosen.values())),
