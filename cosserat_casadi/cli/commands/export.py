@@ -50,47 +50,41 @@ LOAD_CASES = 32
 
 
 @dataclass(frozen=True)
-class SourceOptions:
-    """Options of the sources in C: their parts beside equations, Jacobians and solver.
+class Asked:
+    """What an export is to write; None for each folder or file that is not asked for.
 
     Attributes:
-        parts: whether each part is asked for, by the keyword of :func:`cosserat_casadi.export`.
+        name: what every C symbol begins with.
+        output: folder of the sources in C.
+        page: page for a browser.
+        fmu: unit for other simulators.
+        mjcf: model of MuJoCo.
+        parts: whether each part of the sources beside equations, Jacobians and solver is asked for, by the keyword of
+            :func:`cosserat_casadi.export`.
         over: file of the load cases whose exact contacts the sources know.
         period: seconds that the longest turn of a control loop may take.
-        estimate_errors: whether every answer carries the estimate of its error.
+        estimate_errors: whether every answer of the sources carries the estimate of its error.
     """
 
+    name: str
+    output: Path | None
+    page: Path | None
+    fmu: Path | None
+    mjcf: Path | None
     parts: Mapping[str, bool]
     over: Path | None
     period: float | None
     estimate_errors: bool
 
     @property
-    def asked(self) -> dict[str, bool]:
-        """Whether each option stands in the command."""
+    def source_options(self) -> dict[str, bool]:
+        """Whether each option of the sources stands in the command."""
         return {
             **{f"--{part}": wanted for part, wanted in self.parts.items()},
             "--over": self.over is not None,
             "--period": self.period is not None,
             "--no-error-estimate": not self.estimate_errors,
         }
-
-
-@dataclass(frozen=True)
-class Targets:
-    """The folder and the files that an export writes; None for each that is not asked for.
-
-    Attributes:
-        output: folder of the sources in C.
-        page: page for a browser.
-        fmu: unit for other simulators.
-        mjcf: model of MuJoCo.
-    """
-
-    output: Path | None
-    page: Path | None
-    fmu: Path | None
-    mjcf: Path | None
 
     @property
     def files(self) -> dict[str, Path]:
@@ -106,15 +100,11 @@ class Targets:
         return {**self.files, **{f"--output, {file.name}": file for file in there}}
 
     @property
-    def need_a_solve(self) -> bool:
-        """Whether any of them is written from a model whose modes and nodes a solve chooses."""
-        return any(target is not None for target in (self.output, self.page, self.fmu))
-
-    def moves(self, sources: SourceOptions) -> bool:
+    def moves(self) -> bool:
         """Whether the model has motions."""
-        return sources.parts["dynamics"] or self.fmu is not None
+        return self.parts["dynamics"] or self.fmu is not None
 
-    def check(self, name: str, sources: SourceOptions) -> None:
+    def check(self) -> None:
         """Refuse an export of nothing, files that cannot be written, and options of sources without their folder.
 
         Raises:
@@ -125,10 +115,10 @@ class Targets:
             raise ExportError(Problem("--output", "missing", remedy))
         if self.output is None:
             remedy = "name a folder for them with --output, or leave it out"
-            lost = [option for option, asked in sources.asked.items() if asked]
+            lost = [option for option, asked in self.source_options.items() if asked]
             refuse([Problem(option, "is for the sources in C", remedy) for option in lost], ExportError)
         else:
-            check_export(self.output, name)
+            check_export(self.output, self.name)
         checks: dict[str, Callable[[Path], None]] = {
             "--page": partial(check_writable, option="--page"),
             "--fmu": check_fmu,
@@ -219,47 +209,45 @@ def export(
     [ranges] or [[bounds]], or their scale, or at the load cases of --over. Modes and nodes that the scene fixes are
     verified there.
     """
-    if name is None:
-        name = re.sub(r"\W", "_", scene.stem)
-    targets = Targets(output, page, fmu, mjcf)
+    name = name if name is not None else re.sub(r"\W", "_", scene.stem)
     parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches, "cuda": cuda}
-    sources = SourceOptions(parts, over, period, estimate_errors)
+    asked = Asked(name, output, page, fmu, mjcf, parts, over, period, estimate_errors)
     # All that can be refused is refused before the solve, which may take a minute.
-    targets.check(name, sources)
-    check_inputs_stay(targets.written, scene, settings, over)
+    asked.check()
+    check_inputs_stay(asked.written, scene, settings, over)
     read = read_scene(scene, tuple(settings or ()))
     if read.tubes:
-        check_tubes({**sources.asked, "--range": bool(ranges), **dict.fromkeys(targets.files, True)})
+        check_tubes({**asked.source_options, "--range": bool(ranges), **dict.fromkeys(asked.files, True)})
         assert output is not None
         _export_tubes(read, output, name)
         return
     if mjcf is not None:
         _export_mjcf(read, mjcf, links)
-    if not targets.need_a_solve:
+    # Sources, page and unit are written from a model whose modes and nodes a solve chooses.
+    if output is None and page is None and fmu is None:
         return
-    asked = asked_ranges(ranges, read)
+    given_ranges = asked_ranges(ranges, read)
     # Without exact contact a file is refused, and modes are chosen all over ranges whether they count values or not.
     given_cases = asked_cases(over, ranges, read) if over is not None or read.touches_exactly else None
     cases = given_cases
     if cases is None and ranges and read.touches_exactly:
         cases = spread(ranges, samples or LOAD_CASES, case_layout(read))
     check_load_cases(read, cases)
-    exported_scene = _checked_scene(read, targets, sources, name)
+    exported_scene = _checked_scene(read, asked)
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
-    moves = targets.moves(sources)
-    solved_scene = exported_scene.held() if moves else exported_scene
+    solved_scene = exported_scene.held() if asked.moves else exported_scene
     chosen_cases = None
     if given_cases is not None:
         # A library begins at the scene's own inputs.
         chosen_cases = [{}, *map(case_layout(read).unpack, given_cases)]
     # In exact contact the samples are load cases: choosing modes at as many would take minutes.
     in_ranges = None if solved_scene.touches_exactly else samples
-    chosen_ranges = asked if given_cases is None else {}
+    chosen_ranges = given_ranges if given_cases is None else {}
     choice = choose_with_progress(solved_scene, chosen_ranges, in_ranges, chosen_cases)
     solution = solve(choice.model)
     _check_solved(solution)
-    _write(targets, sources, name, exported_scene, solution, choice, cases, asked)
+    _write(asked, exported_scene, solution, choice, cases, given_ranges)
     print_choice(Console(), choice)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False
@@ -269,24 +257,24 @@ def export(
         raise typer.Exit(NOT_FOUND)
 
 
-def _checked_scene(scene: Scene, targets: Targets, sources: SourceOptions, name: str) -> Scene:
+def _checked_scene(scene: Scene, asked: Asked) -> Scene:
     """The scene with the inputs that its export has.
 
     Raises:
         ExportError: the scene, the name or an option is refused.
     """
-    check_period(scene, sources.period)
-    if targets.output is not None:
-        check_contact(scene, sources.parts)
-    if targets.moves(sources):
+    check_period(scene, asked.period)
+    if asked.output is not None:
+        check_contact(scene, asked.parts)
+    if asked.moves:
         scene = scene.with_motion_inputs()
         check_motion(build(scene, discretise(scene, 1, 2), moving=True))
-    scene_names(name, scene)
-    if sources.parts["stability"]:
+    scene_names(asked.name, scene)
+    if asked.parts["stability"]:
         check_stability(build(scene, discretise(scene, 1, 2)))
-    if sources.parts["batches"] and not scene.touches_exactly:
+    if asked.parts["batches"] and not scene.touches_exactly:
         check_batches(build(scene, discretise(scene, 1, 2)))
-    if targets.page is not None:
+    if asked.page is not None:
         check_contact(scene, {})
         # Last: a scene that has no page has none with a compiler either.
         find_wasm_compiler()
@@ -294,9 +282,7 @@ def _checked_scene(scene: Scene, targets: Targets, sources: SourceOptions, name:
 
 
 def _write(
-    targets: Targets,
-    sources: SourceOptions,
-    name: str,
+    asked: Asked,
     scene: Scene,
     solution: Solution,
     choice: Choice,
@@ -305,34 +291,33 @@ def _write(
 ) -> None:
     """Write sources, FMU and page of a scene on the modes and nodes that were chosen, and say where they are."""
     console = Console()
-    moves = targets.moves(sources)
     model = solution.model
-    if moves or scene.parameters:
+    if asked.moves or scene.parameters:
         fixed_scene = fixed_by_rod(scene, choice.model.discretisation, choice.ranges.described)
-        model = build(fixed_scene, model.discretisation, moving=moves)
+        model = build(fixed_scene, model.discretisation, moving=asked.moves)
     estimate = solution.error_estimate
     verified = choice.verified
-    if targets.output is not None:
+    if asked.output is not None:
         export_model(
             model,
-            targets.output,
-            name,
+            asked.output,
+            asked.name,
             error_estimate=estimate,
             verified=verified,
-            **sources.parts,
+            **asked.parts,
             load_cases=cases,
-            period=sources.period,
-            estimate_errors=sources.estimate_errors,
+            period=asked.period,
+            estimate_errors=asked.estimate_errors,
         )
-        print_export(console, solution, targets.output)
-    if targets.fmu is not None:
+        print_export(console, solution, asked.output)
+    if asked.fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
-            write_fmu(model, targets.fmu, name, error_estimate=estimate, verified=verified)
-        console.print(f"wrote {escape(str(targets.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
-    if targets.page is not None:
+            write_fmu(model, asked.fmu, asked.name, error_estimate=estimate, verified=verified)
+        console.print(f"wrote {escape(str(asked.fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
+    if asked.page is not None:
         with Console(stderr=True).status("Compiling the page"):
-            export_page(solution, targets.page, ranges, cases)
-        console.print(f"wrote {escape(str(targets.page))}; any browser opens it", soft_wrap=True)
+            export_page(solution, asked.page, ranges, cases)
+        console.print(f"wrote {escape(str(asked.page))}; any browser opens it", soft_wrap=True)
 
 
 def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
