@@ -44,7 +44,7 @@ from cosserat_casadi.estimation.estimate_outcome import BEHIND, NOT_DETERMINED, 
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact, RowSolver
-from cosserat_casadi.estimation.shared import Searched, SharedNumbers, find_shared
+from cosserat_casadi.estimation.shared import Searched, SharedNumbers, SharedSearch
 from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
 from cosserat_casadi.identification.measured_cases import Data, read_cases
@@ -183,7 +183,8 @@ def _rows_and_shared(search: Search, layout: UnknownLayout) -> tuple[Searched, S
     if not layout.shared:
         return search.rows(np.zeros(0)), None, np.zeros(())
     limits = (search.known.lower, search.known.upper)
-    return find_shared(search.rows, layout.shared_limits, layout.shared_labels, _units(layout.shared), limits)
+    shared = SharedSearch(search.rows, layout.shared_limits, limits)
+    return shared.run(layout.shared_labels, _units(layout.shared))
 
 
 def _consistency(

@@ -15,7 +15,7 @@ from cosserat_casadi.codegen.estimator import Estimates
 from cosserat_casadi.estimation import estimate
 from cosserat_casadi.estimation.consistency import chi_square_deviations, consistency
 from cosserat_casadi.estimation.posterior import normal_draws, sampled
-from cosserat_casadi.estimation.shared import Searched, find_shared
+from cosserat_casadi.estimation.shared import Searched, SharedSearch
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.scene import Scene
@@ -193,7 +193,8 @@ def test_a_shared_number_at_its_bound_stays_there_while_others_settle() -> None:
         )
         return found, None
 
-    _, shared, _ = find_shared(search, limits, ("p", "q"), ("1", "1"), (np.full(1, -np.inf), np.full(1, np.inf)))
+    own = (np.full(1, -np.inf), np.full(1, np.inf))
+    _, shared, _ = SharedSearch(search, limits, own).run(("p", "q"), ("1", "1"))
     with_priors = np.vstack([matrix, 0.1 * np.eye(3)[1:]])
     other = lsq_linear(with_priors, np.append(data, [0.0, 0.0]), (-np.inf, [np.inf, 1.5, np.inf]), tol=1e-14)
     assert shared.settled
