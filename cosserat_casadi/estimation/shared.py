@@ -170,7 +170,7 @@ class SharedSearch:
         return float(of_rows[both].sum() + apart @ apart / 2)
 
     def _reduced(self, found: Estimates) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The least costs of rows as functions of the shared numbers, to second order; own numbers follow at their best.
+        """The least costs of rows as functions of the shared numbers, to second order, where own numbers follow.
 
         Returns:
             slope, the sum of their derivatives, shape (q,); the sum of their second derivatives, shape (q, q); and how
