@@ -106,13 +106,10 @@ def check_files(
         PlotUnavailableError: a figure is asked for and matplotlib is not installed.
     """
     for option, file in files.items():
-        if option == "--animation":
-            check_animation(file, problems, meshes=meshes == option)
-            continue
-        with collect_problems(problems):
-            if option == "--plot":
-                check_plot(file, meshes=meshes == option)
-            elif suffix := SUFFIXES.get(option, output_suffix):
+        if option in ("--plot", "--animation"):
+            check_figure(file, option, problems, meshes=meshes == option)
+        elif suffix := SUFFIXES.get(option, output_suffix):
+            with collect_problems(problems):
                 check_file(file, option, suffix)
     with collect_problems(problems):
         check_inputs_stay(files, scene, settings, *others)
@@ -137,20 +134,35 @@ def read_checked(scene: Path, settings: list[str] | None, problems: list[Problem
     return checked
 
 
-def check_animation(animation: Path | None, problems: list[Problem], *, meshes: bool = False) -> None:
-    """Add the faults of the file of an animation; ``meshes`` says whether it may be a file of meshes."""
-    if animation is None:
+def check_figure(file: Path | None, option: str, problems: list[Problem], *, meshes: bool = False) -> None:
+    """Add the faults of the file of a figure or an animation.
+
+    Args:
+        file: that is asked for; None where none is.
+        option: ``--plot`` or ``--animation``.
+        problems: list that the faults are added to: the file cannot be written, or has no suffix that can be drawn.
+        meshes: whether it may be a file of meshes.
+
+    Raises:
+        PlotUnavailableError: a figure is asked for and matplotlib is not installed.
+    """
+    if file is None:
         return
     others = MESHES if meshes else ()
     with collect_problems(problems):
-        check_writable(animation, "--animation")
-    if animation.suffix.lower() in others:
+        check_writable(file, option)
+    if file.suffix.lower() in others:
         return
     # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.animation import check_animation_path
-
     with collect_problems(problems):
-        check_animation_path(animation, "--animation", others)
+        if option == "--animation":
+            from cosserat_casadi.plots.animation import check_animation_path
+
+            check_animation_path(file, option, others)
+        else:
+            from cosserat_casadi.plots.figure import check_plot_path
+
+            check_plot_path(file, others)
 
 
 def check_file(file: Path | None, option: str, suffix: str) -> None:
@@ -200,25 +212,6 @@ def check_inputs_stay(
             if are_one_file(output, earlier):
                 problems.append(Problem(option, f"{output} is the file of {earlier_option} too", "name another file"))
     refuse(problems)
-
-
-def check_plot(plot: Path | None, *, meshes: bool = False) -> None:
-    """Refuse a figure that cannot be drawn or written; ``meshes`` says whether it may be a file of meshes.
-
-    Raises:
-        SceneError: the file cannot be written, or has no suffix that can be drawn.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    if plot is None:
-        return
-    others = MESHES if meshes else ()
-    check_writable(plot, "--plot")
-    if plot.suffix.lower() in others:
-        return
-    # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.figure import check_plot_path
-
-    check_plot_path(plot, others)
 
 
 def given_files(*files: Path | None) -> list[Path]:

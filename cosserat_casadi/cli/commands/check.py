@@ -9,7 +9,7 @@ import typer
 
 from cosserat_casadi.accuracy.ranges import input_ranges
 from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
-from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_inputs_stay, check_plot
+from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_figure, check_inputs_stay
 from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
@@ -18,7 +18,7 @@ from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import NOT_KNOWN, locking_note, may_be_locked
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.operation_cost import is_damped, price, prices_of_effects, without_damping
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -43,7 +43,9 @@ def check(
 ) -> None:
     """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
     overrides = tuple(settings or ())
-    check_plot(plot)
+    problems: list[Problem] = []
+    check_figure(plot, "--plot", problems)
+    refuse(problems)
     checked_scene = read_scene(scene, overrides)
     check_inputs_stay({"--plot": plot}, scene, settings)
     if checked_scene.tubes:
