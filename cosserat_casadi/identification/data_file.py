@@ -61,16 +61,13 @@ class DataFile:
                 values[i] = number
         return values, problems
 
-    def holds(self, name: str, row: int, value: str | float) -> bool:
-        """Whether a cell is a text, or a number."""
-        cell = self.columns[name][row].strip()
-        if isinstance(value, str):
-            return cell == value
-        return finite_number(cell) == value
-
     def holds_all(self, values: Mapping[str, str | float], row: int) -> bool:
-        """Whether the cells of a row are these, by column."""
-        return all(self.holds(column, row, value) for column, value in values.items())
+        """Whether the cells of a row are these texts and numbers, by column."""
+        for column, value in values.items():
+            cell = self.columns[column][row].strip()
+            if value != (cell if isinstance(value, str) else finite_number(cell)):
+                return False
+        return True
 
 
 def read_table(path: Path) -> DataFile:

@@ -246,9 +246,11 @@ def unknown_layout(model: AnyModel) -> UnknownLayout:
     for number, record in enumerate(scene.unknowns):
         where = f"unknowns[{number}]"
         if record.parameter is not None and record.name in parameters:
-            entries.append(_of_parameter(model, record, parameters[record.name], typical))
+            span = model.parameters.slices[record.name]
+            places = list(range(span.start, span.stop))
+            entries.append(_entry(model, record, places, parameters[record.name], typical))
         elif record.input is not None and record.input in indices:
-            entries.append(_of_input(model, record, indices[record.input], typical))
+            entries.append(_entry(model, record, indices[record.input], None, typical))
         else:
             remedy = "build(scene.with_unknowns()) has all that is unknown"
             if record.input is not None and any(name.startswith(f"{record.input}.") for name in indices):
@@ -293,45 +295,37 @@ def _input_indices(model: AnyModel) -> dict[str, list[int]]:
     return indices
 
 
-def _of_parameter(
-    model: AnyModel, record: scenes.Unknown, parameter: Parameter, typical: Mapping[str, float]
-) -> UnknownEntry:
-    entries = model.parameters.slices[parameter.name]
-    start = parameter.default.ravel(order="F")
-    turns = parameter.numbers.keys[-1] == "quaternion" and start.size == 4
-    labels = _labels(parameter)
-    return _entry(
-        record,
-        labels,
-        parameter.unit,
-        np.arange(entries.start, entries.stop),
-        start,
-        turns,
-        _is_positive(model, parameter),
-        typical,
-    )
-
-
-def _of_input(model: AnyModel, record: scenes.Unknown, places: list[int], typical: Mapping[str, float]) -> UnknownEntry:
-    names = {index: name for name, index in column_indices(model.inputs).items()}
-    labels = tuple(names[place] for place in places)
-    start = model.pack()[places]
-    owner = next(entry for entry, entries in model.inputs if entries.start <= places[0] < entries.stop)
-    turns = owner.field.endswith("quaternion") and start.size == 4
-    positive = owner.declared.positive
-    return _entry(record, labels, owner.unit, np.array(places), start, turns, positive, typical)
-
-
 def _entry(
+    model: AnyModel,
     record: scenes.Unknown,
-    labels: tuple[str, ...],
-    unit: str,
-    indices: npt.NDArray[np.int64],
-    start: FloatArray,
-    turns: bool,
-    positive: bool,
+    places: list[int],
+    parameter: Parameter | None,
     typical: Mapping[str, float],
 ) -> UnknownEntry:
+    """One unknown.
+
+    Args:
+        model: has the parameter or the input.
+        record: as the scene has it.
+        places: of its numbers in the stacked parameters, or in the stacked inputs.
+        parameter: that is unknown; None of an input.
+        typical: sizes of what may have any sign, by unit.
+    """
+    if parameter is not None:
+        labels = _labels(parameter)
+        unit = parameter.unit
+        start = parameter.default.ravel(order="F")
+        turns = parameter.numbers.keys[-1] == "quaternion"
+        positive = _is_positive(model, parameter)
+    else:
+        names = {index: name for name, index in column_indices(model.inputs).items()}
+        labels = tuple(names[place] for place in places)
+        owner = next(entry for entry, entries in model.inputs if entries.start <= places[0] < entries.stop)
+        unit = owner.unit
+        start = model.pack()[places]
+        turns = owner.field.endswith("quaternion")
+        positive = owner.declared.positive
+    turns = turns and start.size == 4
     if turns:
         labels = tuple(f"{record.name} about {axis}" for axis in AXES[3])
         unit = "rad"
@@ -342,7 +336,7 @@ def _entry(
     if not turns:
         sizes = np.maximum(sizes, np.abs(start))
     sizes[sizes == 0.0] = 1.0
-    return UnknownEntry(record, labels, unit, indices, start, turns, sizes, positive)
+    return UnknownEntry(record, labels, unit, np.array(places), start, turns, sizes, positive)
 
 
 def _labels(parameter: Parameter) -> tuple[str, ...]:
