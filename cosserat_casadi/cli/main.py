@@ -121,13 +121,12 @@ def _failed(console: Console, error: Exception) -> int:
     Raises:
         Exception: the error itself, where it is none that a user can do something about.
     """
-    if isinstance(error, SceneError | ExportError):
-        _print_refusal(console, error)
-        _print_page(console, error)
-        return REFUSED
     if isinstance(error, CosseratError):
-        _print_error(console, str(error))
-        _print_page(console, error)
+        if isinstance(error, SceneError | ExportError):
+            _print_refusal(console, error)
+        else:
+            _print_error(console, str(error))
+        console.print(f"Help: cosserat docs {error.page}")
         # The input is in order where the disk is full.
         return NOT_WRITTEN if isinstance(error, WriteError) else REFUSED
     if isinstance(error, BrokenPipeError):
@@ -173,11 +172,6 @@ def _print_refusal(console: Console, error: SceneError | ExportError) -> None:
     for problem in error.problems:
         # Not wrapped: a path cut in two cannot be copied.
         console.print(f"  {escape(str(problem))}", soft_wrap=True)
-
-
-def _print_page(console: Console, error: CosseratError) -> None:
-    """Name the page of the documentation that helps."""
-    console.print(f"Help: cosserat docs {error.page}")
 
 
 def _print_error(console: Console, sentence: str) -> None:

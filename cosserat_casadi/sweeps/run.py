@@ -567,27 +567,15 @@ def _sweep(
         progress: told the work under way.
     """
     swept = len(plan.table.columns)
-    result_names = plan.columns[swept:]
-    result_columns = [plan.results.index(name) for name in result_names]
     scratch = plan.scratch
-    count = len(plan.table.values)
-    values = scratch.array((count, len(plan.columns)))
-    outcomes = scratch.array((count,), np.int64)
-    # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
-    chunk_of = {chunk.number: chunk for chunk in work}
-    for number, results in answered:
-        rows = chunk_of[number].rows
-        outcomes[rows] = results[:, 0]
-        values[rows, swept:] = results[:, result_columns]
-        if number % LET_GO == 0:
-            scratch.let_go()
+    values, outcomes = _gathered(plan, work, answered)
     judged = None
     if plan.stability and not plan.scene.tubes:
         # Chunks that are solved in Python have been judged there.
         in_c = {variant for chunk in work if chunk.compiled or chunk.in_contact for variant, _ in chunk.pieces}
         judged = plan.variants.with_potential(in_c, scratch)
     estimate, verdict = (plan.columns.index(name) for name in ERRORS) if plan.estimate_errors else (None, None)
-    for block in scratch.blocks(count):
+    for block in scratch.blocks(len(values)):
         values[block, :swept] = plan.table.values[block]
         if judged is not None:
             values[block, -len(STABILITY) :][~judged[block]] = np.nan
@@ -602,10 +590,30 @@ def _sweep(
         first = swept + len(JUDGED) - 1
         poses = values[:, first : first + posed * len(POSE)]
         checked = check(plan.variants, choice, outcomes, poses, scratch, progress)
-    sweep = Sweep(plan.table.columns, result_names, values, outcomes, {}, scratch)
+    sweep = Sweep(plan.table.columns, plan.columns[swept:], values, outcomes, {}, scratch)
     # The record counts the outcomes of the sweep that it belongs to.
     sweep.record.update(_record(plan, choice, sweep, checked))
     return sweep
+
+
+def _gathered(
+    plan: Plan, work: Sequence[Chunk], answered: Iterable[tuple[int, FloatArray]]
+) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+    """Results of all rows behind the columns of the table, which are left empty, and how the rows ended."""
+    swept = len(plan.table.columns)
+    result_columns = [plan.results.index(name) for name in plan.columns[swept:]]
+    count = len(plan.table.values)
+    values = plan.scratch.array((count, len(plan.columns)))
+    outcomes = plan.scratch.array((count,), np.int64)
+    # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
+    chunk_of = {chunk.number: chunk for chunk in work}
+    for number, results in answered:
+        rows = chunk_of[number].rows
+        outcomes[rows] = results[:, 0]
+        values[rows, swept:] = results[:, result_columns]
+        if number % LET_GO == 0:
+            plan.scratch.let_go()
+    return values, outcomes
 
 
 def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: FloatArray) -> FloatArray:
