@@ -14,7 +14,7 @@ from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files, given_files, read_checked
 from cosserat_casadi.cli.progress import RateColumn, count_display
 from cosserat_casadi.cli.reports.format import print_written, title_line
-from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.reports.model import error_words
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, collect_problems

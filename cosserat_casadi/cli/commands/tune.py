@@ -25,8 +25,7 @@ from cosserat_casadi.cli.options import (
     check_inputs_stay,
 )
 from cosserat_casadi.cli.progress import count_display
-from cosserat_casadi.cli.reports.model import print_choice
-from cosserat_casadi.cli.reports.numbers import discretisation_table
+from cosserat_casadi.cli.reports.model import discretisation_table, print_choice
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.model.load_cases import case_layout

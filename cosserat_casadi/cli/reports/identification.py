@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
-from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.reports.model import error_words
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.spelling import counted

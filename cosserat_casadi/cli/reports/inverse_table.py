@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi.cli.reports.format import print_written
-from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.reports.model import error_words
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
 from cosserat_casadi.results.inverse_table import MET

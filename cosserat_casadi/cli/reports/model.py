@@ -1,4 +1,4 @@
-"""The reports of ``check``, ``export`` and ``tune``."""
+"""The reports of ``check``, ``export`` and ``tune``, and how all reports tell errors and discretisations."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from rich.table import Table
 from cosserat_casadi.accuracy.choose import Choice
 from cosserat_casadi.accuracy.ranges import CaseRanges
 from cosserat_casadi.cli.reports.format import table_of, title_line
-from cosserat_casadi.cli.reports.numbers import discretisation_table, error_words
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_vectors
@@ -25,6 +25,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.operation_cost import Price
 from cosserat_casadi.model.operations import Count
+from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.scene.varying import VaryingValue
 
 IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
@@ -32,6 +33,29 @@ IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
 
 TURNED = 1e-6
 """Angle between two orientations, rad, below which they are the same."""
+
+
+def error_words(error: float, within: bool | None, tolerance: float) -> str:
+    """An estimated error with markup: beside the tolerance, told apart above it; alone where none has a meaning."""
+    words = f"{error:.1e} of the length"
+    if error == UNKNOWN:
+        words = "not known"
+    if within is None:
+        return words
+    if within:
+        return f"{words}, within the tolerance of {tolerance:g}"
+    return f"[bold yellow]{words}, above the tolerance of {tolerance:g}[/]"
+
+
+def discretisation_table(model: Model) -> Table:
+    """Strains, modes, intervals, elements and integrator of every rod."""
+    table = table_of("rod", "strains", "modes", "intervals", "elements", "rotation by")
+    for name, d in model.discretisation.items():
+        properties = model.discrete.rods[name].properties
+        strains = ", ".join(STRAINS[index] for index in properties.admitted)
+        modes = ", ".join(str(count) for count in d.modes)
+        table.add_row(escape(name), strains, modes, str(d.nodes), str(d.elements), d.transport)
+    return table
 
 
 def print_check(

@@ -12,8 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
-from cosserat_casadi.cli.reports.model import notes_on_planes
-from cosserat_casadi.cli.reports.numbers import error_words
+from cosserat_casadi.cli.reports.model import error_words, notes_on_planes
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.results.facts import digits
