@@ -93,10 +93,27 @@ def sweep(
     if sobol is not None and colour is not None:
         problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
     part = _check_shard(shard, merge, plot, problems)
-    asked = {"stability": stability, "estimate_errors": estimate_errors, "device": device}
-    plan = _check_table(
-        scene, tuple(settings or ()), over, ranges or [], output, samples, asked, sobol is not None, problems
-    )
+    swept_scene: Scene | None = None
+    table: Table | None = None
+    plan: Plan | None = None
+    with collect_problems(problems):
+        swept_scene = read_scene(scene, tuple(settings or ()))
+    with collect_problems(problems):
+        table = _asked_table(over, ranges or [], output, sobol=sobol is not None)
+    if swept_scene is None or table is None:
+        # Without them the output is all that can still be looked at.
+        problems.extend(output_problems(output, None))
+    else:
+        with collect_problems(problems):
+            plan = plan_sweep(
+                swept_scene,
+                table,
+                output,
+                samples,
+                stability=stability,
+                estimate_errors=estimate_errors,
+                device=device,
+            )
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -147,33 +164,6 @@ def _check_shard(shard: str | None, merge: bool, plot: Path | None, problems: li
         problems.append(Problem("--plot", "is of all rows", "give it with --merge"))
     with collect_problems(problems):
         return Shard.read(shard)
-    return None
-
-
-def _check_table(
-    scene_file: Path,
-    settings: tuple[str, ...],
-    over: Path | None,
-    ranges: list[str],
-    output: Path,
-    samples: int,
-    asked: dict[str, Any],
-    sobol: bool,
-    problems: list[Problem],
-) -> Plan | None:
-    """The sweep that is asked for, with columns that are; None where the scene, the table or the output is refused."""
-    scene: Scene | None = None
-    table: Table | None = None
-    with collect_problems(problems):
-        scene = read_scene(scene_file, settings)
-    with collect_problems(problems):
-        table = _asked_table(over, ranges, output, sobol=sobol)
-    if scene is None or table is None:
-        # Without them the output is all that can still be looked at.
-        problems.extend(output_problems(output, None))
-        return None
-    with collect_problems(problems):
-        return plan_sweep(scene, table, output, samples, **asked)
     return None
 
 
