@@ -11,7 +11,6 @@ from functools import cached_property
 from math import ceil
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
 from cosserat_casadi.accuracy.fixing import Chosen
@@ -91,7 +90,7 @@ class _Lack:
         enough = max(MODES_SHARE * self.bound, 1.1 * by_grid)
         left = self._change(self.missing)
         while left > enough:
-            trials = [self._tried(trial) for trial in self._with_one_more(chosen)]
+            trials = [(self._change(self._left_by(trial)), trial) for trial in self._with_one_more(chosen)]
             if not trials:
                 break
             left, chosen = min(trials, key=lambda trial: trial[0])
@@ -100,10 +99,6 @@ class _Lack:
         if chosen == self.solution.model.discretisation:
             return with_more_modes(chosen)
         return chosen
-
-    def _tried(self, trial: Chosen) -> tuple[float, Chosen]:
-        left = np.where(self._has(trial), 0.0, self.missing)
-        return self._change(left), trial
 
     def _with_one_more(self, chosen: Chosen) -> list[Chosen]:
         """Discretisations with one more mode of a strain, where the answer's correction has such a mode."""
@@ -122,15 +117,15 @@ class _Lack:
                 trials.append(trial)
         return trials
 
-    def _has(self, chosen: Chosen) -> npt.NDArray[np.bool_]:
-        """Which of the missing coordinates a discretisation has, shape (missing,)."""
+    def _left_by(self, chosen: Chosen) -> FloatArray:
+        """The missing coordinates, those that a discretisation has set to zero, shape (missing,)."""
         richer = self.solution.model.discrete.richer
         has = np.zeros(richer.discrete.size, dtype=bool)
         for name, rod in richer.discrete.rods.items():
             first = richer.discrete.unknowns.strain(name).start
             for (component, columns), modes in zip(rod.columns.items(), chosen[name].modes, strict=True):
                 has[first + columns.start : first + columns.stop] = rod.degrees(component) < modes
-        return has[~richer.known]
+        return np.where(has[~richer.known], 0.0, self.missing)
 
     def _change(self, missing: FloatArray) -> float:
         """Change of what is watched by missing modes, which the unknowns of the answer follow, and by a finer grid."""

@@ -98,7 +98,10 @@ class SceneSolver:
     @cached_property
     def unloaded_turn(self) -> float:
         """Bound of the angle through which an unloaded rod turns from end to end, rad."""
-        turns = [_unloaded_turn(rod) for rod in self.scene.rods]
+        turns = []
+        for rod in self.scene.rods:
+            intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
+            turns.append(float(np.linalg.norm(intrinsic, axis=1).max()) * rod.length)
         return max(turns)
 
     @cached_property
@@ -167,10 +170,3 @@ def corrected_from(model: Model, start: FloatArray, inputs: FloatArray) -> Solut
     if result is None:
         return None
     return judge(model, inputs, result.x, result.outcome, result.iterations, 1.0, settings.tolerance)
-
-
-def _unloaded_turn(rod: scenes.Rod) -> float:
-    """Largest curvature of an unloaded rod times its length, rad."""
-    intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
-    curvature = np.linalg.norm(intrinsic, axis=1)
-    return float(curvature.max()) * rod.length
