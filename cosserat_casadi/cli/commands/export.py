@@ -51,7 +51,7 @@ LOAD_CASES = 32
 
 @dataclass(frozen=True)
 class Asked:
-    """What an export is to write; None for each folder or file that is not asked for.
+    """Folder, files and options of an export; None for each folder or file that is not asked for.
 
     Attributes:
         name: what every C symbol begins with.

@@ -82,10 +82,10 @@ def simulate(
             check_writable(output, "--output")
         with collect_problems(problems):
             check_motion_path(output)
-    files = {"--output": output, "--plot": plot, "--animation": animation}
-    check_files(files, scene, settings, problems, start, output_suffix=None, meshes="--animation")
     if not speed > 0.0:
         problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
+    files = {"--output": output, "--plot": plot, "--animation": animation}
+    check_files(files, scene, settings, problems, start, output_suffix=None, meshes="--animation")
     if part is not None:
         with collect_problems(problems):
             check_parts(output, part)

@@ -29,7 +29,12 @@ def print_written(console: Console, files: Iterable[Path], *, soft_wrap: bool = 
 
 
 def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
-    """An empty table, whose last columns, under headings of their own, hold numbers that stand on the right."""
+    """An empty table.
+
+    Args:
+        headings: of columns of text.
+        right: headings of the columns of numbers behind them, which stand on the right.
+    """
     table = Table()
     for heading in headings:
         table.add_column(heading)
