@@ -415,10 +415,11 @@ def _turned(closed: NumericPose, joint: scenes.Joint, rod: scenes.Rod) -> Numeri
     Args:
         closed: the base with the axes of the joint, world pose.
         joint: it.
-        rod: whose base it is; one that says no orientation keeps that of the body.
+        rod: whose base it is; with the default orientation, that of the world, it begins as the body points.
     """
     kind = JOINT_KINDS[joint.kind]
-    if rod.base == scenes.Base() or kind.coordinate(joint, np.eye(3)) is not None:
+    said = rod.base.tangent is not None or rod.base.quaternion != scenes.Base().quaternion
+    if not said or kind.coordinate(joint, np.eye(3)) is not None:
         return closed
     held = kind.directions(joint).rotations
     wanted = closed.inverse.then(NumericPose(*base_pose(rod))).quaternion
@@ -427,7 +428,7 @@ def _turned(closed: NumericPose, joint: scenes.Joint, rod: scenes.Rod) -> Numeri
         wanted = np.concatenate([wanted[:1], axis * (axis @ wanted[1:])])
     length = np.linalg.norm(wanted)
     # Half a turn across the axis leaves no turn about it nearer than others.
-    if held.shape[1] > 2 or length < FLAT:
+    if held.shape[1] not in (0, 2) or length < FLAT:
         return closed
     return closed.then(NumericPose(np.zeros(3), wanted / length))
 

@@ -363,6 +363,17 @@ def test_a_rod_on_a_body_starts_as_its_base_points_where_its_joint_turns_freely(
     assert_allclose(tip, np.array([CRANK, 0.0, 0.0]) + length * np.array(direction), rtol=1e-14, atol=1e-14)
 
 
+@pytest.mark.parametrize("base", [{}, {"position": [0.3, 0.0, 0.0]}, {"quaternion": [1, 0, 0, 0]}])
+def test_a_rod_whose_base_says_no_orientation_starts_as_its_body_points(base: dict[str, Any]) -> None:
+    tables = on_an_arm({"kind": "revolute", "axis": Y}, **base)
+    half_of_a_right_angle = [np.cos(np.pi / 8), 0.0, np.sin(np.pi / 8), 0.0]
+    tables["joints"][1]["between"][0]["quaternion"] = half_of_a_right_angle
+    discrete = build(scene_from_dict(tables)).discrete
+    length = discrete.records["a"].length
+    along = discrete.unloaded.section("a", 1.0).position - [CRANK, 0.0, 0.0]
+    assert_allclose(along, length * np.array([0.5, 0.0, 0.5]) * np.sqrt(2.0), rtol=1e-14, atol=1e-14)
+
+
 def test_the_start_of_a_hinged_rod_is_the_turn_nearest_to_its_base() -> None:
     wanted = np.array([0.5, -0.1, 0.7, 0.2])
     wanted /= np.linalg.norm(wanted)
