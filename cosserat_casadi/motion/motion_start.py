@@ -81,7 +81,7 @@ def resumed_start(model: Model, resume: Resume) -> Start:
 def unloaded_start(model: Model) -> Start:
     """At rest in the unloaded shape."""
     asked = model.scene.simulation is not None and model.scene.simulation.start is not None
-    return Start(model.unloaded(), UNLOADED if asked else SWINGS)
+    return Start(_own_unloaded(model), UNLOADED if asked else SWINGS)
 
 
 def equilibrium_start(
@@ -96,8 +96,9 @@ def equilibrium_start(
         residual: of the equations of motion, without parameters, as :class:`StepKernels` has it; None where it is not
             at hand.
     """
-    if near is None and residual is not None and _rests_unloaded(model, inputs, residual):
-        return Start(model.unloaded(), EQUILIBRIUM)
+    unloaded = _own_unloaded(model)
+    if near is None and residual is not None and _rests(model, unloaded, inputs, residual):
+        return Start(unloaded, EQUILIBRIUM)
     held = model_at_rest(model)
     sentence = HELD if _frees_bases(held, model) else EQUILIBRIUM
     guess = None if near is None else prolong(near, held)
@@ -105,11 +106,24 @@ def equilibrium_start(
     return _started(model, solution, sentence)
 
 
-def _rests_unloaded(model: Model, inputs: FloatArray, residual: Residual) -> bool:
+def _own_unloaded(model: Model) -> FloatArray:
+    """Unknowns of the unloaded scene, shape (size,), with frames where the values of its parameters put them."""
+    x = model.unloaded()
+    if model.discrete.scaling is None:
+        return x
+    for name, frame in model.discrete.frames.items():
+        own = model.discrete.own_unloaded.frames[name].start
+        # Of the two quaternions of an orientation the one that is nearer.
+        sign = 1.0 if own.quaternion @ frame.start.quaternion >= 0.0 else -1.0
+        moved = (own.position - frame.start.position) / frame.length
+        x[model.discrete.deviation(name)] = [*moved, *(sign * own.quaternion - frame.start.quaternion)]
+    return x
+
+
+def _rests(model: Model, unloaded: FloatArray, inputs: FloatArray, residual: Residual) -> bool:
     """Whether the unloaded scene rests: the functions of statics take longer to write than the motion to compute."""
     if model.scene.held() is not model.scene or model.scene.touches_exactly:
         return False
-    unloaded = model.unloaded()
     no_rates = np.zeros_like(inputs)
     at_rest = np.zeros_like(unloaded)
     norm = relative_norm(residual(unloaded, at_rest, at_rest, inputs, no_rates, no_rates), unloaded)
@@ -139,14 +153,14 @@ def _frees_bases(held: Model, model: Model) -> bool:
 
 def _started(model: Model, solution: Solution, sentence: str) -> Start:
     """The start in an equilibrium of the held scene."""
-    x = model.unloaded()
+    x = _own_unloaded(model)
     if not solution.converged:
         return Start(x, solution.message, found=False)
     if model.scene.touches_exactly and solution.contacts:
         if _frees_bases(model_at_rest(model), model):
             return Start(x, FREE_TOUCHES, found=False)
         return _touching(model, solution, sentence)
-    # Bases that are free begin where the scene puts them, where their unknowns are zero.
+    # Bases that are free begin where the scene puts them.
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():
         x[model.discrete.unknowns.slices[key]] = solution.x[entries]
