@@ -86,5 +86,5 @@ start = "unloaded"
                 if step > duration > 0:
                     yield Fault(("step",), f"must be <= duration, got {shown(step)} of {shown(duration)}")
                 if 0 < step < duration / MOST_STEPS:
-                    what = f"makes more than {MOST_STEPS:,} steps of {shown(duration)} s, got {shown(step)}"
+                    what = f"makes more than {MOST_STEPS:,} steps in {shown(duration)} s, got {shown(step)}"
                     yield Fault(("step",), what, "take a longer one, or leave it out")
