@@ -131,9 +131,9 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
     uses = list(zip(*(stream.constants for stream in streams), strict=True))
     number_of = _numbered([value for values in uses for value in values])
     # What the streams have in place of one constant, by the numbers of their values: alike but for rounding.
-    alike = [tuple(number_of[value] for value in values) for values in uses]
+    numbered = [tuple(number_of[value] for value in values) for values in uses]
     varied: dict[tuple[int, ...], tuple[float, ...]] = {}
-    for numbers, values in zip(alike, uses, strict=True):
+    for numbers, values in zip(numbered, uses, strict=True):
         if len(set(numbers)) > 1:
             varied.setdefault(numbers, values)
     arguments = [*first.function.name_in(), "constants"]
@@ -141,7 +141,7 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
     symbols = [ca.SX.sym(argument, size) for argument, size in zip(arguments, sizes, strict=True)]
     symbol_of = dict(zip(varied, _entries(symbols[-1]), strict=True))
     constants = []
-    for numbers, values in zip(alike, uses, strict=True):
+    for numbers, values in zip(numbered, uses, strict=True):
         constants.append(symbol_of[numbers] if numbers in symbol_of else ca.SX(values[0]))
     kernel = ca.Function(name, symbols, ca.cse([first.result(symbols, constants)]), *names_of_part(arguments))
     return kernel, [[values[i] for values in varied.values()] for i in range(len(streams))]
