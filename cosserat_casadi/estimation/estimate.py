@@ -138,7 +138,13 @@ def estimate_model(
 
 
 def _behind(model: Model, found: Estimates, inputs: FloatArray) -> npt.NDArray[np.bool_]:
-    """Rows that were found behind a smooth obstacle or a rod, shape (cases,); of inputs with parameters behind them."""
+    """Whether the equilibrium of each row is behind a smooth obstacle or a rod, shape (cases,).
+
+    Args:
+        model: with its parameters free.
+        found: estimates of the rows.
+        inputs: stacked inputs, then parameters, of each row, shape (cases, inputs + parameters).
+    """
     behind = np.zeros(len(found.x), dtype=bool)
     if not SmoothBarriers(model).any:
         return behind

@@ -25,7 +25,7 @@ MOST_ENDS = 400
 """Ends of steps at which rods are looked at, at most: of more steps every second, third, …"""
 
 CLOSER = 17
-"""Times that are looked at between two others."""
+"""Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
 
 
 def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:

@@ -326,7 +326,8 @@ def modes_of(
 
     Raises:
         ValueError: the count is not positive, or values stand beside an equilibrium.
-        SceneError: a value is refused, more modes are asked for than are sought, or nothing that may move has mass.
+        SceneError: a value is refused, more modes are asked for than there are unknowns, or nothing that may move has
+            mass.
     """
     if isinstance(subject, Solution):
         if values is not None:

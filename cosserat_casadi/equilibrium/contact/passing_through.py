@@ -70,7 +70,14 @@ class LookedAt:
         return seen_from(self.model, obstacle, x, inputs, np.asarray(self._interpolation @ at_nodes.T))
 
     def paths(self, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray, every: int) -> FloatArray:
-        """The same of T states, at every so many of SECTIONS, shape (T, k, 3), m; x and inputs have T rows."""
+        """Positions as of :meth:`positions` in T states, at one of ``every`` SECTIONS, shape (T, k, 3), m.
+
+        Args:
+            obstacle: what sees them.
+            x: unknowns, shape (T, model.size).
+            inputs: stacked inputs, shape (T, model.inputs.size).
+            every: number of SECTIONS of which positions have one.
+        """
         at_nodes = evaluated(self.model.fields[self.rod], x, inputs)[0]
         positions = np.asarray(self._interpolation[::every] @ np.swapaxes(at_nodes, 1, 2))
         if obstacle.body is None:
