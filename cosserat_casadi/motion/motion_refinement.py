@@ -660,7 +660,7 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     # Sections find contact, and more modes have more of them.
     if not search.scene.has_contact:
         left = lacking(history, search.simulation.duration, moved_by)
-        if left <= SPACE_SHARE * search.tolerance:
+        if max(left, search.last.fronts) <= SPACE_SHARE * search.tolerance:
             return None, left
     chosen = {}
     unseen = 0.0

@@ -187,6 +187,17 @@ def test_last_coefficients_tell_the_error_at_the_fronts_of_a_cone(tip: float, mo
     assert error < lacking_at_fronts(history, duration) < CARELESS * max(1.0, 0.5 * tip) * error
 
 
+def test_a_search_goes_on_while_fronts_lack_more_than_modes_may_leave() -> None:
+    """The last coefficients of a thin tip alone tell that six modes would do, and the fronts that they would not."""
+    scene: dict[str, Any] = wire("twist", 3e-3)
+    section = {"shape": "circle", "radius": [CONE_RADIUS, 0.25 * CONE_RADIUS]}
+    scene["rods"][0] |= {"strain": ["torsion"], "section": section}
+    scene["loads"] = [transients.at_tip(moment=[0.005, 0, 0])]
+    motion = simulate(scene_from_dict(scene))
+    assert motion.converged, motion.message
+    assert motion.model.discretisation["rod"].modes > (6,)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [3e-2, 1e-2, 5e-3, 3e-3])
 @pytest.mark.parametrize("kind", ["twist", "pull"])
