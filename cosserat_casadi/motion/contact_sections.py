@@ -120,13 +120,14 @@ class RodFacing(Facing):
             return X
         # Down the gaps from section to section no other minimum can be met.
         beside = float(self.looked_at[self._downhill(self._level(nodes), near)])
-        farthest = FAR
-        if element is not None and not self.ends[element] <= beside <= self.ends[element + 1]:
-            # By the polynomials of its element it may be farther beyond an end of that one than it is.
-            beside = min(max(beside, self.ends[element]), self.ends[element + 1])
-            farthest = BEYOND
-        X = self._stationary(nodes, beside, element)
-        return X if abs(X - beside) <= farthest else beside
+        if element is None or self.ends[element] <= beside <= self.ends[element + 1]:
+            X = self._stationary(nodes, beside, element)
+            return X if abs(X - beside) <= FAR else beside
+        # By the polynomials of its element it may be farther beyond an end of that one than it is.
+        end = min(max(beside, self.ends[element]), self.ends[element + 1])
+        X = self._stationary(nodes, end, element)
+        # At the end itself it would seem to have stayed within its element.
+        return X if abs(X - end) <= BEYOND else float(np.clip(beside, end - BEYOND, end + BEYOND))
 
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
         """Sections whose gaps are the least about them, and not above a bound, base to tip.
