@@ -150,6 +150,7 @@ def arm_with_cable() -> Scene:
 def test_a_cable_that_a_blow_of_a_floor_slackens_is_not_taut_again_without_end() -> None:
     """The tip strikes, the cable answers in 1e-6 s: a step that does not see it would have it change again at once."""
     scene = arm_with_cable()
+    assert scene.simulation is not None
     model = build(scene, moving=True)
     history = Simulator(model, scene.simulation, started(model, scene.simulation, None)).controlled(1e-2)
     assert history.outcome is StepOutcome.COMPLETED
