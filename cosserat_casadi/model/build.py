@@ -26,7 +26,7 @@ from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.obstacle_checks import check_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout, WithParameters
 from cosserat_casadi.model.scene_actuators import actuators_have_potential
-from cosserat_casadi.model.scene_constraints import decisive_axes
+from cosserat_casadi.model.scene_constraints import check_directions, decisive_axes
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.result import Shown
@@ -67,6 +67,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         nominal = self.discrete.nominal
         discrete = with_numbers(nominal, self.parameters.set_in(nominal.scene, values))
         check_loads(discrete)
+        check_directions(nominal.constraints, discrete.own_unloaded)
         return Model(discrete)
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:

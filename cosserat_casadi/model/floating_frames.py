@@ -224,9 +224,9 @@ class UnloadedScene:
         return index, np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
 
     def _base_keeps_plane(self, rod: str) -> bool:
-        """Whether the joint at a base in the world keeps its rod in the x–z plane of the base."""
+        """Whether the joint at a base in the world, or on another rod, keeps its rod in the x–z plane of the base."""
         found = self.base_joint(rod)
-        if found is None or self.records[rod].base.rod is not None:
+        if found is None:
             return False
         joint = self.scene.joints[found[0]]
         return confines(JOINT_KINDS[joint.kind].held(joint, found[1]))

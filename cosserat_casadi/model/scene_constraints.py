@@ -20,7 +20,6 @@ from cosserat_casadi.constraints.held_directions import (
     in_any_plane,
     in_plane,
     keeps_plane,
-    stays_in_plane,
     upright,
 )
 from cosserat_casadi.constraints.joint_coordinate import held_along, moves_in_plane
@@ -28,7 +27,7 @@ from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
 from cosserat_casadi.constraints.supports import SUPPORT_KINDS
 from cosserat_casadi.constraints.tip_holder import TipHolder, place_of
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_symbolic
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -105,6 +104,12 @@ class PlacedConstraint:
     def size(self) -> int:
         """Number of multipliers."""
         return self.constraint.size
+
+    @property
+    def held_sizes(self) -> tuple[int, int]:
+        """Numbers of held displacements and rotations."""
+        held = self.constraint.held
+        return held.positions.shape[1], held.rotations.shape[1]
 
     @property
     def coordinate_scale(self) -> float:
@@ -218,13 +223,50 @@ def _turn_of_axis(before: Matrix, after: Matrix) -> Matrix | None:
 
 def decisive_axes(unloaded: UnloadedScene) -> set[int]:
     """Joints whose axis or orientation decides which directions others hold: several of one plane."""
-    joints = unloaded.scene.joints
+    scene = unloaded.scene
     closed = bool(closing_joints(unloaded))
-    return {
+    decisive = {
         i
-        for i, joint in enumerate(joints)
+        for i, joint in enumerate(scene.joints)
         if (closed and (joint.carries or joint.body) is not None) or len(list(_coplanar(unloaded, joint))) > 1
     }
+    in_world = (*scene.supports, *filter(_is_in_world, scene.joints))
+    held = {record.rod for record in in_world if _held_in_plane(unloaded, record, place_of(record))}
+    for rod in held | {scene.joints[i].rod for i in decisive if scene.joints[i].rod}:
+        decisive |= set(_hinges_below(unloaded, rod))
+    return decisive
+
+
+def _hinges_below(unloaded: UnloadedScene, rod: str) -> Iterator[int]:
+    """Hinges at the bases of a rod and of those that carry it: places in the scene's list."""
+    carried: str | None = rod
+    while carried is not None:
+        index = unloaded.scene.base_joints.get(carried)
+        if index is not None:
+            joint = unloaded.scene.joints[index]
+            if JOINT_KINDS[joint.kind].directions(joint).rotations.shape[1] == 2:
+                yield index
+        carried = unloaded.records[carried].base.rod
+
+
+def check_directions(placed: list[PlacedConstraint], unloaded: UnloadedScene) -> None:
+    """Refuse numbers with which constraints hold other directions than those that they are written with.
+
+    Args:
+        placed: the constraints of the nominal scene.
+        unloaded: the scene with other numbers.
+
+    Raises:
+        SceneError: with every constraint that numbers take out of the plane of its rods, or into it.
+    """
+    problem = "holds other directions with these parameters, which take it out of the plane of its rods, or into it"
+    refuse(
+        [
+            Problem(own.where, problem, "build a scene for each value")
+            for own, written in zip(placed_constraints(unloaded), placed, strict=True)
+            if own.held_sizes != written.held_sizes
+        ]
+    )
 
 
 def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
@@ -351,9 +393,8 @@ def _held_in_world(
     rod = section.rod
     target = place_of(record)
     floats = unloaded.floating_base(rod) is not None
-    stays = _held_in_plane(unloaded, record, target) if floats else stays_in_plane(unloaded.rods[rod].properties)
     normal = None
-    if stays:
+    if _held_in_plane(unloaded, record, target):
         normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1]
         # Directions that turn with the pose are given in its axes, others in those of the base.
         directions = in_plane(directions, normal if directions.turn_with_pose else NORMAL)
@@ -365,7 +406,7 @@ def _held_in_world(
 
 
 def _held_in_plane(unloaded: UnloadedScene, record: scenes.Support | scenes.Joint, target: NumericPose) -> bool:
-    """Whether a rod whose base floats stays in one plane that its place in the world lies in."""
+    """Whether a rod stays in one plane that its place in the world lies in."""
     plane = unloaded.plane(record.rod)
     if plane is None:
         return False

@@ -106,6 +106,75 @@ def test_two_sections_that_are_no_bases_meet() -> None:
     assert_allclose(solution.tip("a").position, solution.tip("b").position, rtol=0, atol=1e-10)
 
 
+def closed_chain(**changes: Any) -> dict[str, Any]:
+    """Two planar links on hinges, whose last joint is in the world."""
+    shoulder = {"name": "shoulder", **hinge()}
+    elbow = ends({"rod": "a"}, {"rod": "b", "at": 0.0}, name="elbow")
+    rods = [link("a", base={"tangent": [1, 0, 1]}), link("b", base={"tangent": [1, 0, 0.2]})]
+    foot = {"world": True, "position": [0.6, 0.0, 0.1]}
+    return scene(rods, [shoulder, elbow, {"name": "foot", **ends(foot, {"rod": "b"})}], loads=[], **changes)
+
+
+def test_hinge_in_the_world_closes_a_chain_of_planar_links_in_their_plane() -> None:
+    """Without loads they stay straight: the elbow is where two circles meet."""
+    solution = solve(build(scene_from_dict(closed_chain())))
+    foot = np.array([0.6, 0.0, 0.1])
+    aside = np.sqrt(LENGTH**2 - foot @ foot / 4) * np.array([-foot[2], 0, foot[0]]) / np.linalg.norm(foot)
+    assert solution.converged
+    assert_allclose(solution.tip("b").position, foot, rtol=0, atol=1e-12)
+    assert_allclose(solution.tip("a").position, foot / 2 + aside, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("change", [{"axis": [0.1, 1, 0]}, {"between": [{**WORLD, "position": [0.6, 0.1, 0.1]}]}])
+def test_a_chain_of_planar_links_that_closes_out_of_its_plane_is_refused(change: dict[str, Any]) -> None:
+    tables = closed_chain()
+    elbow, foot = tables["joints"][1:]
+    elbow["axis"] = change.get("axis", elbow["axis"])
+    foot["between"] = [*change.get("between", foot["between"][:1]), foot["between"][1]]
+    with pytest.raises(SceneError, match="over-constrains"):
+        build(scene_from_dict(tables))
+
+
+def test_planar_rod_is_not_held_in_the_world_beside_its_plane() -> None:
+    beside = {"world": True, "position": [0.1, 0.03, 0.4]}
+    tables = scene([link("a")], [ends(beside, {"rod": "a"})], loads=[])
+    with pytest.raises(SceneError, match="over-constrains: the tip of 'a'"):
+        build(scene_from_dict(tables))
+
+
+@pytest.mark.parametrize("name", ["shoulder.axis", "elbow.axis"])
+def test_hinge_that_keeps_a_closed_chain_in_its_plane_has_no_axis_as_parameter(name: str) -> None:
+    with pytest.raises(SceneError, match=f"{name}: is an axis that keeps planar rods in their plane"):
+        build(scene_from_dict(closed_chain(parameters=[name])))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("foot.position", [0.6, 0.03, 0.1]),
+        ("foot.axis", [0.1, 1, 0]),
+        ("a.base.quaternion", [np.cos(0.1), np.sin(0.1), 0, 0]),
+    ],
+)
+def test_parameter_that_would_take_a_closed_chain_out_of_its_plane_is_refused(name: str, value: list[float]) -> None:
+    """The joints would still hold it in a plane alone, and the chain would end beside its last joint."""
+    foot = {"rod": "b", "at": 1.0, "kind": "revolute", "axis": [0, 1, 0], "position": [0.6, 0.0, 0.1]}
+    tables = closed_chain(parameters=[name])
+    tables["joints"][2] = {"name": "foot", **foot}
+    tables["rods"][0]["base"] = {"quaternion": [1, 0, 0, 0]}
+    with pytest.raises(SceneError, match="holds other directions with these parameters"):
+        build(scene_from_dict(tables)).at({name: value})
+
+
+def test_place_of_the_last_joint_of_a_closed_chain_is_a_parameter_in_its_plane() -> None:
+    tables = closed_chain(parameters=["foot.position"])
+    tables["joints"][2] = {"name": "foot", "rod": "b", **hinge("b", at=1.0, position=[0.6, 0.0, 0.1])}
+    moved = solve(build(scene_from_dict(tables)), parameters={"foot.position": [0.5, 0.0, 0.3]})
+    assert moved.converged
+    assert_allclose(moved.tip("b").position, [0.5, 0.0, 0.3], rtol=0, atol=1e-12)
+    assert_allclose(np.linalg.norm(moved.tip("a").position), LENGTH, rtol=0, atol=1e-9)
+
+
 def test_base_that_moves_as_an_input_takes_its_hinge_along() -> None:
     model = build(TWO_LINKS)
     moved = solve(model, {"a.base.position": [0.1, 0.2, 1.3]})
