@@ -29,7 +29,7 @@ typedef double real;
 #include "fours.h"
 #define ABSOLUTE fabs
 
-static real larger(real a, real b) { return a > b ? a : b; }
+FAST static inline real larger(real a, real b) { return a > b ? a : b; }
 static real smaller(real a, real b) { return a < b ? a : b; }
 
 /* A function of Python that reads and writes the arrays of the record. Not zero: it was interrupted. */
@@ -334,11 +334,12 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
 
 /* ---- Linear systems: step_matrices.py ---- */
 
-static real size_of(const real *entry, int plane) {
-  return plane ? sqrt(entry[0] * entry[0] + entry[plane] * entry[plane]) : fabs(entry[0]);
+/* Of a complex number the sum of the sizes of its parts, as in LAPACK: a root for each entry takes longer than the sums. */
+FAST static inline real size_of(const real *entry, int plane) {
+  return plane ? fabs(entry[0]) + fabs(entry[plane]) : fabs(entry[0]);
 }
 
-static void swap(real *a, int stride, real *b, int count) {
+FAST static void swap(real *a, int stride, real *b, int count) {
   for (int i = 0; i < count; i++) {
     const real kept = a[i * stride];
     a[i * stride] = b[i * stride];
@@ -361,7 +362,7 @@ FAST static void subtract_complex_row(real *restrict row, real *restrict imagina
 }
 
 /* The rows of a matrix less multiples of the row of a pivot, which is the identity's then. */
-static void eliminate_real(real *a, int k, int n) {
+FAST static void eliminate_real(real *a, int k, int n) {
   real *own = a + k * n;
   const real inverse = 1 / own[k];
   own[k] = 1;
@@ -375,7 +376,7 @@ static void eliminate_real(real *a, int k, int n) {
   }
 }
 
-static void eliminate_complex(real *a, int k, int n) {
+FAST static void eliminate_complex(real *a, int k, int n) {
   const int plane = n * n;
   real *own = a + k * n;
   real *own_imaginary = own + plane;
@@ -402,7 +403,7 @@ static void eliminate_complex(real *a, int k, int n) {
 }
 
 /* Largest sum of the sizes of the entries of a column. */
-static real norm_of_columns(const real *a, int plane, int n, real *sums) {
+FAST static real norm_of_columns(const real *a, int plane, int n, real *sums) {
   real largest = 0;
   memset(sums, 0, (size_t)n * sizeof *sums);
   for (int i = 0; i < n; i++) {
@@ -414,9 +415,20 @@ static real norm_of_columns(const real *a, int plane, int n, real *sums) {
   return largest;
 }
 
+/* Every entry of a matrix times a number of its row and one of its column. */
+FAST static void scale_entries(real *a, int plane, const real *restrict of_rows, const real *restrict of_columns, int n) {
+  for (int p = 0; p <= plane; p += n * n) {
+    for (int i = 0; i < n; i++) {
+      real *row = a + p + i * n;
+      const real factor = of_rows[i];
+      for (int j = 0; j < n; j++) row[j] *= factor * of_columns[j];
+    }
+  }
+}
+
 /* The inverse of a matrix, in place, by Gauss-Jordan elimination with partial pivoting, of the matrix whose largest entry
    of every row and column is one. Zero where that one is singular to rounding. */
-static int invert(real *a, int is_complex, workspace *work) {
+FAST static int invert(real *a, int is_complex, workspace *work) {
   const int n = N;
   const int plane = is_complex ? n * n : 0;
   real *rows = work->vectors;
@@ -428,16 +440,14 @@ static int invert(real *a, int is_complex, workspace *work) {
     rows[i] = 0;
     for (int j = 0; j < n; j++) rows[i] = larger(rows[i], size_of(a + i * n + j, plane));
     if (!(rows[i] > 0)) return 0;
-    for (int j = 0; j < n; j++) columns[j] = larger(columns[j], size_of(a + i * n + j, plane) / rows[i]);
+    rows[i] = 1 / rows[i];
+    for (int j = 0; j < n; j++) columns[j] = larger(columns[j], size_of(a + i * n + j, plane) * rows[i]);
   }
   for (int j = 0; j < n; j++) {
     if (!(columns[j] > 0)) return 0;
+    columns[j] = 1 / columns[j];
   }
-  for (int p = 0; p <= plane; p += n * n) {
-    for (int i = 0; i < n; i++) {
-      for (int j = 0; j < n; j++) a[p + i * n + j] /= rows[i] * columns[j];
-    }
-  }
+  scale_entries(a, plane, rows, columns, n);
   const real norm = norm_of_columns(a, plane, n, sums);
   for (int k = 0; k < n; k++) {
     int row = k;
@@ -465,16 +475,12 @@ static int invert(real *a, int is_complex, workspace *work) {
     for (int p = 0; p <= plane; p += n * n) swap(a + p + k, n, a + p + pivots[k], n);
   }
   if (!(norm * norm_of_columns(a, plane, n, sums) <= SINGULAR_STEP)) return 0;
-  for (int p = 0; p <= plane; p += n * n) {
-    for (int i = 0; i < n; i++) {
-      for (int j = 0; j < n; j++) a[p + i * n + j] /= columns[i] * rows[j];
-    }
-  }
+  scale_entries(a, plane, columns, rows, n);
   return 1;
 }
 
 /* The inverses of K + p C + p^2 M at the real and at the complex eigenvalue of the method. */
-static int factorise_step(real size, workspace *work) {
+FAST static int factorise_step(real size, workspace *work) {
   const int entries = N * N;
   const real *stiffness = work->matrices;
   const real *damping = stiffness + entries;
