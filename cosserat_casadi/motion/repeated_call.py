@@ -104,7 +104,8 @@ class RepeatedCall:
     def matrices(self, *values: FloatArray) -> list[FloatArray]:
         """All results for arguments in their order."""
         self._evaluated(values)
-        return [result.copy() for result in self.results]
+        # Column after column, as they are: rows are made of them where they are asked for.
+        return [result.copy(order="K") for result in self.results]
 
     def _evaluated(self, values: Sequence[FloatArray]) -> None:
         for argument, value in zip(self.arguments, values, strict=True):
