@@ -427,6 +427,7 @@ def integrated(
     resume: Resume | None = None,
     flight: FreeFlight | None = None,
     stops: Stops | None = None,
+    begun: Restart[Any] | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -444,6 +445,7 @@ def integrated(
         resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
         flight: that of the model; None for a new one.
         stops: makes the values at whose zeros the motion stops; None where it goes to its end.
+        begun: how another motion of the model began that has the same start; None where that is not known.
 
     Raises:
         SceneError: the start contradicts the constraints.
@@ -451,7 +453,9 @@ def integrated(
     inputs = pieces[0].at(pieces[0].start).value
     chosen = kernels or interpreted(model)
     flight = flight or free_flight(model, p)
-    switched = partial(_switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight, stops)
+    switched = partial(
+        _switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight, stops, begun
+    )
     if not model.scene.touches_exactly:
         pairs = OneSided(model)
         first = pairs.first_phases(x, inputs)
@@ -481,6 +485,7 @@ def _switched(
     resume: Resume | None,
     flight: FreeFlight,
     stops: Stops | None,
+    begun: Restart[Any] | None,
     switching: Switching[Phases],
     phases: Phases,
 ) -> History:
@@ -511,12 +516,14 @@ def _switched(
             interval = DIFFERENTIATED * piece.smooth
             if memory is not None and at.time > piece.start:
                 restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phases)
+            elif begun is not None and not legs and resume is None:
+                restart = begun
             else:
                 memory = None
                 restart = switching.restarted(plain, piece, flight.to_model(at), phases, guard, interval)
                 restart = flight.restart_of_steps(restart)
             phases = restart.phases
-            if not legs and resume is None:
+            if not legs and resume is None and begun is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
                 shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if flight.coordinates is None else {}
                 moving = _inputs_that_move(model, piece, at.time)

@@ -10,6 +10,7 @@ import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
 from cosserat_casadi.motion.contact_checks import laid_down, told_inside, told_passage, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
+from cosserat_casadi.motion.event_restart import Restart
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -193,6 +195,11 @@ class Simulator:
         return {}
 
     @cached_property
+    def _begun(self) -> dict[Libraries, Restart[Any]]:
+        """How motions begin, by the same shared objects: what follows contact would be moved by the first of them."""
+        return {}
+
+    @cached_property
     def displacements(self) -> FloatArray:
         """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
         return displacements(self.model, self._library)
@@ -358,7 +365,10 @@ class Simulator:
             resume=self.start.resume,
             flight=self._flights[libraries],
             stops=self.watch,
+            begun=self._begun.get(libraries),
         )
+        if history.legs and self.start.resume is None and not self.model.scene.touches_exactly:
+            self._begun[libraries] = history.legs[0].restart
         if self.source is not None:
             self.source.learn(history.statistics)
         return history

@@ -346,3 +346,13 @@ def test_motions_that_more_exact_steps_bring_no_nearer_end_a_search(
     )
     assert motion_refinement._is_erratic(search) is erratic
     assert list(backwards) == []
+
+
+def test_motions_of_one_start_begin_alike() -> None:
+    asked = body_at_tip()
+    simulator = simulator_of(asked)
+    coarse, fine = (simulator.controlled(tolerance) for tolerance in (STEP_TOLERANCE, STEP_TOLERANCE / TIGHTER))
+    alone = simulator_of(asked).controlled(STEP_TOLERANCE / TIGHTER)
+    assert fine.legs[0].restart is coarse.legs[0].restart
+    assert fine.statistics == alone.statistics
+    assert_allclose(fine.end.x, alone.end.x, rtol=0.0, atol=0.0)
