@@ -130,12 +130,12 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
 
 def front_over_seen(model: Model, name: str, strain: int) -> float:
-    """Displacement that a front lacks where a rod is watched, over what coefficients tell of it; 1 of a uniform rod.
+    """Displacement that a front lacks where a rod is watched, over the one that coefficients tell; 1 of a uniform rod.
 
     A front keeps its power, so that it moves sections with a velocity that goes as Z^−1/2, of the impedance
     Z = √(stiffness · inertia per length): most where the rod is thin. Polynomials meet it late, by the time in which it
-    passes some share of an element. What this makes at a watched section is compared with what it makes at the place
-    that coefficients see best. At the place X = (1 − cos θ)/2 of an element they see a step times √(sin θ), the size of
+    passes some share of an element. The displacement by this delay at a watched section is compared with the one at
+    the place that coefficients see best. At the place X = (1 − cos θ)/2 of an element they see a step times √(sin θ), the size of
     Legendre's polynomials there: near a thin tip they see little of it.
 
     Where the watched sections are thicker than others, the root of the change is believed: on few modes fronts are
