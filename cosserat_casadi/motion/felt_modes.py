@@ -135,8 +135,8 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
     A front keeps its power, so that it moves sections with a velocity that goes as Z^−1/2, of the impedance
     Z = √(stiffness · inertia per length): most where the rod is thin. Polynomials meet it late, by the time in which it
     passes some share of an element. The displacement by this delay at a watched section is compared with the one at
-    the place that coefficients see best. At the place X = (1 − cos θ)/2 of an element they see a step times √(sin θ), the size of
-    Legendre's polynomials there: near a thin tip they see little of it.
+    the place that coefficients see best. At the place X = (1 − cos θ)/2 of an element they see a step times √(sin θ),
+    the size of Legendre's polynomials there: near a thin tip they see little of it.
 
     Where the watched sections are thicker than others, the root of the change is believed: on few modes fronts are
     blurred, and grow less on their way to thin sections.
