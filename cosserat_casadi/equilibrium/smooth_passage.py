@@ -12,6 +12,7 @@ from functools import cached_property, lru_cache
 from math import isfinite
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.passing_through import (
@@ -21,6 +22,7 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
     ball_is_inside_between,
     is_inside_between,
     seen_from,
+    ways_inside,
 )
 from cosserat_casadi.equilibrium.load_path import between
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
@@ -138,6 +140,46 @@ class SmoothBarriers:
             if self.are_between(x[row], x[row + 1], (inputs[row], inputs[row + 1])):
                 yield row
 
+    def barred(self, x: FloatArray, arguments: FloatArray) -> npt.NDArray[np.bool_]:
+        """States to which the straight way from the unloaded shape is barred, shape (k,).
+
+        Args:
+            x: unknowns, shape (k, model.size).
+            arguments: stacked inputs, with parameters behind them where the model has some, shape (k, arguments).
+        """
+        inputs, p = np.split(arguments, [self.model.inputs.size], axis=1)
+        if p.shape[1] and not self._barriers_are_fixed:
+            bound = [SmoothBarriers(self.model.at(row)) for row in p]
+            found = [other.barred(x[[row]], inputs[[row]])[0] for row, other in enumerate(bound)]
+            return np.array(found, dtype=bool)
+        barred = np.zeros(len(x), dtype=bool)
+        unloaded = np.broadcast_to(self.model.unloaded(), x.shape)
+        # Loads do not move the unloaded shape.
+        differs = slice(None) if p.shape[1] or self.model.inputs.geometry else slice(1)
+        for rod, obstacle in self.watched:
+            properties = self.model.at().discrete.rods[rod].properties
+            given = p if p.shape[1] else None
+            looked_at = self._looked_at[rod]
+            end = looked_at.paths(obstacle, x, inputs, ROUGHLY, given)
+            start = looked_at.paths(obstacle, unloaded[differs], inputs[differs], ROUGHLY, given)
+            start = np.broadcast_to(start, end.shape)
+            barred |= ways_inside(obstacle, properties, start, end, _allowed(obstacle, properties.length), ROUGHLY)
+        for layer in self.watched_bodies:
+            for row in np.flatnonzero(~barred):
+                way = (self._place(layer, unloaded[row], inputs[row]), self._place(layer, x[row], inputs[row]))
+                barred[row] = self._is_inside_between(layer, *way)
+        if self.model.discrete.pairs:
+            for row in np.flatnonzero(~barred):
+                barred[row] = self.rods_pass(unloaded[row], x[row], (inputs[row], inputs[row]))
+        return barred
+
+    @property
+    def _barriers_are_fixed(self) -> bool:
+        """Whether parameters move rods alone, and elements of none, and only obstacles that stand still are watched."""
+        ride = any(obstacle.body is not None for _, obstacle in self.watched)
+        others = self.watched_bodies or self.model.discrete.pairs
+        return not (self.model.parameters.moving or others or ride)
+
     def _somewhere_inside(self, x: FloatArray, inputs: FloatArray) -> bool:
         """Whether a rod or body is deep inside an obstacle on the straight ways from state to state."""
         for rod, obstacle in self.watched:
@@ -192,6 +234,12 @@ class SmoothBarriers:
     def _looked_at(self) -> dict[str, LookedAt]:
         of_disks = {layer.rod for layer in self.watched_bodies if layer.rod is not None}
         return {rod: LookedAt(self.model, rod) for rod in {rod for rod, _ in self.watched} | of_disks}
+
+
+def has_barriers(scene: scenes.Scene) -> bool:
+    """Whether a scene has smooth obstacles with another side, or rods that touch rods."""
+    thin = any(obstacle.is_smooth and isfinite(obstacle.thickness) for obstacle in scene.obstacles)
+    return thin or bool(scene.rod_contacts)
 
 
 def are_one(x: FloatArray, other: FloatArray) -> bool:

@@ -31,12 +31,14 @@ class DeviceRows:
     Attributes:
         batch: the compiled source.
         inputs: numbers in a row of inputs, which parameters follow.
-        columns: numbers in a row of results.
+        results: numbers in a row of results.
+        unknowns: the last of them, which are the unknowns of its equilibrium; none unless they are asked for.
     """
 
     batch: DeviceBatch
     inputs: int
-    columns: int
+    results: int
+    unknowns: int = 0
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results for rows of inputs with parameters behind them.
@@ -47,24 +49,28 @@ class DeviceRows:
         split = self.inputs
         with _LOCK:
             found = self.batch.rows(inputs[:, :split], inputs[:, split:] if inputs.shape[1] > split else None)
-        rows = np.full((len(inputs), self.columns), np.nan)
+        rows = np.full((len(inputs), self.results), np.nan)
         judged = len(JUDGED)
         rows[:, :judged] = np.array([found["status"], found["iterations"], found["residual_norm"]]).T
         behind = judged + len(found["results"])
         rows[:, judged:behind] = found["results"].T
-        if behind < self.columns:
+        unknowns = self.results - self.unknowns
+        if self.unknowns:
+            rows[:, unknowns:] = found["x"].T
+        if behind < unknowns:
             # What was not solved has no error.
             rows[:, behind] = np.where(found["status"] == 0, found["error_estimate"], np.nan)
         return rows
 
 
-def device_rows(model: Model, device: str, *, estimate_errors: bool) -> DeviceRows:
+def device_rows(model: Model, device: str, *, estimate_errors: bool, tells_unknowns: bool = False) -> DeviceRows:
     """The solver of rows of a model on a device.
 
     Args:
         model: of rods.
         device: ``cuda`` or ``host``.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
+        tells_unknowns: whether the unknowns of their equilibria follow.
 
     Raises:
         ExportError: it cannot be compiled for the device.
@@ -72,7 +78,9 @@ def device_rows(model: Model, device: str, *, estimate_errors: bool) -> DeviceRo
     files = folder_files(model, NAME, cuda=True, estimate_errors=estimate_errors)
     texts = {name: text for name, text in files.items() if name.endswith((".c", ".h", ".cu"))}
     batch = batch_of(json.loads(files[MANIFEST]), texts, device)
-    return DeviceRows(batch, model.inputs.size, len(row_results(model.scene, estimate_errors=estimate_errors)))
+    unknowns = model.size if tells_unknowns else 0
+    columns = len(row_results(model.scene, estimate_errors=estimate_errors))
+    return DeviceRows(batch, model.inputs.size, columns + unknowns, unknowns)
 
 
 def device_problems(scene: Scene, device: str, *, stability: bool) -> list[Problem]:

@@ -17,7 +17,8 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.contact.rows import contact_row_library
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, row_library, row_results
+from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, RowLibrary, row_library, row_results
+from cosserat_casadi.equilibrium.smooth_passage import has_barriers
 from cosserat_casadi.errors import ExportError, Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -31,7 +32,7 @@ from cosserat_casadi.spelling import named
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM
 from cosserat_casadi.sweeps.choice import Choice, check, choose
 from cosserat_casadi.sweeps.cluster import Cluster
-from cosserat_casadi.sweeps.device_rows import DEVICE_ROWS, device_problems, device_rows
+from cosserat_casadi.sweeps.device_rows import DEVICE_ROWS, DeviceRows, device_problems, device_rows
 from cosserat_casadi.sweeps.local import Cores
 from cosserat_casadi.sweeps.outcome_file import check_output, read_record, read_sweep, record_file, write_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
@@ -49,6 +50,7 @@ from cosserat_casadi.sweeps.work import (
     Chunk,
     InContact,
     Part,
+    Watched,
     chunks,
 )
 
@@ -507,23 +509,34 @@ def _tasks(
         ((variant, rows),) = chunk.pieces
         if answer is None or answer_of != variant:
             progress("Compiling", 0, 0)
-            answer = _answer_in_contact(plan, choice, variant) if chunk.in_contact else _library(plan, choice, variant)
+            exact = plan.variants.entries[variant].scene.touches_exactly
+            answer = _answer_in_contact(plan, choice, variant) if exact else _library(plan, choice, variant)
             answer_of = variant
         yield chunk, [(answer, plan.variants.given(rows))]
 
 
 def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
-    """The library of a variant."""
+    """The library of a variant, watched where it could lead through an obstacle or a rod."""
     entry = plan.variants.entries[variant]
     model = build(choice.scene(entry.scene))
+    watched = has_barriers(entry.scene)
+    library: RowLibrary | DeviceRows
     if plan.device is not None:
-        return device_rows(model, plan.device, estimate_errors=plan.estimate_errors)
-    return row_library(
-        model,
-        estimate_errors=plan.estimate_errors,
-        stability=plan.stability,
-        lanes=len(entry.rows) >= IN_LANES_FROM,
-    )
+        library = device_rows(model, plan.device, estimate_errors=plan.estimate_errors, tells_unknowns=watched)
+    else:
+        library = row_library(
+            model,
+            estimate_errors=plan.estimate_errors,
+            stability=plan.stability,
+            tells_unknowns=watched,
+            lanes=len(entry.rows) >= IN_LANES_FROM,
+        )
+    if not watched:
+        return library
+    if isinstance(library, RowLibrary):
+        # Once, before many processes look for it.
+        library.compiled()
+    return Watched(library, _row_model(plan, choice, variant))
 
 
 def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:

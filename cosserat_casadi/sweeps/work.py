@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.rows import RowLibrary
+from cosserat_casadi.equilibrium.smooth_passage import has_barriers
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM, touches_in_c
+from cosserat_casadi.sweeps.device_rows import DeviceRows
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import from_neighbour_to_neighbour
 from cosserat_casadi.sweeps.variants import Variants
@@ -54,6 +56,28 @@ class InContact:
         return results
 
 
+@dataclass(frozen=True)
+class Watched:
+    """A library whose steps may lead through smooth obstacles or rods; Python for rows that may be behind one.
+
+    Attributes:
+        library: tells the unknowns of rows too.
+        model: the same scene in Python, no step of which leads through one.
+    """
+
+    library: RowLibrary | DeviceRows
+    model: RowModel
+
+    def solve(self, inputs: FloatArray) -> FloatArray:
+        """Rows of results for rows of inputs and parameters."""
+        results, x = np.split(self.library.solve(inputs), [self.library.results - self.library.unknowns], axis=1)
+        solved = np.flatnonzero(results[:, 0] == 0)
+        doubtful = solved[self.model.barred(x[solved], inputs[solved])]
+        if doubtful.size:
+            results[doubtful] = self.model.solve(inputs[doubtful])
+        return results
+
+
 Part = tuple[Answer, FloatArray]
 """Rows of inputs, and what solves them."""
 
@@ -65,7 +89,7 @@ class Chunk:
     Attributes:
         number: counted from 0.
         pieces: for each scene the chunk has rows of, its index among the variants and its rows in the table.
-        compiled: whether one compiled library solves them all.
+        compiled: whether threads of this process solve them, by a compiled library.
         in_contact: whether one compiled library solves most of them, and Python the others.
     """
 
@@ -92,7 +116,7 @@ def chunks(
     Args:
         variants: the scenes of the table.
         compiled_from: rows of one scene from which it is compiled.
-        compiled_rows: rows of a chunk that a compiled library solves, :data:`COMPILED_ROWS` by default.
+        compiled_rows: rows of a chunk that a device solves; of one that a compiled library does by default.
     """
     listed: list[Chunk] = []
     modelled = []
@@ -103,10 +127,13 @@ def chunks(
         if few or entry.scene.tubes or (entry.scene.touches_exactly and not in_contact):
             modelled += [(index, int(row)) for row in entry.rows]
             continue
+        in_contact = in_contact or has_barriers(entry.scene)
         size = compiled_rows or COMPILED_ROWS
+        # A device is used by this process alone.
+        in_threads = not in_contact or compiled_rows is not None
         for first in range(0, len(entry.rows), size):
             rows = entry.rows[first : first + size]
-            listed.append(Chunk(len(listed), ((index, rows),), not in_contact, in_contact))
+            listed.append(Chunk(len(listed), ((index, rows),), in_threads, in_contact))
     # Variants of few rows share chunks, so that none is too small to be worth its transport.
     for first in range(0, len(modelled), MODELLED_ROWS):
         pieces = _pieces(modelled[first : first + MODELLED_ROWS])

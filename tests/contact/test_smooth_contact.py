@@ -30,10 +30,12 @@ from cosserat_casadi import (
     read_scene,
     simulate,
     solve,
+    sweep,
 )
+from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.control import embedded, motion_stage
 from cosserat_casadi.equilibrium.load_path import input_path
-from cosserat_casadi.equilibrium.smooth_passage import past_no_obstacle
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
@@ -747,6 +749,72 @@ def test_no_row_of_estimates_is_found_behind_a_wire() -> None:
         assert found.outcomes == outcomes
         assert_allclose(found.values[0], [-0.05], rtol=0, atol=1e-4)
         assert np.isnan(found.values[1, 0]) == bool(obstacle)
+
+
+THIN = WIRE.replace("radius = 4e-3", "radius = 1e-3").replace("width = 1e-3", "width = 4e-4")
+
+CROSSING = """
+[[rods]]
+name = "other"
+length = 1.0
+strain = "planar"
+material = { youngs_modulus = 1e8, poisson_ratio = 0.4, density = 1000.0 }
+section = { shape = "circle", radius = 4e-3 }
+base = { position = [0.6, -0.5, -0.1], tangent = [0, 1, 0] }
+[[rod_contacts]]
+rods = ["rod", "other"]
+width = 1e-3
+"""
+
+
+@pytest.mark.parametrize(
+    ("head", "barriers"),
+    [
+        ("", WIRE),
+        ('parameters = ["rod.stiffness.bending_y"]', WIRE),
+        ('parameters = ["wire.width", "rod.base.position"]', WIRE),
+        ('parameters = ["other.base.position"]', CROSSING),
+    ],
+    ids=["wire", "stiffness", "width and place", "rods"],
+)
+def test_rows_behind_are_those_whose_straight_way_is_barred(head: str, barriers: str) -> None:
+    """Many states at once, against one after the other."""
+    few = ["accuracy.modes=2", "accuracy.nodes=6"]
+    rod, material = ROD, [line for line in CROSSING.splitlines() if line.startswith(("material", "section"))]
+    if barriers == CROSSING:
+        rod = re.sub("stiffness = .*\nlinear_density = .*", "\n".join(material), ROD)
+    model = build(parse_scene(head + rod + PUSH + barriers, few))
+    rng = np.random.default_rng(1)
+    x = rng.uniform(-2.0, 2.0, (8, 1)) + 0.2 * rng.standard_normal((8, model.size))
+    inputs = np.tile(model.pack(), (len(x), 1))
+    p = model.parameters.pack() * rng.uniform(0.9, 1.1, (len(x), model.parameters.size))
+    found = SmoothBarriers(model).barred(x, np.hstack([inputs, p]))
+    one_by_one = [
+        SmoothBarriers(model.at(p[row])).are_between(model.unloaded(), x[row], (inputs[row], inputs[row]))
+        for row in range(len(x))
+    ]
+    assert found.tolist() == one_by_one
+    assert 0 < found.sum() < len(x)
+
+
+@pytest.mark.slow
+def test_no_row_of_a_sweep_converges_behind_a_thin_wire() -> None:
+    """The solver in C steps through the wire, and comes to the equilibrium of the rod without it."""
+    few = ["accuracy.modes=2", "accuracy.nodes=6"]
+    scene = parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + THIN, few)
+    pushes = np.array([-0.1, -0.25])
+    table = np.stack([0 * pushes, 0 * pushes, pushes], axis=1)
+    in_c = row_library(build(scene)).solve(table)
+    assert in_c[:, 0].tolist() == [0.0, 0.0]
+    free = solve(build(parse_scene(ROD + PUSH, ["accuracy.modes=6", "accuracy.nodes=14"])), {"push.force": table[1]})
+    assert_allclose(in_c[1, 3:6], free.tip().position, rtol=0, atol=1e-6)
+    found = sweep(scene, {"push.force.x": 0.0, "push.force.y": 0.0, "push.force.z": pushes}, cores=1)
+    watched = solve(build(scene), {"push.force": table[1]})
+    assert found.outcome == ["converged", watched.outcome.label]
+    if watched.converged:
+        assert_allclose(found["rod.z"][1], watched.tip().position[2], rtol=0, atol=1e-8)
+    else:
+        assert np.isnan(found["rod.z"][1])
 
 
 MEASURED_TIP = """

@@ -69,7 +69,14 @@ class LookedAt:
         at_nodes = self.model.fields[self.rod](x, inputs)[0].full()
         return seen_from(self.model, obstacle, x, inputs, np.asarray(self._interpolation @ at_nodes.T))
 
-    def paths(self, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray, every: int) -> FloatArray:
+    def paths(
+        self,
+        obstacle: scenes.ObstacleRecord,
+        x: FloatArray,
+        inputs: FloatArray,
+        every: int,
+        p: FloatArray | None = None,
+    ) -> FloatArray:
         """Positions as of :meth:`positions` in T states, at one of ``every`` SECTIONS, shape (T, k, 3), m.
 
         Args:
@@ -77,8 +84,9 @@ class LookedAt:
             x: unknowns, shape (T, model.size).
             inputs: stacked inputs, shape (T, model.inputs.size).
             every: number of SECTIONS of which positions have one.
+            p: parameters, shape (T, model.parameters.size), of a model that has some, whose obstacle stands still.
         """
-        at_nodes = evaluated(self.model.fields[self.rod], x, inputs)[0]
+        at_nodes = evaluated(self.model.fields[self.rod], x, inputs, *([] if p is None else [p]))[0]
         positions = np.asarray(self._interpolation[::every] @ np.swapaxes(at_nodes, 1, 2))
         if obstacle.body is None:
             return positions
@@ -130,20 +138,32 @@ def ball_is_inside_between(
     end: FloatArray,
     deepest: float = DEEP,
 ) -> bool:
-    """Whether a ball is inside an obstacle on the straight way from one position to another, m.
+    """Whether a ball is inside an obstacle on a straight way, as :func:`ball_ways_inside` tells."""
+    return bool(ball_ways_inside(obstacle, radius, length, start, end, deepest).any())
+
+
+def ball_ways_inside(
+    obstacle: scenes.ObstacleRecord,
+    radius: float,
+    length: float,
+    start: FloatArray,
+    end: FloatArray,
+    deepest: float = DEEP,
+) -> npt.NDArray[np.bool_]:
+    """Straight ways from one position to another on which a ball is inside an obstacle, shape (ways,).
 
     Args:
         obstacle: the obstacle.
         radius: of the ball, m.
         length: what depths are relative to, m.
-        start: position, shape (3,), or those of several ways, shape (ways, 3).
+        start: position, shape (3,), or those of several ways, shape (ways, 3), m.
         end: another, likewise.
         deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
     """
     admitted = min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
     # A stretch without length.
     ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
-    return _sinks(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
+    return _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
 
 
 def is_inside_between(
@@ -154,7 +174,19 @@ def is_inside_between(
     deepest: float = DEEP,
     every: int = 1,
 ) -> bool:
-    """Whether a section of a rod is inside an obstacle on the straight way from its positions to others.
+    """Whether a section of a rod is inside an obstacle on a straight way, as :func:`ways_inside` tells."""
+    return bool(ways_inside(obstacle, properties, start, end, deepest, every).any())
+
+
+def ways_inside(
+    obstacle: scenes.ObstacleRecord,
+    properties: RodProperties,
+    start: FloatArray,
+    end: FloatArray,
+    deepest: float = DEEP,
+    every: int = 1,
+) -> npt.NDArray[np.bool_]:
+    """Straight ways of sections of a rod to others on which one is inside an obstacle, shape (ways,).
 
     Args:
         obstacle: the obstacle.
@@ -167,19 +199,19 @@ def is_inside_between(
         every: step from one of SECTIONS to the next one of the positions.
     """
     admitted = min(deepest * properties.length, MIDDLE * obstacle.thickness / 2)
-    return _sinks(
+    return _sinking(
         lambda positions, X: section_gaps(obstacle, properties, positions, X), start, end, SECTIONS[::every], admitted
     )
 
 
-def _sinks(
+def _sinking(
     gaps_at: Callable[[FloatArray, FloatArray], FloatArray],
     start: FloatArray,
     end: FloatArray,
     X: FloatArray,
     admitted: float,
-) -> bool:
-    """Whether a gap is below −admitted on the straight way of sections from their positions to others.
+) -> npt.NDArray[np.bool_]:
+    """Straight ways of sections from their positions to others on which a gap is below −admitted, shape (ways,).
 
     Args:
         gaps_at: gaps, m, at positions of shape (k, 3) with their abscissae.
@@ -189,8 +221,10 @@ def _sinks(
         admitted: depth, m.
     """
     start, end = start.reshape(-1, 3), end.reshape(-1, 3)
-    joints = np.arange(1, len(start)) % len(X) == 0
-    X = np.tile(X, len(start) // len(X))
+    sections = len(X)
+    sunk = np.zeros(len(start) // sections, dtype=bool)
+    joints = np.arange(1, len(start)) % sections == 0
+    X = np.tile(X, len(sunk))
     # Types are written: to infer those of what the loop changes takes the type checker six seconds.
     ways: FloatArray = np.asarray(np.linalg.norm(end - start, axis=1), dtype=float)
     stretches: FloatArray = np.maximum(
@@ -208,12 +242,11 @@ def _sinks(
         after: FloatArray = (1 - weight) * end[first] + weight * end[first + 1]
         abscissae = X[first] + weight[:, 0] * (X[first + 1] - X[first])
         gaps = gaps_at(before + share[:, None] * (after - before), abscissae)
-        if gaps.min() < -admitted:
-            return True
+        sunk[first[gaps < -admitted] // sections] = True
         by_section = along * stretches[first]
         by_way = across * np.maximum(ways[first], ways[first + 1])
         reach = (by_section + by_way) / 2
-        halved = (gaps - reach < -admitted) & (reach > FINEST * admitted)
+        halved = (gaps - reach < -admitted) & (reach > FINEST * admitted) & ~sunk[first // sections]
         longer = (by_section > by_way)[halved]
         first = np.tile(first[halved], 2)
         section, share, along, across = (part[halved] for part in (section, share, along, across))
@@ -223,4 +256,4 @@ def _sinks(
         along, across = (np.tile(part, 2) for part in (along, across))
         section = np.concatenate([section - by_half[0], section + by_half[0]])
         share = np.concatenate([share - by_half[1], share + by_half[1]])
-    return False
+    return sunk
