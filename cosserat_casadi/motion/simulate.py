@@ -80,6 +80,15 @@ Until steps tell the waves along a rod, motions may be nearer to each other than
 FEW_STEPS = 10.0
 """Number of steps at which a told error counts twice: a few steps may happen to suit the motion."""
 
+ALIKE = 1.25
+"""Steps of a motion over those of a coarser one, from which on they are shorter by its tolerance, not by its events.
+
+Steps grow by a bounded factor after each event: over the first few any tolerance has the same.
+"""
+
+MOST_ALIKE = 2
+"""Further motions, each TIGHTER times as exact, that are looked at for such steps."""
+
 HALVED = 4.0 / 3.0
 """Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
 
@@ -293,13 +302,21 @@ class Simulator:
         return timed
 
     def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
-        """The motion with a tolerance of a step that is smaller by a factor, and its error by the distance."""
+        """The motion with a tolerance of a step that is smaller by a factor, or more, and its error by the distance."""
         tolerance = timed.tolerance / factor
         fine = self.controlled(tolerance)
         steps = fine.statistics.steps
         if fine.completed and steps <= timed.history.statistics.steps and not has_shorter_steps_at_events(fine):
             # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
             return self.told_by_half(fine, tolerance)
+        for _ in range(MOST_ALIKE):
+            more = fine.statistics.steps / timed.history.statistics.steps
+            if not (fine.completed and more < ALIKE and has_shorter_steps_at_events(fine)):
+                break
+            finer = self.controlled(tolerance / TIGHTER)
+            if finer.outcome not in (StepOutcome.COMPLETED, StepOutcome.INTERRUPTED):
+                break
+            fine, tolerance = finer, tolerance / TIGHTER
         distance = path_distance(self.paths(timed.history), self.paths(fine))
         left = left_by(factor, fine, timed.history)
         if timed.companion is not None and is_struck(fine) and distance > 0.0:

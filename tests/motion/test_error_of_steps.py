@@ -17,6 +17,7 @@ from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion import simulate as motion_simulate
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion
+from cosserat_casadi.motion.pose_series import frames_of
 from cosserat_casadi.motion.simulate import (
     LEAST_SLOPE,
     LEAST_SLOPE_AFTER_IMPACTS,
@@ -130,6 +131,38 @@ def test_error_of_steps_that_no_tolerance_makes_shorter() -> None:
     true = true_error(simulator, told.history)
     assert true > 1e-6
     assert 0.8 * true <= told.error <= 4.0 * true
+
+
+def test_error_of_steps_that_are_the_same_about_an_event() -> None:
+    """A weight on a spring falls 1 − cos ωt until a cable holds it: a tenfold tolerance has the same seven steps.
+
+    Their distance told 9e-14 of the length where 3e-6 was true.
+    """
+    length, mass, stiffness, gravity, held = 0.3, 0.2, 40.0, 9.81, 0.5
+    sag = mass * gravity / stiffness
+    rod = {"name": "spring", "length": length, "strain": ["extension"], "linear_density": 1e-9}
+    rod |= {"stiffness": {"extension": stiffness * length}, "base": {"tangent": [0, 0, -1]}}
+    cable = {"name": "cable", "kind": "tendon", "rod": "spring", "slack": True, "offset": [0, 0]}
+    tables = {
+        "schema": 1,
+        "accuracy": {"modes": 1, "nodes": 4},
+        "rods": [rod],
+        "bodies": [{"name": "weight", "mass": mass, "inertia": [1e-4, 1e-4, 1e-4]}],
+        "joints": [{"kind": "fixed", "rod": "spring", "body": "weight"}],
+        "loads": [{"name": "gravity", "kind": "gravity", "acceleration": [0, 0, -gravity]}],
+        "actuators": [cable | {"length": length + held * sag}],
+        "simulation": {"duration": 1.0, "frames": 3, "start": "unloaded"},
+    }
+    simulator = simulator_on(scene_from_dict(tables))
+    history = simulator.controlled(1e-2)
+    assert simulator.controlled(1e-3).statistics.steps == history.statistics.steps
+    told = simulator.finer(TimedHistory(history, float("nan"), 1e-2), TIGHTER)
+    times = np.linspace(0.0, 1.0, 201)
+    x, inputs = told.history.rough_positions(times)
+    found = -frames_of(simulator.model.body["weight"], x, inputs).position[:, 2] - length
+    rate = np.sqrt(stiffness / mass)
+    fallen = np.where(times < np.arccos(1.0 - held) / rate, 1.0 - np.cos(rate * times), held)
+    assert np.abs(found - sag * fallen).max() / length < told.error < 1e-4
 
 
 def test_error_told_by_two_motions_is_not_too_small(simulator: Simulator, coarse: History) -> None:
