@@ -238,7 +238,7 @@ def decisive_axes(unloaded: UnloadedScene) -> set[int]:
 
 
 def _hinges_below(unloaded: UnloadedScene, rod: str) -> Iterator[int]:
-    """Hinges at the bases of a rod and of those that carry it: places in the scene's list."""
+    """Hinges at the bases of a rod and of the rods that carry it: places in the scene's list."""
     carried: str | None = rod
     while carried is not None:
         index = unloaded.scene.base_joints.get(carried)
@@ -250,7 +250,7 @@ def _hinges_below(unloaded: UnloadedScene, rod: str) -> Iterator[int]:
 
 
 def check_directions(placed: list[PlacedConstraint], unloaded: UnloadedScene) -> None:
-    """Refuse numbers with which constraints hold other directions than those that they are written with.
+    """Refuse numbers with which constraints hold other directions than the constraints of the scene hold.
 
     Args:
         placed: the constraints of the nominal scene.
