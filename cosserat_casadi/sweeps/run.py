@@ -50,7 +50,7 @@ from cosserat_casadi.sweeps.work import (
     Chunk,
     InContact,
     Part,
-    Watched,
+    WatchedRows,
     chunks,
 )
 
@@ -536,7 +536,7 @@ def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
     if isinstance(library, RowLibrary):
         # Once, before many processes look for it.
         library.compiled()
-    return Watched(library, _row_model(plan, choice, variant))
+    return WatchedRows(library, _row_model(plan, choice, variant))
 
 
 def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:

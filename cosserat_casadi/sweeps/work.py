@@ -57,7 +57,7 @@ class InContact:
 
 
 @dataclass(frozen=True)
-class Watched:
+class WatchedRows:
     """A library whose steps may lead through smooth obstacles or rods; Python for rows that may be behind one.
 
     Attributes:
