@@ -563,7 +563,7 @@ def _switched(
             at = integration.end
             guard = integration.guard
             first = integration.next_size
-            if not integration.steps:
+            if not integration.steps and OneSided(model).pairs:
                 # A step that does not see what stiff parts answer to a blow would have the cable change again at once.
                 first = max(SHORTER * first, AT_ONCE * pieces[-1].end)
             settings = replace(settings, first=first)
