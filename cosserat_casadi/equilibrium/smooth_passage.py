@@ -53,8 +53,8 @@ class SmoothBarriers:
     def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
         """Pairs of a rod and an obstacle that has another side, on which the rod could come out."""
         scene = self.model.scene
-        smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
-        return [(rod.name, obstacle) for rod in scene.rods for obstacle in smooth if obstacle.concerns(rod.name)]
+        thin = _thin_obstacles(scene)
+        return [(rod.name, obstacle) for rod in scene.rods for obstacle in thin if obstacle.concerns(rod.name)]
 
     @cached_property
     def watched_bodies(self) -> list[ContactLayer]:
@@ -238,8 +238,12 @@ class SmoothBarriers:
 
 def has_barriers(scene: scenes.Scene) -> bool:
     """Whether a scene has smooth obstacles with another side, or rods that touch rods."""
-    thin = any(obstacle.is_smooth and isfinite(obstacle.thickness) for obstacle in scene.obstacles)
-    return thin or bool(scene.rod_contacts)
+    return bool(_thin_obstacles(scene) or scene.rod_contacts)
+
+
+def _thin_obstacles(scene: scenes.Scene) -> list[scenes.ObstacleRecord]:
+    """Smooth obstacles that have another side."""
+    return [obstacle for obstacle in scene.obstacles if obstacle.is_smooth and isfinite(obstacle.thickness)]
 
 
 def are_one(x: FloatArray, other: FloatArray) -> bool:

@@ -138,19 +138,7 @@ def ball_is_inside_between(
     end: FloatArray,
     deepest: float = DEEP,
 ) -> bool:
-    """Whether a ball is inside an obstacle on a straight way, as :func:`ball_ways_inside` tells."""
-    return bool(ball_ways_inside(obstacle, radius, length, start, end, deepest).any())
-
-
-def ball_ways_inside(
-    obstacle: scenes.ObstacleRecord,
-    radius: float,
-    length: float,
-    start: FloatArray,
-    end: FloatArray,
-    deepest: float = DEEP,
-) -> npt.NDArray[np.bool_]:
-    """Straight ways from one position to another on which a ball is inside an obstacle, shape (ways,).
+    """Whether a ball is inside an obstacle on a straight way from one position to another.
 
     Args:
         obstacle: the obstacle.
@@ -163,7 +151,8 @@ def ball_ways_inside(
     admitted = min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
     # A stretch without length.
     ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
-    return _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
+    sinking = _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
+    return bool(sinking.any())
 
 
 def is_inside_between(
