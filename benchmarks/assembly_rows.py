@@ -6,6 +6,7 @@ for instead, which has a form for lanes: it costs more, and what it costs more i
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 from unittest.mock import patch
@@ -15,23 +16,31 @@ from doc_tables import put, table
 from row_cost import microseconds
 
 from cosserat_casadi import Model, build, read_scene
-from cosserat_casadi.codegen import lanes, rows
+from cosserat_casadi.codegen import assembled, lanes, rows
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
 
 PAGE = Path("docs/sweeps.md")
 BEGIN, END = "<!-- assemblies: written by benchmarks/assembly_rows.py -->", "<!-- end of assemblies -->"
 
 COARSE = ("accuracy.modes=3", "accuracy.nodes=6")
-SCENES = (("branching_rod", COARSE),)
+SCENES = (("branching_rod", COARSE), ("shaken_platform", COARSE))
 
 
 def as_a_whole(model: Model, *, side_by_side: bool) -> RowLibrary:
     """Rows of an assembly whose Jacobian is eliminated as that of one rod."""
 
-    def not_assembled(*_: object) -> None:
+    def no_blocks(*_: object) -> None:
         """No form rod by rod."""
 
-    with patch.object(lanes, "assembled", not_assembled), patch.object(rows, "assembled", not_assembled):
+    def not_kept(name: str, made_from: object, texts: Callable[[], dict[str, str]]) -> dict[str, str]:
+        """Texts printed anew: those in the cache are of blocks."""
+        return texts()
+
+    with (
+        patch.object(lanes, "blocks", no_blocks),
+        patch.object(assembled, "blocks", no_blocks),
+        patch.object(rows, "kept_texts", not_kept),
+    ):
         return row_library(model, lanes=side_by_side)
 
 
