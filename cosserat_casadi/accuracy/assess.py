@@ -1,4 +1,4 @@
-"""What a solution on a uniform discretisation lacks to be a reference solution.
+"""Faults that keep a solution on a uniform discretisation from being a reference solution.
 
 The verdicts, in the order in which they are looked for; each has its step in ``refine``:
 
@@ -85,7 +85,7 @@ Verdict = Enough | NeedsModes | NeedsNodes | NeedsFinerGrid | NoEquilibrium
 
 
 def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict:
-    """What a solution lacks to be a reference for a tolerance.
+    """Faults that keep a solution from being a reference for a tolerance.
 
     Args:
         solution: on the same modes for every component, and the same intervals for every element.

@@ -44,7 +44,7 @@ class Choice(Shown):
     Attributes:
         scene: the scene with this discretisation fixed, and the ranges that it was chosen for.
         model: of that scene.
-        ranges: what it was chosen for, entry by entry.
+        ranges: ranges of the inputs and parameters that it was chosen for, entry by entry.
         solves: points of the ranges, or load cases, that were solved on it, or on fewer modes if these already left an
             error well within the tolerance.
         error_estimate: the largest of their estimates; None where none has an equilibrium.
@@ -68,7 +68,7 @@ class Choice(Shown):
 
     @property
     def verified(self) -> Verified:
-        """What a folder says of it."""
+        """Ranges, solves and errors as an exported folder tells them."""
         return Verified(
             self.ranges.described,
             self.solves,

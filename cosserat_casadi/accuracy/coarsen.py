@@ -66,7 +66,7 @@ ROUNDING = 1e-9
 
 
 def alike_rods(model: Model) -> list[tuple[str, ...]]:
-    """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
+    """Rods that are discretised alike: in an assembly all that admit the same strains, else each for itself."""
     discrete = model.discrete
     if not discrete.is_assembly:
         return [(name,) for name in discrete.rods]
@@ -84,7 +84,7 @@ class Coarsening:
     """One search below a reference solution.
 
     Attributes:
-        preview: the reference, and what it foresees.
+        preview: the reference, and the changes that it foresees.
         bound: largest change of a tip pose: distance over length, angle in rad.
         wave_modes: modes that waves along a rod ask for, 0 where there are none: on fewer intervals a wave passes for
             a longer one, and the residual there is too far off to be foreseen.
@@ -143,7 +143,7 @@ class Coarsening:
         return best
 
     def _starting_modes(self, modes: Modes, grid_shift: FloatArray) -> list[Modes]:
-        """Modes to drop more from: those given, and all that are left below lower ceilings within the bound.
+        """Modes to drop more from: the argument, and all that are left below lower ceilings within the bound.
 
         Changes of the components may make up for each other: fewer modes everywhere may do where one less does not.
         """
@@ -376,7 +376,7 @@ class _GridSearch:
         return self.coarsening.preview.with_modes(self.modes)
 
     def _affordable(self, transport: str, time: float, most: int) -> int:
-        """Most intervals with which an integrator is cheaper than what is known."""
+        """Most intervals with which an integrator is cheaper than the best one so far."""
         while most >= FEWEST and self._time(transport, most) >= time:
             most -= 1
         return most

@@ -194,7 +194,7 @@ class CommonModes:
         return self.cases[number].scene.accuracy.tolerance
 
     def _enough(self, answers: Answers, number: int) -> Chosen:
-        """What a case needs that is beyond its tolerance."""
+        """The discretisation that a case needs whose error exceeds its tolerance."""
         solution = answers.solutions[number]
         if solution.model.scene.touches_exactly:
             # Its elements end at contacts: what it lacks is not what the free rod lacks.
@@ -251,7 +251,7 @@ class CommonModes:
         return replace(solution, error_estimate=watched_error(solution))
 
     def _first(self) -> Chosen:
-        """What the first case needs."""
+        """The discretisation that the first case needs."""
         case = self.cases[0]
         scene = case.scene
         if case.parameters:
@@ -271,7 +271,7 @@ class CommonModes:
         return [number for number in failed if self._answer(answers, number).converged]
 
     def _lost(self, chosen: Chosen) -> bool:
-        """Whether a case without an equilibrium has one on more modes; what has none there either is given up."""
+        """Whether a case without an equilibrium has one on more modes; one that has none there either is given up."""
         richer = Answers(with_more_modes(with_more_modes(chosen)))
         lost = []
         for number in sorted(self._failed):

@@ -1,11 +1,11 @@
-"""What residual and Jacobian of a rod cost, foreseen without building them.
+"""Time of residual and Jacobian of a rod, foreseen without building them.
 
 Counting the operations of a model takes longer than solving it, compiling it far longer. The laws of operations follow
 the products that the Jacobian is made of (rod/tangent.py). Length and time of the C, whose columns are computed four at
 a time (codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of
 the Jacobian. The code of columns is there once and runs for each group of four. benchmarks/compiled_cost.py fits the
 factors to compiled rods of every strain model, section and load, and tells how far they are off. Those of loops are
-fitted to the rods of benchmarks/code_limit.py, which prints what they foresee.
+fitted to the rods of benchmarks/code_limit.py, which prints their foreseen times.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ Of each interval for each axis that it turns about, each operation for sums and 
 
 @dataclass(frozen=True)
 class Spread:
-    """What of the loads spread along a rod makes its Jacobian costlier; dead forces do not.
+    """Loads spread along a rod that make its Jacobian costlier; dead forces do not.
 
     Attributes:
         follower: a force per length turns with the sections.
@@ -124,7 +124,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Operations:
-    """Scalar operations of residual and Jacobian, by what they belong to.
+    """Scalar operations of residual and Jacobian, by the quantity that they grow with.
 
     Attributes:
         intervals: functions of the intervals.
@@ -146,14 +146,14 @@ class Operations:
 
 @dataclass(frozen=True)
 class Terms:
-    """What the laws of C with columns in fours are affine in.
+    """Terms in which the laws of C with columns in fours are affine.
 
     Attributes:
         method: of the rotations, or :data:`PLANAR`.
         groups: groups of four columns.
         intervals: intervals, each as often as it has axes to turn about.
         turns: products of one column with the constant matrix of turns.
-        integrals: those with the constant matrix of integration, which forces per length that follow take.
+        integrals: products of one column with the constant matrix of integration, for forces per length that follow.
         entries: entries of the Jacobian.
         operations: of the Jacobian, among them those for loads along the rod.
     """
@@ -168,7 +168,7 @@ class Terms:
 
 
 def spread_on(scene: scenes.Scene, rod: str) -> Spread:
-    """What the scene spreads along a rod."""
+    """The loads that the scene spreads along a rod."""
     follower = False
     couple = False
     for load in scene.loads:
@@ -222,7 +222,7 @@ def foreseen_operations(
 
 
 def terms_of(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> Terms:
-    """What the laws of C with columns in fours are affine in, of one rod.
+    """Terms of one rod in which the laws of C with columns in fours are affine.
 
     Args:
         rod: what the rod is made of.
@@ -279,7 +279,7 @@ def foreseen_time(
 
 
 def _affine(law: AffineLaw, terms: Terms, groups: int) -> float:
-    """What a law says of code whose columns run for so many groups."""
+    """Value of a law for code whose columns run for so many groups."""
     once = law.of_intervals[terms.method] * terms.intervals + law.entries * terms.entries
     of_group = law.in_columns * terms.intervals + law.turns * terms.turns + law.integrals * terms.integrals
     return law.constant + once + groups * of_group
@@ -291,7 +291,7 @@ def _method(rod: RodProperties, chosen: Discretisation) -> str:
 
 
 def _coordinates(rod: RodProperties, chosen: Discretisation) -> tuple[float, float]:
-    """Coordinates of a rod that turn sections, and those that stretch or shear."""
+    """Coordinates of a rod that turn sections, and coordinates that stretch or shear."""
     turning = 0
     stretching = 0
     for modes, component in zip(chosen.modes, rod.admitted, strict=True):

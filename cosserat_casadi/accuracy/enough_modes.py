@@ -38,7 +38,7 @@ The nearer an answer is, the better is known which modes it lacks, and the more 
 """
 
 MOST_GROWTH = 1.5
-"""Factor by which intervals grow at most in one step, beyond one more: what they are foreseen from is rough."""
+"""Factor by which intervals grow at most in one step, beyond one more: the errors that foresee them are rough."""
 
 NEXT_ORDER = {"magnus4": "magnus6"}
 """Rotation integrator that takes over where many more intervals would be needed."""
@@ -69,7 +69,7 @@ def with_more_modes(chosen: Chosen) -> Chosen:
 
 @dataclass(frozen=True)
 class _Lack:
-    """What an answer lacks.
+    """Modes and intervals that an answer lacks.
 
     Attributes:
         solution: the answer.
@@ -118,7 +118,7 @@ class _Lack:
         return trials
 
     def _left_by(self, chosen: Chosen) -> FloatArray:
-        """The missing coordinates, those that a discretisation has set to zero, shape (missing,)."""
+        """The missing coordinates, which a discretisation has set to zero, shape (missing,)."""
         richer = self.solution.model.discrete.richer
         has = np.zeros(richer.discrete.size, dtype=bool)
         for name, rod in richer.discrete.rods.items():
@@ -128,7 +128,7 @@ class _Lack:
         return np.where(has[~richer.known], 0.0, self.missing)
 
     def _change(self, missing: FloatArray) -> float:
-        """Change of what is watched by missing modes, which the unknowns of the answer follow, and by a finer grid."""
+        """Change of the watched poses by a finer grid and by missing modes, which the unknowns of the answer follow."""
         none = np.zeros(self.solution.model.size)
         balance = richer_balance(self.solution, none, missing)
         return change_with_following(self.solution, balance, -self._inverse @ balance.residual)

@@ -44,7 +44,7 @@ SHORT = 0.25
 """Length of an element over that of its rod, up to which it is short: it sees less of a rod, and needs fewer modes."""
 
 SPARE_NODES = 2
-"""Intervals of a verified level beyond those that the modes and the turn of a rod need."""
+"""Intervals of a verified level beyond the number that the modes and the turn of a rod need."""
 
 
 def nodes_for_turn(modes: int, turn: float) -> int:
@@ -71,7 +71,7 @@ def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int,
 
 
 def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...]) -> tuple[int, ...]:
-    """Modes of levels that are verified by the next one, two at least: none is blind to what is put along the rods.
+    """Modes of levels that are verified by the next one, two at least: none is blind to loads along the rods.
 
     Args:
         scene: the scene.
@@ -101,7 +101,7 @@ def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
 
 @dataclass(frozen=True)
 class Level:
-    """A level on the way to a reference solution, with what is known of the grid by then.
+    """A level on the way to a reference solution, with the error of the grid known by then.
 
     Attributes:
         index: into REFERENCE_MODES.

@@ -1,4 +1,4 @@
-"""What polynomials cannot see: the balance of stress at the nodes, where the equations only balance its moments.
+"""The residual that polynomials cannot see: the balance of stress at nodes, where equations only balance its moments.
 
 Loads of fixed direction go round in the frame of a section that turns: over an element that turns by T the strain may
 oscillate with T/(2π) waves. Legendre coefficients of such a wave are nil up to a degree of about T/2, so with fewer

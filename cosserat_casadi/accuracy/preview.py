@@ -3,10 +3,10 @@
 A fine solution, the reference, knows the equilibrium, its Jacobian, and by the order of its polynomials every coarser
 set of modes: dropping a mode is dropping a row and a column. So the equilibrium with fewer modes is a few corrections
 in a subspace, and that on another grid is one correction with the residual of that grid. Both are solutions to within
-the square of what is neglected, so the superconvergence of the tip is in them: an error estimated from the tail of
+the square of the neglected terms, so the superconvergence of the tip is in them: an error estimated from the tail of
 the strain alone would be far too large.
 
-What is compared is what a tolerance binds: model/watched.py.
+Poses and cables that a tolerance binds are compared: model/watched.py.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class FinerShift:
     """Changes by modes that a reference lacks, as in :mod:`cosserat_casadi.maths.pose_change`.
 
     Attributes:
-        tips: of what is watched, shape (2k + c, 3).
+        tips: motions of the watched poses and cables, shape (2k + c, 3).
         shapes: of sections all along the rods, those between the nodes of the reference included, shape (2s, 3).
     """
 
@@ -82,12 +82,12 @@ class Preview:
 
     @cached_property
     def tips(self) -> WatchedNumbers:
-        """What is watched of the reference."""
+        """The watched poses and cables of the reference."""
         return self._tips(self.reference.x)
 
     @property
     def no_shift(self) -> FloatArray:
-        """The change of what is watched where nothing moves."""
+        """The change of the watched numbers where nothing moves."""
         return self.tips.change_from(self.tips)
 
     def kept(self, modes: Modes) -> Mask:
@@ -125,7 +125,7 @@ class Preview:
         return x
 
     def mode_shift(self, modes: Modes) -> FloatArray:
-        """Change of what is watched by having fewer modes, shape (2k + c, 3); infinite where these cannot move."""
+        """Change of the watched numbers by having fewer modes, shape (2k + c, 3); infinite where these cannot move."""
         key = tuple(modes.items())
         if key not in self._shifts and self._locks(self.kept(modes)):
             self._shifts[key] = np.full_like(self.no_shift, np.inf)
@@ -139,7 +139,7 @@ class Preview:
         return self._shifts[key]
 
     def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:
-        """Change of what is watched from the reference's grid to others, shape (2k + c, 3).
+        """Change of the watched numbers from the reference's grid to others, shape (2k + c, 3).
 
         Args:
             x: equilibrium with the given modes on the reference's grid, from :meth:`with_modes`.
@@ -224,7 +224,7 @@ class Preview:
         return self._motions(-_inverse(self._regular_jacobian) @ self._pushes)
 
     def _motions(self, steps: FloatArray) -> FloatArray:
-        """Motions of what is watched by steps of the unknowns, shape (n, k), one a column."""
+        """Motions of the watched poses and cables by steps of the unknowns, shape (n, k), one a column."""
         return np.array([motion(self.model, self.reference.x, self._inputs, step) for step in steps.T])
 
     @property
@@ -247,7 +247,7 @@ class Preview:
         return System(discrete, arguments)
 
     def _tips(self, x: FloatArray) -> WatchedNumbers:
-        """What is watched, on the reference's grid, by the model's functions."""
+        """The watched numbers, on the reference's grid, by the model's functions."""
         poses = _column(self.model.watched(x, self._inputs))
         return WatchedNumbers.of_column(poses, len(watched_cables(self.model.discrete)))
 
@@ -275,7 +275,7 @@ def _shapes_of(system: System) -> WatchedNumbers:
 
 
 def _tips_of(system: System) -> WatchedNumbers:
-    """What is watched of a system that has numbers for its arguments."""
+    """The watched numbers of a system that has numbers for its arguments."""
     return WatchedNumbers.of_column(_column(watched(system).column), len(watched_cables(system.discrete)))
 
 

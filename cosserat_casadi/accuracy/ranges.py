@@ -133,7 +133,7 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
         given: pairs of lower and upper end that are asked for.
 
     Raises:
-        SceneError: with every fault: a range of what is no input, whose ends are equal, reversed or not finite, or a
+        SceneError: with every fault: a range of an unknown input, ends that are equal, reversed or not finite, or a
             wrong number of pairs.
     """
     layout = case_layout(scene)
@@ -155,7 +155,7 @@ def input_ranges(scene: scenes.Scene, given: Given | None = None) -> CaseRanges:
 
 
 def ranges_of_cases(layout: CaseLayout, rows: FloatArray) -> CaseRanges:
-    """What load cases, shape (count, size of a case), range over."""
+    """Ranges that load cases, shape (count, size of a case), span."""
     return CaseRanges(layout, rows.min(axis=0), rows.max(axis=0), (Origin.ASKED,) * rows.shape[1])
 
 
@@ -198,7 +198,7 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
 
 
 def _faults_of_ends(where: str, name: str, pairs: FloatArray) -> Iterator[Problem]:
-    """What is wrong with pairs of ends, shape (k, 2)."""
+    """Faults of pairs of ends, shape (k, 2)."""
     for low, high in pairs.tolist():
         if not (np.isfinite(low) and np.isfinite(high)):
             yield Problem(where, f"the range of {name} must have two finite ends, got {low:g}:{high:g}")
@@ -216,7 +216,7 @@ def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:
 
 
 def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> Entries:
-    """Ranges of entries by what they do to the unloaded scene, within what the scene bounds on one side."""
+    """Ranges of entries by their effect on the unloaded scene, within what the scene bounds on one side."""
     if not entries:
         return {}
     bare = without_contacts(scene.baked())
@@ -297,7 +297,7 @@ def _turn(rod: DiscreteRod, strains: FloatArray) -> float:
 
 
 def _bending_size(model: Model, entry: Input) -> float:
-    """What bends the softest rod by about a radian at its tip, in the unit of an input that the response does not show.
+    """Load that bends the softest rod by a radian at its tip, in the unit of an input that the response does not show.
 
     In closed loops no load has a response in the unloaded scene: their joints close along the load path.
     """

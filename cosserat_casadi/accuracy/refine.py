@@ -8,7 +8,7 @@ may be off, is the estimate of its error.
 A rod that is held at both ends has several equilibria near each other. Which of them is found must not hang on the
 discretisation: it is decided on levels that are the same for every tolerance, and for modes that the user fixes.
 
-The choice is made at the inputs of the scene, or those given: a component that they do not excite keeps one mode. Who
+The choice is made at the inputs of the scene, or of the call: a component that they do not excite keeps one mode. Who
 changes the inputs afterwards, to load the rod harder or in another direction, fixes modes and nodes or chooses at the
 inputs that excite most.
 """
@@ -280,10 +280,10 @@ def _refined(
     The estimate of an UNRESOLVED one is its distance to the finest that has fewer modes.
 
     Args:
-        solver: what is solved.
+        solver: of the scene.
         first: the level to begin with.
         tolerance: wanted error.
-        on_first: what is known of that level, as the reference for a larger tolerance.
+        on_first: verdict on that level, as the reference for a larger tolerance.
     """
     level: Level | None = first
     coarser: Solution | None = None

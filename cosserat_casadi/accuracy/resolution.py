@@ -7,7 +7,7 @@ leave, a careful one where errors fall faster than that. Its grid: one look at a
 Not all errors fall so regularly. Waves along a rod do not show in its last coefficients. The error of a rod with
 supports falls in uneven steps: where the last two modes happen to do little, both the change that they make and its
 ratio to the one before are small, and their product says far too little; that of a free rod under strong loads may do
-so too. And tips are superconvergent: what they do tells nothing of the sections between, which are farther off. So a
+so too. And tips are superconvergent: their change tells nothing of the sections between, which are farther off. So a
 look is taken at modes that the solution lacks, and at how both move by them.
 """
 
@@ -122,7 +122,7 @@ class Resolution:
 
     @cached_property
     def tip_error(self) -> float:
-        """Error of what is watched."""
+        """Error of the watched poses and cables."""
         return self.modes_error + self.grid_error
 
     @cached_property
@@ -152,7 +152,7 @@ class Resolution:
 
     @cached_property
     def _look(self) -> FinerShift:
-        """What modes that the solution lacks would change."""
+        """Change by modes that the solution lacks."""
         finer = {}
         for name, discretisation in self.preview.model.discretisation.items():
             finer[name] = self._looked_at(discretisation)

@@ -53,7 +53,7 @@ class SceneSolver:
         values: inputs by name.
         stable: whether a stable equilibrium is wanted of a free rod too.
         progress: told the share of the load path that is done.
-        report: told what is being tried.
+        report: told each attempt.
         relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
         vain_descents: number of discretisations on which descent was tried in vain.
         taut: whether the last solve ended early at rods that cannot extend, held straight: no modes help there.
@@ -149,7 +149,7 @@ class SceneSolver:
     def relax(self, solution: Solution) -> Solution:
         """A stable solution where one is wanted and can be found, else the same.
 
-        A held rod is always wanted stable: what leads to its supports are springs of our own, not loads of the scene.
+        A held rod is always wanted stable: springs of the solver, not loads of the scene, lead to its supports.
         """
         wanted_stable = self.stable or bool(self.scene.supports)
         if not wanted_stable or solution.stable or self.vain_descents == MOST_VAIN_DESCENTS:

@@ -1,4 +1,4 @@
-"""What was verified of a discretisation, as exported folders tell it."""
+"""The verified ranges and errors of a discretisation, as exported folders tell them."""
 
 from __future__ import annotations
 

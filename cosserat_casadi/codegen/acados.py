@@ -100,7 +100,7 @@ def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool
 
 
 def acados_functions(model: Model | RelaxedContact, name: str, *, moving: bool = False) -> list[ca.Function]:
-    """What acados' integrator IRK evaluates: the DAE and its Jacobians, with the model's own.
+    """Functions that acados' integrator IRK evaluates, the DAE and its Jacobians, beside the functions of the model.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
@@ -230,7 +230,7 @@ def _dae_in_motion(model: Model, name: str) -> Dae:
 
 
 def _kind(equations: ca.Function) -> type[ca.SX] | type[ca.MX]:
-    """Scalars, or matrices of equations that leave out what they do not need, as rods that are apart."""
+    """Scalars; matrices for equations that leave out terms which they do not need, as of rods that are apart."""
     return ca.MX if chooses(equations) else ca.SX
 
 

@@ -18,7 +18,7 @@ from cosserat_casadi.model.build import Model
 
 @dataclass(frozen=True)
 class Assembled:
-    """What the solver of an assembly is made of.
+    """Parts of the solver of an assembly.
 
     Attributes:
         blocks: of the Jacobian.

@@ -20,7 +20,7 @@ MEMBERS = """  {real} entries[{entries}];
   {real} front_values[{front_count}][{max_order}];
   {real} interface_values[{interface}];
 """
-"""What the block elimination works in, as members of the workspace."""
+"""Arrays that the block elimination works in, as members of the workspace."""
 
 
 def dense_words(basics: Words) -> Words:

@@ -1,8 +1,8 @@
 """How the Jacobian of an assembly falls into blocks, one for each rod, with moving frames as their interface.
 
-A rod's strains, the multipliers of what holds it and the tensions in it meet the other rods through moving frames
-alone. So each block is eliminated on its own, with its rows and columns of the interface, and what is left of the
-interface is eliminated last: the work is linear in the number of rods. A front is a block with the interface unknowns
+A rod's strains, the multipliers of its supports and the tensions in it meet the other rods through moving frames
+alone. So each block is eliminated by itself, with its rows and columns of the interface, and the rest of the interface
+is eliminated last: the work is linear in the number of rods. A front is a block with the interface unknowns
 that it touches.
 """
 

@@ -56,7 +56,7 @@ TEXTS = ".texts"
 """Ends of the names of libraries and of texts."""
 
 OURS = re.compile(rf"\w+-[0-9a-f]{{20}}(-[0-9a-f]{{20}})?(\{LIBRARY}|\{TEXTS})")
-"""What these files are called; libraries of earlier versions had no hash of their content.
+"""Names of these files; libraries of earlier versions had no hash of their content.
 
 Whatever else lies in the folder is not ours to remove."""
 
@@ -107,7 +107,7 @@ def kept_file(folder: Path, stem: str, ending: str = LIBRARY) -> Path | None:
         ending: of its name.
 
     Returns:
-        None where there is none.
+        The file; None if the folder has no such file.
     """
     for file in sorted(folder.glob(f"{stem}-*{ending}")):
         try:
@@ -166,7 +166,7 @@ def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterab
         compiler: words of its command. Programs among them are told by their files, since asking a compiler for its
             version would mean to run it.
         flags: its flags.
-        contents: of the sources and of what they include, each as in its file.
+        contents: of the sources and of the files that they include, each as in its file.
     """
     programs = [_program_facts(word) for word in compiler]
     # The folder may lie in a home that machines of several kinds share.

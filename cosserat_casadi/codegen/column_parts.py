@@ -48,7 +48,7 @@ class _Piece:
 
     @property
     def key(self) -> Hashable:
-        """What pieces share that compute alike: values, and entries that are read of columns and turns."""
+        """Key that pieces which compute alike share: values, and entries that are read of columns and turns."""
         if self.column is None:
             return self.stream.key
         return self.stream.key, tuple(self.stream.reads[COLUMNS]), tuple(self.stream.reads[TURNS])
@@ -123,7 +123,7 @@ def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> Parted:
 
 
 def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_constant: bool) -> ColumnForm:
-    """A shared function, which takes only what it reads of columns and turns, as a form with all of both."""
+    """A shared function, which takes only the columns and turns that it reads, as a form with all of both."""
     symbols = kernel.sx_in()
     own_constants = symbols[CONSTANTS]
     constants = own_constants

@@ -3,11 +3,11 @@
 Column j of the variation of a field follows from the turns of the intervals with the j-th angular coordinate, and from
 nothing else that has a number j (rod/tangent.py). So the Jacobian falls into three parts:
 
-    what has no columns   functions of x, inputs and load factor, or of what else there is given
-    columns               functions of those and of a column of turns, which is constant
-    what remains          the Jacobian from its columns
+    no columns            functions of x, inputs and load factor, or of other arguments
+    columns               functions of the same and of a column of turns, which is constant
+    the rest              the Jacobian from its columns
 
-Parameters stand behind the inputs, as in all that the solver in C is given.
+Parameters stand behind the inputs, as in every vector of inputs of the solver in C.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class RodColumns:
 
     @property
     def stride(self) -> int:
-        """Columns with those that fill the last group of LANES."""
+        """Columns, rounded up to whole groups of LANES."""
         return -(-self.pattern.size2() // LANES) * LANES
 
     @property
@@ -227,7 +227,7 @@ class ColumnedJacobian:
 
 @dataclass(frozen=True)
 class ColumnPart:
-    """Entries of a Jacobian, and one column of those that they follow from, as scalar expressions.
+    """Entries of a Jacobian, and one of the columns that they follow from, as scalar expressions.
 
     Attributes:
         given: names of the arguments.

@@ -40,15 +40,15 @@ OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner 
 class Compiled(CompiledMotion):
     """An exported folder as compiled functions.
 
-    Methods take inputs by name, those not named keeping the scene's values, or all of them stacked; and so
-    parameters, where the scene names some; without either they are the scene's own. They raise a ValueError for an
+    Methods take inputs by name, or all of them stacked; inputs that are not named keep the scene's values. So do
+    parameters, where the scene names some. They raise a ValueError for an
     argument of the wrong size, and a SceneError for names or values that are not those of the scene. Functions take
     both stacked, parameters behind the inputs, as those of a model do.
 
     Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
     ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
-    it has in C. A pose is (position, quaternion). Those with the key ``external`` in the manifest have derivatives as
-    :attr:`residual`, the others none.
+    it has in C. A pose is (position, quaternion). Functions with the key ``external`` in the manifest have derivatives
+    as :attr:`residual`, the others none.
 
     Attributes:
         library: the shared object.

@@ -71,7 +71,7 @@ class StepSensitivity:
         by_inputs: by the inputs at the start, shape (2 size, inputs).
         by_inputs_rate: by their rates at the start, shape (2 size, inputs).
         by_inputs_acceleration: by their accelerations in the step, shape (2 size, inputs).
-        by_parameters: by the parameters, which stay what they are, shape (2 size, parameters).
+        by_parameters: by the parameters, which do not change, shape (2 size, parameters).
     """
 
     by_start: FloatArray
@@ -121,7 +121,7 @@ class StepOptions:
 
 @dataclass(frozen=True)
 class StepMemory:
-    """What steps of one motion keep and work in; its attributes are for the functions in C alone.
+    """Memory that steps of one motion keep and work in; its attributes are for the functions in C alone.
 
     Attributes:
         kept: from one step to the next.
@@ -145,7 +145,7 @@ def _memory_of(kept: bytes, workspace_size: int) -> StepMemory:
 
 @dataclass(frozen=True)
 class _Given:
-    """What a step is given: inputs at its start, their rates and accelerations, parameters."""
+    """Arguments of a step: inputs at its start, their rates and accelerations, parameters."""
 
     inputs: ArgumentValues
     inputs_rate: npt.ArrayLike | None
@@ -202,7 +202,7 @@ class _StepCall:
 
 
 class CompiledMotion(LoadedLibrary):
-    """What a folder that was exported with ``dynamics=True`` offers beyond statics.
+    """Functions that a folder exported with ``dynamics=True`` offers beyond statics.
 
     Parameters are given by name or stacked; the scene's own are the default. They may change from one step to the next.
     Its members raise an AttributeError where the folder was exported without.
@@ -214,7 +214,7 @@ class CompiledMotion(LoadedLibrary):
         """Number of unknowns."""
 
     def step_memory(self) -> StepMemory:
-        """What steps keep from one to the next, and work in: one for each motion, new for a new one."""
+        """Memory that steps keep from one to the next, and work in: one for each motion, new for a new one."""
         return StepMemory(room(self._motion_function("step_memory_size")()), self._workspace())
 
     def rest(

@@ -1,4 +1,4 @@
-"""What a compiled library answers with: solutions, their derivatives, their stability."""
+"""Answers of a compiled library: solutions, their derivatives, their stability."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class AnswerInfo(ctypes.Structure):
 
 
 def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    """What :class:`CompiledSolution` takes from the struct.
+    """Words that :class:`CompiledSolution` takes from the struct.
 
     Args:
         info: the struct.
@@ -62,13 +62,13 @@ VERDICTS = ("stable", "neutral", "critical", "unstable")
 
 @dataclass(frozen=True)
 class CompiledStability:
-    """What the library says of an equilibrium.
+    """Verdict of the library on the stability of an equilibrium.
 
     Attributes:
         smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ of the scene's
             own numbers, whatever the parameters are.
         negative: number of eigenvalues below zero.
-        zero: number of those that are zero to rounding.
+        zero: number of eigenvalues that are zero to rounding.
         verdict: ``stable``; ``neutral``, where some variations lead through equilibria alike at no cost; ``critical``,
             where they lead to none; ``unstable``.
     """
@@ -147,7 +147,7 @@ class CompiledAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class CompiledSolution(CompiledAnswer):
-    """What the solver in C found.
+    """A solution of the solver in C.
 
     Attributes:
         inputs: that it is of, shape (m,).

@@ -1,4 +1,4 @@
-"""Sources in C into one shared object, compiled once: the compiler, and the folder that keeps what it made."""
+"""Sources in C into one shared object, compiled once: the compiler, and the folder that keeps the objects."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ LOG = logging.getLogger(__name__)
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 EXPORT_ANEW = "export the folder anew"
-"""What helps where files of a folder are missing, of another version, or do not belong together."""
+"""Remedy where files of a folder are missing, of another version, or do not belong together."""
 
 FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
 
@@ -67,7 +67,7 @@ def shared_object(
         sources: files to compile.
         headers: files beside them that they include.
         compiler: command of a C compiler, of :func:`find_compiler`.
-        progress: told what is compiled, how many files are, and of how many.
+        progress: told the file that is compiled, the number of compiled files, and of all.
         flags: of the compiler, :data:`FLAGS` by default.
         origin: key of all that the sources were written from, by which the cache tells the library; by default the
             sources do.
@@ -233,7 +233,7 @@ def _run(processes: Processes, command: list[str], made: Path, of: Path) -> None
         processes: among which it runs.
         command: its words.
         made: file that it has to write.
-        of: what it is compiled from, for the sentence.
+        of: the sources that it is compiled from, for the sentence.
 
     Raises:
         ExportError: it cannot be run, does not end, fails, or writes nothing.
@@ -297,7 +297,7 @@ class Processes:
             folder: in which it runs; None for the present one.
 
         Returns:
-            its exit code and what it wrote to standard error.
+            its exit code and its text on standard error.
 
         Raises:
             OSError: it cannot be run.
@@ -345,7 +345,7 @@ class Processes:
 
 
 def _stop(process: subprocess.Popen[str]) -> None:
-    """Stop a program, and what it has started, unless it has ended."""
+    """Stop a program and its children, unless it has ended."""
     if process.poll() is not None:
         return
     with suppress(ProcessLookupError, PermissionError):

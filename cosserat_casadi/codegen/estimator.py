@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
 NAME = "estimate"
-"""What every symbol of these libraries begins with."""
+"""Beginning of every symbol of these libraries."""
 
 ENDINGS = ("found", "no_equilibrium", "singular", "not_found")
 """How the search for a row can end, in the order of the numbers in C."""
@@ -155,7 +155,7 @@ class EstimatorLibrary:
     size: int
 
     def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
-        """What explains the cases best; other threads run meanwhile.
+        """The estimates that explain the cases best; other threads run meanwhile.
 
         Raises:
             ExportError: there is no C compiler, or it fails.

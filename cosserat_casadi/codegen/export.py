@@ -235,7 +235,7 @@ def check_batches(model: Model) -> None:
 
 
 def _side_by_side(model: Model, names: Names) -> InLanes:
-    """What solves load cases side by side.
+    """Sources that solve load cases side by side.
 
     Raises:
         ExportError: the equations have no form for that, those of an assembly or of one rod with too many modes.

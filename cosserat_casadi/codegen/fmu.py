@@ -52,7 +52,7 @@ ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
 """Names of machines that the standard spells in another way."""
 
 SUFFIXES = {"linux": ".so", "darwin": ".dylib", "windows": ".dll"}
-"""What libraries end in."""
+"""Endings of the names of libraries."""
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """Time of every file in the archive: the same scene gives the same bytes."""
@@ -95,7 +95,7 @@ def write_fmu(
         error_estimate: as for :func:`cosserat_casadi.export`.
         verified: as for :func:`cosserat_casadi.export`.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
-        progress: told what is compiled, how many files are, and of how many.
+        progress: told the file that is compiled, the number of compiled files, and of all.
 
     Raises:
         ExportError: the file, the name or a motion of this scene is refused, there is no compiler, or it fails; nothing
@@ -132,7 +132,7 @@ def write_fmu(
 
 
 def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float) -> dict[str, str]:
-    """What an FMU has besides the library: its interface, and the kernels of its outputs."""
+    """Sources of an FMU besides the library: its interface, and the kernels of its outputs."""
     functions = [
         kernel(model, outputs.function, names.kernel("motion_outputs")),
         kernel(model, outputs.jacobian, names.kernel("motion_outputs_jacobian")),
@@ -183,7 +183,7 @@ def _starts_unloaded(model: Model) -> bool:
 
 
 def _token(sources: Mapping[str, str]) -> str:
-    """What tells that a description belongs to a library: a hash of all sources."""
+    """Token by which a description belongs to a library: a hash of all sources."""
     digest = hashlib.sha256()
     for file in sorted(sources):
         digest.update(f"{file}\0{sources[file]}\0".encode())

@@ -15,7 +15,7 @@ STEP_NAME = "step"
 """Name of the parameter that is the step of the integrator."""
 
 COURSE = " Set for the end of a communication step; moves there in it, with a rate that does not jump."
-"""What the description of a base or a length says of its values."""
+"""Sentence of the description of a base or a length on its values."""
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ def write_folder(directory: Path, files: Mapping[str, str], stale: set[str]) -> 
     Args:
         directory: the folder; made if it does not exist.
         files: text by name.
-        stale: files of an earlier export; those that are not written again are removed.
+        stale: files of an earlier export, which are removed unless they are written again.
     """
     made = not directory.exists()
     before = {name: (directory / name).read_bytes() for name in stale}

@@ -78,7 +78,7 @@ class FunctionInC:
 
     @cached_property
     def function(self) -> ca.Function:
-        """What it computes, with the outputs that it has in C; to the solver parameters are further inputs."""
+        """The CasADi function with the outputs that it has in C; to the solver parameters are further inputs."""
         if self.spec.kernel and not self.spec.public:
             return solver_function(self.model, self.spec)
         return self.spec.function_in_c(self.model, self.owner or "")
@@ -102,7 +102,7 @@ class FunctionInC:
 
     @property
     def description(self) -> str:
-        """What it is, what it takes beyond unknowns and inputs, and what it gives, with sizes and units."""
+        """Sentence on the function, its arguments beyond unknowns and inputs, and its results, with sizes and units."""
         sentence = self.spec.header.format(owner=self.owner)
         results = ", ".join(self._described(i, output) for i, output in enumerate(self.outputs))
         given = ", ".join(self._given())
@@ -186,12 +186,12 @@ def _functions(model: Model, names: Names, specs: Sequence[FunctionSpec]) -> lis
 
 
 def _exists(model: Model, spec: FunctionSpec) -> bool:
-    """Whether the scene has this function; what rods, actuators and bodies own, they all have."""
+    """Whether the scene has this function; every rod, actuator and body has the functions of its kind."""
     return spec.owner is not Owner.SCENE or spec.function_of(model) is not None
 
 
 def _word(argument: str) -> str:
-    """What an argument is called in C."""
+    """Name of an argument in C."""
     return WORDS_IN_C.get(argument, argument)
 
 

@@ -42,7 +42,7 @@ class ListedValues(StackedLayout[ListedValue]):
 
     @cached_property
     def _scene_values(self) -> FloatArray:
-        """The scene's own, shape (size,)."""
+        """Values of the scene, shape (size,)."""
         values = self.pack()
         # Solutions keep what they were found for: nobody may change it under them.
         values.setflags(write=False)
@@ -75,7 +75,7 @@ class ListedInputs(ListedValues):
 
         Raises:
             SceneError: a name is unknown, or its value has another size or is not finite.
-            ValueError: there are too few or too many numbers; those that are not finite are the solver's to judge.
+            ValueError: there are too few or too many numbers; the solver judges numbers that are not finite.
         """
         if values is None:
             return self._scene_values

@@ -122,7 +122,7 @@ ROLES = {
     "manifest.json": "the same facts as data",
     "scene.toml": "the scene all of this was made from, with its modes and nodes",
 }
-"""What each file is for."""
+"""Purpose of each file."""
 
 
 @dataclass(frozen=True)
@@ -337,7 +337,7 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
 
 
 def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any]:
-    """What the templates say of the limits of the solver.
+    """Words of the templates on the limits of the solver.
 
     Args:
         limits: of a continuation.
@@ -368,12 +368,12 @@ def solver_constants(limits: ContinuationSettings, near: float) -> dict[str, Any
 
 
 def input_words(model: Model | TubeFunctions, names: Names, ranges: str = RANGES_OF_RODS) -> dict[str, Any]:
-    """What the templates say of the inputs of a model: macros, struct, ranges, table, default values.
+    """Words of the templates on the inputs of a model: macros, struct, ranges, table, default values.
 
     Args:
         model: with the inputs.
-        names: what things are called.
-        ranges: which ranges inputs have by what they are, and what the solver does beyond them.
+        names: of the library.
+        ranges: sentence on the ranges of each kind of input, and on the solver beyond them.
     """
     entries = input_entries(model)
     words: dict[str, Any] = vector_words(names, entries, "input")
@@ -415,13 +415,13 @@ def _unknown_words(model: Model) -> dict[str, str]:
 
 
 def _file_rows(name: str, files: Collection[str]) -> str:
-    """What each file of a folder is for, as rows of the README."""
+    """Purpose of each file of a folder, as rows of the README."""
     roles = {file.format(name=name): role for file, role in ROLES.items()}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items() if file in files)
 
 
 def accuracy_words(scene: Scene, error_estimate: float | None, verified: Verified | None) -> dict[str, str]:
-    """What a README, and the comment at the top of a header, say of the error that the discretisation leaves.
+    """Words of a README, and of the comment at the top of a header, on the error that the discretisation leaves.
 
     Args:
         scene: the exported scene.

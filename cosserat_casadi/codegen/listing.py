@@ -30,7 +30,7 @@ CHOICES = {
     ca.OP_NOT: "!{0}", ca.OP_AND: "{0} && {1}", ca.OP_OR: "{0} || {1}", ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0",
     ca.OP_SIGN: "{0} < 0 ? -1 : {0} > 0 ? 1 : {0}",
 }  # fmt: skip
-"""Those that compare and choose: distances from obstacles have some."""
+"""Operations that compare and choose: distances from obstacles have some."""
 
 REWRITTEN = {ca.OP_NEG: (ca.OP_MUL, -1.0), ca.OP_TWICE: (ca.OP_MUL, 2.0), ca.OP_INV: (ca.OP_DIV, 1.0)}
 """Operations with one operand as products or quotients of a constant."""
@@ -86,7 +86,7 @@ class Call:
 
 
 class UnknownOperationError(Exception):
-    """An operation has no form in code of our own."""
+    """An operation has no form in this package's C."""
 
 
 class Listing:
@@ -94,14 +94,14 @@ class Listing:
 
     Attributes:
         function: the listed function.
-        values: the values; an operand comes before what it is an operand of.
+        values: the values; an operand comes before the operation that takes it.
         calls: calls of other functions.
         outputs: for each output, number of the value of each stored entry that is computed.
 
     Args:
         function: the function.
-        apart: whether every use of a constant is a value of its own, and every operation is listed as CasADi has it:
-            of functions that differ in constants alone the values are the same then but for these.
+        apart: whether every use of a constant is a separate value, and every operation is listed as CasADi has it:
+            values of functions that differ in constants alone are then the same but for the constants.
     """
 
     def __init__(self, function: ca.Function, *, apart: bool = False) -> None:
@@ -137,7 +137,7 @@ class Listing:
             yield from output.values()
 
     def names_of_callees(self, prefix: str) -> dict[int, str]:
-        """A name for each function that is called, by its hash: its own, with a number where that is taken."""
+        """A name for each function that is called, by its hash: the function's, with a number where that is taken."""
         functions = {hash(call.function): call.function for call in self.calls}
         names: dict[int, str] = {}
         for function_hash, function in functions.items():

@@ -46,7 +46,7 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None, *, prog
     Args:
         directory: a folder written by :func:`cosserat_casadi.export`.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
-        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
+        progress: told the file that is compiled, the number of compiled files, and of all; not called if none is left.
 
     Returns:
         The library of rods, of rods in exact contact, or of concentric tubes, as the manifest says.

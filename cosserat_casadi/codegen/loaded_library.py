@@ -54,7 +54,7 @@ class LoadedLibrary(ABC):
         return {"PARAMETERS": sum(len(entry["value"]) for entry in parameters)} if parameters else {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """What pickle and copy take along: where the shared object lies, not the object that this process opened."""
+        """State for pickle and copy: where the shared object lies, not the object that this process opened."""
         return {entry.name: getattr(self, entry.name) for entry in fields(self)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -87,12 +87,12 @@ class LoadedLibrary(ABC):
         return float(self.manifest["tolerance"])
 
     def in_range(self, inputs: ArgumentValues = None) -> bool:
-        """Whether every input is in its range, by what it is and by the bounds of the scene."""
+        """Whether every input is in its range, which its kind and the bounds of the scene set."""
         given = self.inputs.stacked(inputs)
         return bool(np.all((given >= self.inputs.lower) & (given <= self.inputs.upper)))
 
     def clamp(self, inputs: ArgumentValues = None) -> FloatArray:
-        """All inputs, stacked, those beyond their ranges moved to the ends of these; what is no number stays."""
+        """All inputs, stacked; values beyond a range move to its end, and NaN stays."""
         return np.clip(self.inputs.stacked(inputs), self.inputs.lower, self.inputs.upper)
 
     def _rows(self, inputs: npt.ArrayLike, parameters: ArgumentValues) -> tuple[FloatArray, list[Any]]:

@@ -80,7 +80,7 @@ def is_sound(described: Any, is_own: Callable[[Any], bool]) -> bool:
 def check_folder(folder: Path, described: Mapping[str, Any], sizes: Mapping[str, int]) -> None:
     """Refuse a folder of another version, or one whose header has other sizes than its manifest, as of mixed exports.
 
-    What is compiled with the sizes of the header writes beyond arrays that have those of the manifest.
+    A library compiled with the sizes of the header would write beyond arrays that have the sizes of the manifest.
 
     Args:
         folder: the exported folder.
@@ -183,7 +183,7 @@ def input_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
 
 
 def _ends(values: FloatArray) -> list[float | None]:
-    """Ends of ranges; None where there is none, for JSON knows no infinity."""
+    """Ends of ranges; None for an open end, for JSON knows no infinity."""
     return [value if np.isfinite(value) else None for value in values.tolist()]
 
 
@@ -205,7 +205,7 @@ def _stacked_entry(entry: Input | Parameter, indices: slice, **further: Any) -> 
 
 
 def actuator_entries(model: Model) -> list[dict[str, Any]]:
-    """Actuators in the order of the scene, with what they exert and what they work on."""
+    """Actuators in the order of the scene, with their efforts and the coordinates that these work on."""
     entries = []
     for actuator in model.scene.actuators:
         effort, conjugate = (model.actuator[actuator.name].name_out(i) for i in range(2))

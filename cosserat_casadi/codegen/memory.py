@@ -28,7 +28,7 @@ def largest_room(generated: Mapping[str, str], kind: str) -> int:
 
 
 def _rooms(generated: Mapping[str, str], kind: str) -> dict[str, int]:
-    """What each kernel asks its caller for."""
+    """Numbers that each kernel asks its caller for."""
     header = "".join(text for file, text in generated.items() if file.endswith(".h"))
     return {name: int(size) for name, size in re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)}
 

@@ -1,4 +1,4 @@
-"""What a scene in motion shows to the outside: poses, velocities, efforts, as one vector with exact derivatives.
+"""Outputs of a scene in motion: poses, velocities, efforts, as one vector with exact derivatives.
 
 Simulators that couple models, and environments for learning, see these quantities and not the unknowns of the rods.
 """
@@ -50,7 +50,7 @@ class MotionOutputs:
 
 
 def motion_outputs(model: Model) -> MotionOutputs:
-    """Poses and velocities of tips and bodies, then efforts of actuators and joints and what they do work on.
+    """Poses and velocities of tips and bodies, then efforts of actuators and joints and their coordinates.
 
     Args:
         model: a model that was built with its motion.

@@ -31,7 +31,7 @@ MATRICES = ("stiffness", "damping", "mass")
 
 @dataclass(frozen=True)
 class MotionInC:
-    """What the step in C is made of.
+    """Parts of the step in C.
 
     Attributes:
         blocks: of stiffness, damping and mass together.

@@ -79,7 +79,7 @@ def motion_words(basics: Words, model: Model, names: Names, motion: MotionInC) -
 
 
 def motion_entry(model: Model) -> dict[str, Any]:
-    """What the manifest says of motions.
+    """Entry of the manifest on motions.
 
     Returns:
         the method and its tolerance, which unknowns are coordinates with rates and accelerations, and the energies, J,

@@ -5,7 +5,7 @@ dynamics at every instant, K with x, C with v, M with a: with the tables A, A² 
 
     ∂R_i/∂x₀ = K, ∂R_i/∂(h v₀) = c_i K + C/h, ∂R_i/∂(h² a_j) = (A²)_ij K + A_ij C/h + δ_ij M/h²,
 
-and of an algebraic entry ∂R_i/∂z_j = δ_ij K. Poses are a function of their own: their second derivatives then do not
+and of an algebraic entry ∂R_i/∂z_j = δ_ij K. Poses are a separate function: their second derivatives then do not
 evaluate the equations of motion.
 """
 
@@ -38,7 +38,7 @@ from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
 
 @dataclass(frozen=True)
 class CompiledMotionStage:
-    """What a solver evaluates of a stage in motion, in C.
+    """Functions of a stage in motion that a solver evaluates, in C.
 
     Attributes:
         equations: as :attr:`MotionStage.equations`.

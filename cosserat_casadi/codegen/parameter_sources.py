@@ -34,7 +34,7 @@ WITHOUT: Words = {
     "pose_adapters": "",
     "parameter_reals": 0,
 }
-"""Words of a library without parameters, beside those that depend on the library."""
+"""Words of a library without parameters, beside the words that depend on the library."""
 
 
 def parameter_words(basics: Words, model: Model | TubeFunctions, names: Names, *, dynamics: bool) -> Words:

@@ -32,7 +32,7 @@ class ListedParameters(ListedValues):
     several = "parameters"
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
-        """The stacked vector, from the scene's values and those given here.
+        """The stacked vector, from the argument and, for parameters that it does not name, the scene's values.
 
         Raises:
             SceneError: a name is unknown, a value has another shape, or the scene refuses it.
@@ -43,7 +43,7 @@ class ListedParameters(ListedValues):
         return p
 
     def _judge(self, p: FloatArray) -> None:
-        """Ask the scene about values, unless they are those that it was asked about last."""
+        """Ask the scene about values, unless it was asked about the same values last."""
         last = p.tobytes()
         if self._layout is None or self.__dict__.get("_accepted") == last:
             return

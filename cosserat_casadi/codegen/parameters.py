@@ -1,8 +1,8 @@
 """Parameters of a scene where functions are written in C: to the solver they are further inputs.
 
-The solver in C has one vector for all that it is given: the inputs, and behind them the parameters. So a path from some
-parameters to others, derivatives of a solution with parameters, and the parts of an assembly are those of inputs. Where
-a scene names no parameters the functions here give a model's own.
+The solver in C has one vector for the inputs and, behind them, the parameters. So a path from some parameters to
+others, derivatives of a solution with parameters, and the parts of an assembly are handled as for inputs. Where a scene
+names no parameters the functions here return the model's functions.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 
 def given_size(model: Model | TubeFunctions) -> int:
-    """Numbers that the solver in C is given: inputs and parameters."""
+    """Number of entries of the solver's vector in C: inputs and parameters."""
     return model.inputs.size + model.parameters.size
 
 
@@ -61,11 +61,11 @@ def input_jacobian(model: Model) -> ca.Function:
 def parameter_rate(path_residual: ca.Function, name: str) -> ca.Function:
     """(x, inputs, load_factor, parameters_rate) ↦ what moving parameters add to the rate of the residual at fixed x.
 
-    A function of its own: to inputs alone the residual answers by far fewer instructions.
+    A separate function: to inputs alone the residual answers by far fewer instructions.
 
     Args:
         path_residual: (x, inputs, p, load_factor) ↦ residual.
-        name: what it is called.
+        name: of the function.
     """
     residual = with_parameters_behind_inputs(path_residual)
     x, inputs, load_factor = residual.mx_in()

@@ -23,7 +23,7 @@ from cosserat_casadi.maths.calls import chooses, in_scalars
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 
 FORESEEN_WITHIN = 4
-"""Straight-line code may be this much shorter than it is foreseen to be: what is longer is not written out."""
+"""Straight-line code may be this much shorter than it is foreseen to be: longer code is not written out."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Part:
 
     Attributes:
         kernel: number of the function that computes them.
-        reads: entries that it reads of each argument, in the order of its own arguments.
+        reads: entries that it reads of each argument, in the order in which it takes them.
         constants: its constants.
         entries: numbers of the entries of the whole, in the order of its result.
     """
@@ -164,7 +164,7 @@ def places_by_owner(owners: Sequence[int]) -> list[list[int]]:
 
 
 def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], name: str) -> list[ca.Function]:
-    """Kernels, those that compute alike by one function that they call.
+    """Kernels, of which all that compute alike call one function.
 
     Args:
         functions: what the kernels compute, with as many arguments each.
@@ -188,7 +188,7 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Functi
     Args:
         function: the function.
         owners: for each entry of the result whose it is.
-        name: what it is called.
+        name: of the new function.
     """
     symbols, (result,) = scalars(function)
     entries = ca.vertsplit(ca.densify(result))
@@ -215,7 +215,7 @@ def _calling(
 
     Args:
         function: the function.
-        name: what it is called.
+        name: of the new function.
         shared: maps the entries read of each argument, and constants, to the entries of all results.
         reads: entries that are read of each argument.
         constants: those of this function.

@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 EXPORT_WITH = "export the folder with derivatives: export(..., derivatives=True), or cosserat export --derivatives"
 IN_PYTHON = "differentiate the model's own"
-"""What to do for the derivative of a function that a folder can hold it of, and of one that it never does."""
+"""Remedies for a derivative that a folder can hold, and for one that it never holds."""
 
 Shapes = dict[str, tuple[int, int]]
 

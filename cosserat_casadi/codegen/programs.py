@@ -1,4 +1,4 @@
-"""Programs of some entries of a function's result, and one program for those that compute alike.
+"""Programs of some entries of a function's result, and one program for all that compute alike.
 
 Two of them compute alike where their steps (steps.py) are the same but for constants. Constants that differ become an
 argument, with a piece for each matrix of them, that the steps read where it lies. So a kernel that several rods share
@@ -25,7 +25,7 @@ CONSTANT = -1
 
 @dataclass(frozen=True, eq=False)
 class PartialProgram:
-    """The steps of a part with numbers of its own: 0 for zero, then entries read of arguments, then results of steps.
+    """The steps of a part, numbered anew: 0 for zero, then entries read of arguments, then results of steps.
 
     Attributes:
         entries: which entries of the result it gives.
@@ -47,7 +47,7 @@ class PartialProgram:
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What programs share that compute alike."""
+        """Key that programs which compute alike share."""
         lines = []
         for step in self.steps:
             operands = tuple((_layout(operand.pattern), operand.numbers.tobytes()) for operand in step.operands)
@@ -56,7 +56,7 @@ class PartialProgram:
 
 
 def foreseen(steps: Sequence[Step]) -> float:
-    """Instructions without loops, roughly: a long function that is called counts as what it reads and gives."""
+    """Instructions without loops, roughly: a call of a long function counts as its arguments and results."""
     total = 0.0
     for step in steps:
         if np.isfinite(step.instructions):
@@ -67,12 +67,12 @@ def foreseen(steps: Sequence[Step]) -> float:
 
 
 def _layout(pattern: ca.Sparsity) -> tuple[object, ...]:
-    """What two patterns share that are the same."""
+    """Key of a pattern: shape, columns and rows."""
     return pattern.shape, tuple(pattern.colind()), tuple(pattern.row())
 
 
 def _identity(step: Step) -> object:
-    """What a step computes but for the constants in it: two functions made alike are one."""
+    """Key of a step but for the constants in it: two functions built alike are one."""
     if step.operation is not None:
         return step.operation
     if step.function.is_a("SXFunction"):
@@ -126,7 +126,7 @@ def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
 
 
 def shared_program(programs: Sequence[PartialProgram], name: str) -> tuple[Program, list[list[float]]]:
-    """One program for those that compute alike, and the constants of each, which it reads beside its arguments."""
+    """One program for programs that compute alike, and the constants of each, which it reads beside its arguments."""
     return _Sharing(programs, name).result
 
 
@@ -251,7 +251,7 @@ class _Sharing:
         return self._pieces[key]
 
     def _function(self, steps: Sequence[Step], name: str) -> tuple[ca.Function, list[Value]]:
-        """What a step calls in all programs, and an operand of constants in it that differ."""
+        """The function that a step calls in all programs, and an operand of constants in it that differ."""
         functions = [step.function for step in steps]
         first = functions[0]
         if len({function.__hash__() for function in functions}) == 1 or steps[0].operation is not None:

@@ -29,7 +29,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.scene import Scene
 
 NAME = "sweep"
-"""What every symbol of these libraries begins with."""
+"""Beginning of every symbol of these libraries."""
 
 JUDGED = ("outcome", "iterations", "residual")
 """First columns of every row of results; the outcome as its number."""

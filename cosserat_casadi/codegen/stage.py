@@ -1,4 +1,4 @@
-"""What one stage of an optimal-control problem evaluates, compiled, with the derivatives that its solver asks for.
+"""Functions of one stage of an optimal-control problem, compiled, with the derivatives that its solver asks for.
 
 An optimiser needs whole Jacobians. A library that knows only directional derivatives gives them a column at a time;
 here the Jacobian is one function in C, and so is the second derivative. CasADi finds them by their names.
@@ -58,8 +58,8 @@ def compiled_stage(
         sections: abscissae X in [0, 1] of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted, for a tendon its tension and its length.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
-        progress: told what is written or compiled, how many functions or files are, and of how many; of compiling
-            not where nothing is left to do.
+        progress: told the function or file under way, the number of finished ones, and of all; not called if all
+            files are compiled.
 
     Returns:
         outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
@@ -93,7 +93,7 @@ def compiled_stage(
 
 
 def written_in_c(functions: Iterator[ca.Function], name: str, progress: Progress | None) -> dict[str, str]:
-    """Sources and headers of functions by file name, each function in a file of its own.
+    """Sources and headers of functions by file name, each function in a separate file.
 
     Args:
         functions: :data:`PARTS` functions, which take their time to be made one after the other.
@@ -140,7 +140,7 @@ def _check_wanted(model: Model, sections: Mapping[str, Sequence[float]], actuato
 
 
 def _one_of(names: Mapping[str, object]) -> str:
-    """What to do about a name that is not there."""
+    """Remedy for a name that is not there."""
     if not names:
         return "leave it out, the scene has none"
     return f"take one of {', '.join(names)}"
@@ -191,7 +191,7 @@ def adjoint_and_second(plain: ca.Function, slopes: ca.Function, curvature: bool)
 def written(function: ca.Function, name: str) -> ca.Function:
     """A function as scalar instructions with common terms shared, or where they are too many for loops in C.
 
-    One that leaves out what it does not need, as rods that are apart, stays as it is.
+    A function that leaves out terms which it does not need, as of rods that are apart, stays as it is.
     """
     if chooses(function):
         return _named(function, name)

@@ -56,7 +56,7 @@ MOTION_STATUSES = tuple(MotionStatus)
 
 
 def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOLVER") -> dict[str, str]:
-    """What the templates of a solver say of statuses.
+    """Words of the templates of a solver on statuses.
 
     Args:
         names: what things are called.
@@ -67,7 +67,7 @@ def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOL
 
 
 def motion_status_words(names: Names) -> dict[str, str]:
-    """What the templates say of the statuses of motions."""
+    """Words of the templates on the statuses of motions."""
     words = _words(f"{names.macro}_MOTION", "SOLVER_MOTION", MOTION_STATUSES)
     return {f"motion_{key}": text for key, text in words.items()}
 

@@ -13,7 +13,7 @@ from cosserat_casadi.codegen.listing import Constant, Listing, Read, Value
 from cosserat_casadi.maths.typing import FloatArray
 
 Key = tuple[Hashable, ...]
-"""What streams share that compute alike."""
+"""Key that streams which compute alike share."""
 
 ROUNDING = 2.0**-48
 """Difference of two constants, over the larger, up to which they are one number that was rounded on its way here."""
@@ -40,8 +40,8 @@ def stacked(function: ca.Function) -> ca.Function:
 class Stream:
     """The values of a scalar function with constants apart: two legs of a robot have the same but for these.
 
-    An unknown is read by its number among those that the function reads: 3 x₀ + x₄ reads x = [0, 4], and computes with
-    the constant 3 what 5 x₁ + x₂ computes with 5.
+    An unknown is read by its number among the unknowns that the function reads: 3 x₀ + x₄ reads x = [0, 4], and
+    computes with the constant 3 what 5 x₁ + x₂ computes with 5.
 
     Attributes:
         function: map (x, inputs, factor) ↦ entries.
@@ -79,7 +79,7 @@ class Stream:
 
     @property
     def key(self) -> Key:
-        """What streams share that compute alike: their values but for constants, and what they call."""
+        """Key that streams which compute alike share: their values but for constants, and the functions they call."""
         values = tuple(self._without_constant(value) for value in self.listing.values)
         functions = {hash(call.function): call.function for call in self.listing.calls}
         contents = {number: Stream(function).content for number, function in functions.items()}
@@ -88,7 +88,7 @@ class Stream:
 
     @property
     def content(self) -> Hashable:
-        """What functions share that compute the same: the rods of a scene have functions of their own that do."""
+        """Key that functions which compute the same share: those of several rods of a scene may."""
         return self.key, tuple(self.constants)
 
     def result(self, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
@@ -162,7 +162,7 @@ def _same(one: float, other: float) -> bool:
 
 
 def _numbered(values: Sequence[float]) -> dict[float, int]:
-    """A number for each value, the same for those that are the same but for rounding."""
+    """A number for each value, one for all values that are the same but for rounding."""
     ordered = sorted(set(values))
     numbers = dict.fromkeys(ordered[:1], 0)
     for before, value in pairwise(ordered):

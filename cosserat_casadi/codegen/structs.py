@@ -94,5 +94,5 @@ def initialiser(value: float, names: Names) -> str:
 
 
 def pose_name(names: Names, word: str, owner: str) -> str:
-    """What the pose of a tip or a body is called, without the name of the library."""
+    """Name of the pose of a tip or a body, without the name of the library."""
     return names.function(word, owner).removeprefix(f"{names.name}_")

@@ -1,4 +1,4 @@
-"""How much a turn of a control loop may evaluate by default: what it always may, or what fits a period.
+"""How much a turn of a control loop may evaluate by default: a fixed number, or as much as fits a period.
 
 A turn is bounded in evaluations. What one takes is measured by a program that is made of the sources to be written, or
 foreseen by the laws of accuracy/cost.py where there is no compiler.
@@ -24,7 +24,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 
 MOST_ITERATIONS = 40
-"""Newton steps of a turn where no period is given; turns that go well take two to five."""
+"""Newton steps of a turn without a period; turns that go well take two to five."""
 
 SETTLING_ITERATIONS = 4
 """Most Newton steps from a point on a path, found as exactly as the path needs, to a solution; two are usual."""
@@ -36,10 +36,10 @@ Of rods, robots with tendons and the six-rod platform, measured, it was 1 to 4.3
 """
 
 FORESEEN_POINTS = 1.0
-"""What a point of a path takes beside, likewise. It was 0.2 to 0.7."""
+"""Time of a point of a path beside, likewise. It was 0.2 to 0.7."""
 
 FORESEEN_ENDS = 9.0
-"""What a turn ends with, likewise: another Jacobian, derivatives with inputs, those of the poses. It was 3 to 8.4."""
+"""Time of the end of a turn, likewise: another Jacobian, derivatives with inputs and of poses. It was 3 to 8.4."""
 
 TIME_LIMIT = 300.0
 """Time, s, after which a compiler, or the program that measures, is given up."""
@@ -47,7 +47,7 @@ TIME_LIMIT = 300.0
 
 @dataclass(frozen=True)
 class TurnCosts:
-    """What the parts of a turn take, µs.
+    """Times of the parts of a turn, µs.
 
     Attributes:
         step: residual, Jacobian and its factorisation: a Newton step.
@@ -74,7 +74,7 @@ class TurnCosts:
 
 @dataclass(frozen=True)
 class TurnBudget:
-    """What a turn may take by default.
+    """Steps that a turn may take by default.
 
     Attributes:
         iterations: Newton steps.
@@ -90,7 +90,7 @@ class TurnBudget:
 
     @property
     def note(self) -> str:
-        """What the header says of the time of a turn; empty without a period."""
+        """Sentence of the header on the time of a turn; empty without a period."""
         if self.costs is None or self.period is None:
             return ""
         costs = self.costs
@@ -105,7 +105,7 @@ class TurnBudget:
 
     @property
     def entry(self) -> dict[str, object]:
-        """What the manifest says of it."""
+        """Entry of the manifest."""
         described: dict[str, object] = {"max_iterations": self.iterations, "max_continuation_steps": self.steps}
         if self.costs is not None:
             worst = self.costs.worst(self.iterations, self.steps)
@@ -115,7 +115,7 @@ class TurnBudget:
 
 
 ALWAYS = TurnBudget()
-"""Where no period is given."""
+"""The budget without a period."""
 
 
 def fitting(costs: TurnCosts, period: float) -> TurnBudget:
@@ -137,7 +137,7 @@ def fitting(costs: TurnCosts, period: float) -> TurnBudget:
 
 
 def costs_of(model: Model, names: Names, files: Mapping[str, str]) -> TurnCosts:
-    """What the parts of a turn take: measured where there is a compiler, else foreseen.
+    """Times of the parts of a turn: measured where there is a compiler, else foreseen.
 
     Args:
         model: the exported model.

@@ -1,8 +1,8 @@
-"""Which arrangements of contacts a library in C holds: those that its scene meets, and no contact.
+"""Which arrangements of contacts a library in C holds: all that its scene meets, and no contact.
 
 The scene is solved at its own inputs, and followed from there to each load case, one after the other, along straight
-lines of inputs, as the solver in C moves them too, each at the parameters of its load case. What is met on the way is
-collected.
+lines of inputs, as the solver in C moves them too, each at the parameters of its load case. The arrangements on the way
+are collected.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 
 MOST_ARRANGEMENTS = 16
-"""Most arrangements of a library: each has equations of its own."""
+"""Most arrangements of a library: each has its own equations."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Chosen:
         scene: without contacts, and without the list of its parameters.
         layout: its inputs.
         parameters: numbers of the scene that the library is given behind the inputs; often none.
-        given: stacked inputs that the library starts from, and parameters behind them: the scene's own.
+        given: stacked inputs that the library starts from, and parameters behind them: of the scene.
         equations: of each arrangement, at places where it was met.
         richer: of each arrangement with modes and intervals added; none where no error is estimated.
         start: number of the arrangement for these inputs.
@@ -183,7 +183,7 @@ def _check(solution: Solution, what: str) -> None:
 
 
 def _refuse_lines(states: Sequence[ContactState]) -> None:
-    """Refuse lines of contact that begin where the rod does, and those that a load inside them splits.
+    """Refuse lines of contact that begin where the rod does, and lines that a load inside them splits.
 
     Raises:
         ExportError: there are some.

@@ -1,4 +1,4 @@
-"""What of exact contact cannot be exported: refused with a sentence before any work is done."""
+"""Parts of exact contact that cannot be exported: refused with a sentence before any work is done."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SENTENCES = {
     "dynamics": "motions in C know no exact contact",
     "cuda": "rods in exact contact have no batches on a GPU",
 }
-"""What a folder may hold of other scenes, and why not of these."""
+"""Functions that a folder may hold of other scenes, and why not of these."""
 
 REMEDY = "leave it out, or give each obstacle {width}"
 

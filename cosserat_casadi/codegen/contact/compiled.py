@@ -79,7 +79,7 @@ class ContactInC(ctypes.Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class CompiledContactSolution(CompiledAnswer):
-    """What the solver in C found.
+    """A solution of the solver in C in exact contact.
 
     Attributes:
         arrangement: number of the arrangement of contacts, in the order of the manifest.

@@ -261,7 +261,7 @@ def _number_macros(names: Names, tables: Tables) -> str:
 
 
 def _manifest(model: Model, chosen: Chosen, names: Names) -> dict[str, Any]:
-    """What the library holds, as data."""
+    """The contents of the library, as data."""
     free = build(chosen.scene, chosen.equations[0].grids.discretisation(chosen.scene))
     arrangements = []
     for own in chosen.equations:

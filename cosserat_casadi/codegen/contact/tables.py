@@ -42,7 +42,7 @@ class _Level:
 
 @dataclass(frozen=True)
 class Tables:
-    """What the solver in C reads of a scene and its arrangements.
+    """Tables of a scene and its arrangements, which the solver in C reads.
 
     Attributes:
         chosen: the arrangements.

@@ -29,7 +29,7 @@ class TubeOptions(ctypes.Structure):
 
 @dataclass(frozen=True)
 class CompiledTubes(Compiled):
-    """An exported folder of concentric tubes: what there is of every folder, poses of all tips, and turns.
+    """An exported folder of concentric tubes: the functions of every folder, poses of all tips, and turns.
 
     Unknown is by how much the tip of each tube is turned against its drive, rad; under loads also the quaternion of the
     frame at the tip of the robot less 1 0 0 0. Tubes are solved from straight ones unless there is a start.

@@ -114,7 +114,7 @@ class TubeKernels:
     def _sensitivity(self) -> list[Matrix]:
         """Derivatives of the residual with y and with the inputs, and of the poses, 7 n rows, with both.
 
-        Those with the parameters follow those with the inputs.
+        Derivatives with the parameters follow the derivatives with the inputs.
         """
         at = list(self._of_model.values())
         jacobian, by_inputs, _, poses_by_x, poses_by_inputs, *by_parameters = self.model.sensitivity(*at)

@@ -169,7 +169,7 @@ def _number_macros(names: Names, robot: Robot) -> str:
 
 
 def _manifest(model: TubeFunctions, names: Names, error_estimate: float | None) -> dict[str, Any]:
-    """What the folder holds, as data."""
+    """The contents of the folder, as data."""
     robot = model.robot
     unknowns = [{"rod": tube, "first": index, "count": 1} for index, tube in enumerate(robot.names)]
     if model.size > robot.size:
