@@ -155,8 +155,9 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
         parameters: of a model, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
         start: of a model, like all that follow: where to start; by default the unloaded rod, or straight tubes. From a
             solution of the same model, continuation follows the inputs from those of the solution to the wanted ones,
-            and so stays on its branch; of a scene with obstacles, the contacts of the solution are tried first. From
-            unknowns of shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
+            and so stays on its branch. Other parameters are taken at once and, where that fails, followed together with
+            the inputs. Of a scene with obstacles, the contacts of the solution are tried first. From unknowns of shape
+            (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
         method: of rods, "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two
             start at the full load and may find another branch, or none.
         settings: limits of the continuation, of rods.

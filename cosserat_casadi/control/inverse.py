@@ -44,24 +44,10 @@ def inverse(
     starts: int = STARTS,
     estimate_error: bool = True,
 ) -> Inverse:
-    """Inputs for which a model's equilibrium meets the targets of its scene.
-
-    Of several solutions it finds one near the scene's own inputs. Where targets cannot all be met, within the bounds or
-    at all, the weighted sum of squared target errors is least, as far as a local method can tell.
-
-    Args:
-        model: of a scene with targets, and with inputs that it lists or bounds.
-        start: equilibrium of this model to start from; by default that at the scene's own inputs, brought into bounds.
-        stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
-            once. For loads that have a potential.
-        starts: further starts where a target error remains: scattered, by a fixed seed, over the inputs that are
-            bounded on both sides; the best end counts. 0 for none.
-        estimate_error: whether the error that modes and nodes leave at the inputs found is estimated; targets count as
-            met where it is within the tolerance too.
+    """Inputs for which a model's equilibrium meets the targets of its scene, as the public ``inverse`` describes them.
 
     Raises:
-        SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
-            without a potential.
+        SceneError: likewise.
     """
     model = model.at()
     check_targets(model.scene.targets)

@@ -121,34 +121,10 @@ def solve(
     raise_on_failure: bool = False,
     estimate_error: bool = True,
 ) -> Solution:
-    """Equilibrium of a model, with the estimate of its error at these inputs.
-
-    Args:
-        model: what to solve.
-        values: inputs by name, those not named keeping the scene's values; or all of them stacked, shape
-            (model.inputs.size,), as a solution holds them.
-        parameters: parameters by name, or all of them stacked, as :meth:`Model.at` takes them; the model of the
-            solution is that one. By default the scene's values.
-        start: where to start; by default the unloaded rod. From a solution of the same model, continuation follows
-            the inputs from those of the solution to the wanted ones, and so stays on its branch. Other parameters
-            than those of the solution are taken at once and, where that fails, followed together with the inputs. Of a
-            scene with obstacles, the contacts of the solution are tried first. From unknowns of shape (size,), Newton
-            is tried at the wanted inputs, and the unloaded rod where that strays.
-        method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
-            at the full load and may find another branch, or none.
-        stable: whether a stable equilibrium is wanted: where the method ends at an unstable one, or at none, the rod
-            relaxes to a minimum of its energy. For loads that have one.
-        settings: limits of the continuation.
-        progress: receives the share of the path that is done.
-        raise_on_failure: raise instead of returning what did not converge.
-        estimate_error: whether the error that modes and nodes leave is estimated; it costs about a Newton step. The
-            message says so where the estimate is above the scene's tolerance.
+    """Equilibrium of a model on its discretisation, as the public ``solve`` describes it.
 
     Raises:
-        SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
-            would have to hold a free rod.
-        SolveError: no equilibrium was found and ``raise_on_failure`` is set.
-        ValueError: unknown method, or a start of another model.
+        SceneError, SolveError, ValueError: likewise.
     """
     parametric, model = model, model.at(parameters)
     limits = settings or continuation_limits(model, watched=True)

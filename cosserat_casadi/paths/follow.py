@@ -154,22 +154,10 @@ def follow_path(
     first: EquilibriumPath | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath:
-    """Follow the equilibrium of a model while one input moves from zero to a value, through folds and back.
+    """Follow the equilibrium of a model while one input moves from zero to a value, as the public ``follow`` does.
 
     The path starts at the equilibrium with that input at zero, or where ``values`` says, and all other inputs at their
     values, goes straight on through bifurcations, and ends where the factor first reaches 1.
-
-    Args:
-        model: what to follow, on the discretisation it has.
-        name: the input, such as "push.force".
-        value: its value at factor 1, shaped as the input, SI units.
-        values: other inputs by name, those not named keep the scene's values; of the followed input where it begins.
-        branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
-            for the other half of that branch, 0 goes straight on.
-        settings: limits.
-        first: of rods that rub: a path of the same scene, modes and nodes from whose end this one goes on, with what
-            friction remembers there; inputs that are not named keep their values.
-        progress: receives the largest factor reached.
 
     Raises:
         SceneError: the input is unknown, a value is refused, a branch of a path with friction is asked for, or contact

@@ -161,18 +161,7 @@ def plan_sweep(
     estimate_errors: bool = True,
     device: str | None = None,
 ) -> Plan:
-    """A sweep, refused before anything is computed where it could not be done.
-
-    Args:
-        scene: a validated scene.
-        table: values of its inputs and parameters.
-        output: file of the results, ``.csv`` or ``.parquet``, or a folder of Parquet files, ``.dataset``; what a killed
-            run of the same sweep left is gone on with.
-        samples: rows that the discretisation is chosen on, at least 1.
-        stability: whether each row says whether its equilibrium is stable.
-        estimate_errors: whether each row says how large its error is, and whether it is within the tolerance.
-        device: ``cuda`` for a GPU, which is experimental, or ``host``, for the same source on a processor; the cores
-            by default.
+    """A sweep of a scene, as :func:`sweep` takes it, refused before anything is computed where it could not be done.
 
     Raises:
         SceneError: with every fault of scene, table and output.
