@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,12 +19,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.choose import choose
 from cosserat_casadi.accuracy.refine import solve
-from cosserat_casadi.codegen.estimator import (
-    ENDINGS,
-    Estimates,
-    Knowledge,
-    MeasuredCases,
-)
+from cosserat_casadi.codegen.estimator import ENDINGS, Estimates, EstimatorLibrary, Knowledge, MeasuredCases
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solve import is_behind
 from cosserat_casadi.equilibrium.stability import second_variation, variations
@@ -43,7 +39,7 @@ from cosserat_casadi.estimation.consistency import Consistency, consistency
 from cosserat_casadi.estimation.estimate_outcome import BEHIND, NOT_DETERMINED, REASONS, Estimate, information_of
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
-from cosserat_casadi.estimation.rows_in_contact import RowsInContact, RowSolver
+from cosserat_casadi.estimation.rows_in_contact import RowsInContact
 from cosserat_casadi.estimation.shared import Searched, SharedNumbers, SharedSearch
 from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
@@ -55,6 +51,9 @@ from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.progress import StageProgress, not_told
 from cosserat_casadi.spelling import FEW, named
 from cosserat_casadi.sweeps.local import available_cores
+
+RowSolver: TypeAlias = EstimatorLibrary | RowsInContact
+"""Rows of measurements ↦ the numbers that explain them."""
 
 CHUNK = 256
 """Cases that a thread takes at once."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
 
 import casadi as ca
 import numpy as np
@@ -22,18 +21,6 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, FitOutcome, Limits
-
-
-class RowSolver(Protocol):
-    """Rows of measurements ↦ the numbers that explain them."""
-
-    def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
-        """The numbers that explain each row best."""
-
-    def costs(
-        self, cases: MeasuredCases, inputs: FloatArray, x: FloatArray, known: Knowledge, steps: FloatArray
-    ) -> FloatArray:
-        """Costs some steps away from estimates, shape (cases, draws); infinite where there is no equilibrium."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -23,14 +23,6 @@ COMPILED_ROWS = 512
 
 MODELLED_ROWS = 16
 """Rows of a chunk that is solved in Python."""
-
-
-class Answer(Protocol):
-    """Solves rows."""
-
-    def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs, with parameters behind them where there are any."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -77,6 +69,9 @@ class WatchedRows:
             results[doubtful] = self.model.solve(inputs[doubtful])
         return results
 
+
+Answer: TypeAlias = RowLibrary | DeviceRows | RowModel | InContact | WatchedRows
+"""Solves rows."""
 
 Part = tuple[Answer, FloatArray]
 """Rows of inputs, and what solves them."""
