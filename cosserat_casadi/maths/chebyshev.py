@@ -11,12 +11,12 @@ difference of two cosines would lose as many digits.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 from math import fsum
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial import chebyshev
 
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -235,11 +235,7 @@ def chebyshev_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
     Returns:
         (m, n).
     """
-
-    def successor(k: int, x: FloatArray, value: FloatArray, before: FloatArray) -> FloatArray:
-        return 2 * x * value - before
-
-    return _recurrence(n, X, successor)
+    return np.asarray(chebyshev.chebvander(_centred(n, X), n - 1), dtype=float)
 
 
 def legendre_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
@@ -252,29 +248,19 @@ def legendre_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
     Returns:
         (m, n).
     """
-
-    def successor(k: int, x: FloatArray, value: FloatArray, before: FloatArray) -> FloatArray:
-        growth = (2 * k + 1) * x * value
-        return (growth - k * before) / (k + 1)
-
-    return _recurrence(n, X, successor)
-
-
-def _recurrence(
-    n: int,
-    X: npt.ArrayLike,
-    successor: Callable[[int, FloatArray, FloatArray, FloatArray], FloatArray],
-) -> FloatArray:
-    """Polynomials 1, x, … of x = 2X − 1, each made by ``successor(k, x, p_k, p_{k−1})``."""
-    if n < 1:
-        raise ValueError(f"at least one polynomial is needed, but n = {n}")
-    abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-    x = 2 * abscissae - 1
+    x = _centred(n, X)
     values = [np.ones_like(x), x]
     for k in range(1, n - 1):
-        following = successor(k, x, values[k], values[k - 1])
-        values.append(following)
+        growth = (2 * k + 1) * x * values[k]
+        values.append((growth - k * values[k - 1]) / (k + 1))
     return np.stack(values[:n], axis=1)
+
+
+def _centred(n: int, X: npt.ArrayLike) -> FloatArray:
+    """Abscissae 2X − 1 at which n polynomials are wanted."""
+    if n < 1:
+        raise ValueError(f"at least one polynomial is needed, but n = {n}")
+    return 2 * np.atleast_1d(np.asarray(X, dtype=float)) - 1
 
 
 def chebyshev_coefficients(values: npt.ArrayLike) -> FloatArray:
