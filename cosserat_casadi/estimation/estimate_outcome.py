@@ -13,6 +13,7 @@ from cosserat_casadi.codegen.estimator import ENDINGS, Estimates, Knowledge
 from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.estimation.optima import SecondBest
 from cosserat_casadi.estimation.shared import SharedNumbers
+from cosserat_casadi.identification.statistics import NORMAL_95
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.result import Result
@@ -26,9 +27,6 @@ narrower by half a percent."""
 
 SHOWN_PART = 0.2
 """Least part of an unknown in a direction that is told."""
-
-NORMAL_95 = 1.959963984540054
-"""Deviations that hold 95 % of a normal distribution."""
 
 SURE = 0.95
 """Share of the posterior mass from which on the best minimum stands for all."""

@@ -14,6 +14,7 @@ from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import stdtrit
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arrow_least_squares import ArrowStep
@@ -115,7 +116,8 @@ def statistics(
     quantile = NORMAL_95
     if noise_from is not NoiseFrom.SIGMA and freedom > 0:
         noise = math.sqrt(squares / freedom)
-        quantile = student_95(freedom)
+        # Of Student's distribution: the noise is known as well as there are data for it.
+        quantile = float(stdtrit(freedom, 0.975))
     if noise_from is NoiseFrom.BOTH and noise < 1.0:
         noise = 1.0
         quantile = NORMAL_95
@@ -223,22 +225,3 @@ def _own_deviations(
         sizes = np.sqrt(np.diagonal(spread)) * scales[free]
         deviations[block, free] = np.where(undetermined, np.nan, sizes)
     return deviations
-
-
-def student_95(freedom: int) -> float:
-    """Deviations that hold 95 % of Student's distribution: the expansion 26.7.5 of Abramowitz and Stegun's *Handbook*.
-
-    Within 1 % from 3 degrees of freedom on; below that the exact values.
-    """
-    exact = {1: 12.706204736, 2: 4.302652730}
-    if freedom in exact:
-        return exact[freedom]
-    x = NORMAL_95
-    terms = (
-        x,
-        (x**3 + x) / 4,
-        (5 * x**5 + 16 * x**3 + 3 * x) / 96,
-        (3 * x**7 + 19 * x**5 + 17 * x**3 - 15 * x) / 384,
-        (79 * x**9 + 776 * x**7 + 1482 * x**5 - 1920 * x**3 - 945 * x) / 92160,
-    )
-    return float(sum(term / freedom**power for power, term in enumerate(terms)))

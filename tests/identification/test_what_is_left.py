@@ -114,9 +114,8 @@ def test_unknowns_of_single_cases_that_no_datum_sees_are_named() -> None:
     assert any("only what these numbers leave is predicted" in warning for warning in found.warnings)
 
 
-def linear(noise_from: NoiseFrom, squares: float) -> Statistics:
-    """Twenty residuals of one unknown whose information is 20."""
-    count = 20
+def linear(noise_from: NoiseFrom, squares: float, count: int = 20) -> Statistics:
+    """So many residuals of one unknown whose information is their number."""
     ones = np.ones((count, 1))
     offsets = np.array([0, count])
     nothing = np.zeros((1, 0))
@@ -158,3 +157,8 @@ def test_a_robust_loss_widens_intervals_where_residuals_ask_for_it() -> None:
         by_loss[loss] = found.statistics.noise
     assert by_loss["squares"] == 1.0
     assert by_loss["huber"] > 1.0
+
+
+@pytest.mark.parametrize(("freedom", "tabled"), [(1, 12.706), (2, 4.303), (5, 2.571), (19, 2.093), (120, 1.980)])
+def test_quantiles_of_few_data_are_those_of_students_table(freedom: int, tabled: float) -> None:
+    assert_allclose(linear(NoiseFrom.RESIDUALS, 4.0, 1 + freedom).quantile, tabled, rtol=0, atol=5e-4)
