@@ -62,13 +62,32 @@ class _SpectrumCache:
 
 
 class _SpectralFunction(ca.Callback):  # type: ignore[misc]
-    """A function of the matrix, and perhaps of changes of it side by side, that is read off the spectrum."""
+    """A function of the matrix, and perhaps of changes of it side by side, that is read off the spectrum.
+
+    It has both derivatives, unless it is of changes.
+    """
 
     def __init__(self, name: str, spectra: _SpectrumCache, changes: int = 0) -> None:
         super().__init__()
         self.spectra = spectra
         self.changes = changes
         self.construct(name, {})
+
+    def read(self, spectrum: Spectrum, *changes: ca.DM) -> float | FloatArray:
+        """The result."""
+        raise NotImplementedError
+
+    def eval(self, arg: list[ca.DM]) -> list[float | FloatArray]:
+        spectrum = self.spectra.spectrum(arg[0])
+        if spectrum is None:
+            return [np.full(self.get_sparsity_out(0).shape, np.nan)]
+        return [self.read(spectrum, *arg[1:])]
+
+    def has_forward(self, nfwd: int) -> bool:
+        return not self.changes
+
+    def has_reverse(self, nadj: int) -> bool:
+        return not self.changes
 
     def get_n_in(self) -> int:
         return 2 if self.changes else 1
@@ -77,9 +96,10 @@ class _SpectralFunction(ca.Callback):  # type: ignore[misc]
         return 1
 
     def get_sparsity_in(self, i: int) -> ca.Sparsity:
-        if i == 0:
-            return self._side_by_side(1)
-        return self._side_by_side(self.changes)
+        return self._side_by_side(self.changes if i else 1)
+
+    def get_sparsity_out(self, i: int) -> ca.Sparsity:
+        return self._side_by_side(self.changes or 1)
 
     def _side_by_side(self, count: int) -> ca.Sparsity:
         """Sparsity of so many dense matrices side by side."""
@@ -93,17 +113,11 @@ class _Value(_SpectralFunction):
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
         return ca.Sparsity.dense(1, 1)
 
-    def eval(self, arg: list[ca.DM]) -> list[float]:
-        spectrum = self.spectra.spectrum(arg[0])
-        if spectrum is None:
-            return [np.nan]
-        return [spectrum.soft_minimum]
+    def read(self, spectrum: Spectrum, *changes: ca.DM) -> float:
+        return spectrum.soft_minimum
 
     def init(self) -> None:
         self.gradient = _Gradient("soft_minimum_gradient", self.spectra)
-
-    def has_forward(self, nfwd: int) -> bool:
-        return True
 
     def get_forward(self, nfwd: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
         matrix, value = self._symbols()
@@ -113,9 +127,6 @@ class _Value(_SpectralFunction):
         gradient = ca.vec(self.gradient(matrix))
         arguments = [matrix, value, changes]
         return ca.Function(name, arguments, [gradient.T @ columns], inames, onames, opts)
-
-    def has_reverse(self, nadj: int) -> bool:
-        return True
 
     def get_reverse(self, nadj: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
         matrix, value = self._symbols()
@@ -134,18 +145,8 @@ class _Value(_SpectralFunction):
 class _Gradient(_SpectralFunction):
     """Matrix ↦ gradient; its derivative is symmetric, so it is its own transpose."""
 
-    def get_sparsity_out(self, i: int) -> ca.Sparsity:
-        return self._side_by_side(1)
-
-    def eval(self, arg: list[ca.DM]) -> list[FloatArray]:
-        spectrum = self.spectra.spectrum(arg[0])
-        if spectrum is None:
-            rows = self.spectra.size
-            return [np.full((rows, rows), np.nan)]
-        return [spectrum.gradient]
-
-    def has_forward(self, nfwd: int) -> bool:
-        return True
+    def read(self, spectrum: Spectrum, *changes: ca.DM) -> FloatArray:
+        return spectrum.gradient
 
     def get_forward(self, nfwd: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
         square = self._side_by_side(1)
@@ -158,9 +159,6 @@ class _Gradient(_SpectralFunction):
         arguments = [matrix, gradient, changes]
         return ca.Function(name, arguments, [changes_of_gradient], inames, onames, opts)
 
-    def has_reverse(self, nadj: int) -> bool:
-        return True
-
     def get_reverse(self, nadj: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
         return self.get_forward(nadj, name, inames, onames, opts)
 
@@ -168,17 +166,10 @@ class _Gradient(_SpectralFunction):
 class _Curvature(_SpectralFunction):
     """Matrix and changes of it ↦ changes of the gradient."""
 
-    def get_sparsity_out(self, i: int) -> ca.Sparsity:
-        return self._side_by_side(self.changes)
-
-    def eval(self, arg: list[ca.DM]) -> list[FloatArray]:
-        spectrum = self.spectra.spectrum(arg[0])
-        changes = arg[1].full()
-        if spectrum is None:
-            return [np.full_like(changes, np.nan)]
-        matrices = np.hsplit(changes, self.changes)
-        curvatures = [spectrum.curvature(matrix) for matrix in matrices]
-        return [np.hstack(curvatures)]
+    def read(self, spectrum: Spectrum, *changes: ca.DM) -> FloatArray:
+        (side_by_side,) = changes
+        matrices = np.hsplit(side_by_side.full(), self.changes)
+        return np.hstack([spectrum.curvature(matrix) for matrix in matrices])
 
 
 @cache
