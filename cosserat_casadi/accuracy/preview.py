@@ -72,7 +72,7 @@ class Preview:
     @cached_property
     def jacobian(self) -> FloatArray:
         """Jacobian at the reference, shape (n, n)."""
-        jacobian = self.model.path_jacobian(self.reference.x, self._inputs, 1.0)
+        jacobian = self.model.path_jacobian(self.reference.x, self.reference.inputs, 1.0)
         return _numbers(jacobian)
 
     @cached_property
@@ -120,7 +120,7 @@ class Preview:
         dropped = self.reference.x[~kept]
         x[kept] += inverse @ (coupling @ dropped)
         for _ in range(CORRECTIONS):
-            residual = self.model.residual(x, self._inputs).full()
+            residual = self.model.residual(x, self.reference.inputs).full()
             x[kept] -= inverse @ residual[kept, 0]
         return x
 
@@ -176,7 +176,7 @@ class Preview:
 
         def system(known: FloatArray, missing: FloatArray) -> System:
             unknowns = richer.joined(ca.DM(known), ca.DM(missing))
-            return System(richer.discrete, Arguments(unknowns, ca.DM(self._inputs)))
+            return System(richer.discrete, Arguments(unknowns, ca.DM(self.reference.inputs)))
 
         known: FloatArray = self.reference.x
         missing: FloatArray = np.zeros(richer.missing_size)
@@ -216,7 +216,7 @@ class Preview:
     @cached_property
     def _pushes(self) -> FloatArray:
         """Derivatives of the residual by the inputs, shape (n, inputs)."""
-        return residual_by_inputs(self.model, self.reference.x, self._inputs)
+        return residual_by_inputs(self.model, self.reference.x, self.reference.inputs)
 
     @cached_property
     def _whole_motions(self) -> FloatArray:
@@ -225,11 +225,7 @@ class Preview:
 
     def _motions(self, steps: FloatArray) -> FloatArray:
         """Motions of the watched poses and cables by steps of the unknowns, shape (n, k), one a column."""
-        return np.array([motion(self.model, self.reference.x, self._inputs, step) for step in steps.T])
-
-    @property
-    def _inputs(self) -> FloatArray:
-        return self.reference.inputs
+        return np.array([motion(self.model, self.reference.x, self.reference.inputs, step) for step in steps.T])
 
     def _inverse_of_kept(self, kept: Mask) -> FloatArray:
         rows_and_columns = np.ix_(kept, kept)
@@ -243,12 +239,12 @@ class Preview:
         model = self.model
         discrete = discrete_scene(model.scene, model.inputs, discretisation)
         # Numbers for arguments: CasADi evaluates while it builds, so that no function is compiled for one look.
-        arguments = Arguments(ca.DM(x), ca.DM(self._inputs))
+        arguments = Arguments(ca.DM(x), ca.DM(self.reference.inputs))
         return System(discrete, arguments)
 
     def _tips(self, x: FloatArray) -> WatchedNumbers:
         """The watched numbers, on the reference's grid, by the model's functions."""
-        poses = _column(self.model.watched(x, self._inputs))
+        poses = _column(self.model.watched(x, self.reference.inputs))
         return WatchedNumbers.of_column(poses, len(watched_cables(self.model.discrete)))
 
     @cached_property

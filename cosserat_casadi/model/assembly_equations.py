@@ -43,14 +43,13 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
 from cosserat_casadi.model.body_obstacle_loads import BorneLoad, borne_loads
 from cosserat_casadi.model.discrete_scene import STOP_COMPLIANCE, CableOfLength, DiscreteScene, JointStop
-from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
-from cosserat_casadi.model.frame_pose import FramePose, turn_matrix
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.frame_pose import turn_matrix
 from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, smoothing_at, spring
 from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.scene_actuators import CORNER
 from cosserat_casadi.model.scene_constraints import ASSEMBLED, RELEASED, PlacedConstraint
 from cosserat_casadi.model.system import System
-from cosserat_casadi.model.unknowns import Unknowns
 from cosserat_casadi.rod.reaction import Reaction
 
 
@@ -83,29 +82,9 @@ class Assembly:
         return self.system.discrete
 
     @property
-    def unknowns(self) -> Unknowns:
-        """The blocks of x."""
-        return self.discrete.unknowns
-
-    @property
     def load_factor(self) -> LoadFactor:
         """λ that the equations are written at."""
         return self.system.arguments.load_factor
-
-    @property
-    def frames(self) -> dict[FrameName, FloatingFrame]:
-        """The floating frames."""
-        return self.discrete.frames
-
-    @property
-    def frame_poses(self) -> dict[FrameName, FramePose]:
-        """World poses of the floating frames."""
-        return self.system.frame_poses
-
-    @property
-    def constraints(self) -> list[PlacedConstraint]:
-        """The constraints."""
-        return self.discrete.constraints
 
     def _closing(self, compliance: Compliance) -> LoadFactor:
         """λ by which rows of a compliance close; None where they are closed all along."""
@@ -119,7 +98,7 @@ class Assembly:
     def constraint_rows(self) -> list[Matrix]:
         """Residual of every constraint, at the load factor."""
         rows = []
-        for placed in self.constraints:
+        for placed in self.discrete.constraints:
             gap = placed.constraint.residual(self.system.poses(placed))
             multipliers = self.system.multipliers(placed)
             rows.append(row_at(gap, multipliers, placed.compliance, self._closing(placed.compliance)))
@@ -129,11 +108,11 @@ class Assembly:
     def balance_rows(self) -> list[Matrix]:
         """Balance of every floating frame, 7×1, without unit, at the load factor."""
         rows = []
-        for name, frame in self.frames.items():
+        for name, frame in self.discrete.frames.items():
             wrench = self._wrenches[name]
             moment = wrench[:3] / frame.unit
             force_row = -frame.length / frame.unit * wrench[3:]
-            turn_row = TURN_ROWS(self.frame_poses[name].quaternion, moment)[0]
+            turn_row = TURN_ROWS(self.system.frame_poses[name].quaternion, moment)[0]
             balance = ca.vertcat(force_row, turn_row)
             deviation = self.system.deviation(name)
             rows.append(row_at(balance, deviation, ASSEMBLED, self._closing(ASSEMBLED)))
@@ -194,9 +173,9 @@ class Assembly:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
         blocks = self._empty_blocks()
         for rod, tangent in self.system.tangents.items():
-            strains = self.unknowns.strain(rod)
+            strains = self.discrete.unknowns.strain(rod)
             blocks.add(strains, strains, tangent.jacobian)
-        for placed in self.constraints:
+        for placed in self.discrete.constraints:
             self._add_constraint(blocks, placed)
             if placed.carried is None:
                 self._add_constraint_wrench(blocks, placed)
@@ -206,7 +185,7 @@ class Assembly:
             self._add_borne_load(blocks, borne)
         for terms in self.system.pairs:
             self._add_pair(blocks, terms)
-        for name in self.frames:
+        for name in self.discrete.frames:
             self._add_balance(blocks, name)
         for placed in self.discrete.free_coordinates:
             self._add_coordinate(blocks, placed)
@@ -227,13 +206,13 @@ class Assembly:
     def constraint_jacobian(self) -> Matrix:
         """∂ residual / ∂x with the rows of the constraints alone; the other rows are empty."""
         blocks = self._empty_blocks()
-        for placed in self.constraints:
+        for placed in self.discrete.constraints:
             self._add_constraint(blocks, placed)
         return blocks.matrix()
 
     def _empty_blocks(self) -> BlockMatrix:
         """A matrix of the unknowns' size without blocks."""
-        ends = [entries.stop for entries in self.unknowns.slices.values()]
+        ends = [entries.stop for entries in self.discrete.unknowns.slices.values()]
         return BlockMatrix(ends)
 
     def _section_motion(self, placed: PlacedConstraint) -> Matrix:
@@ -279,10 +258,10 @@ class Assembly:
         closing = self._closing(placed.compliance)
         if placed.carried is None:
             by_strain = variations.section @ self._section_motion(placed)
-            blocks.add(rows, self.unknowns.strain(placed.rod), column_at(by_strain, closing))
+            blocks.add(rows, self.discrete.unknowns.strain(placed.rod), column_at(by_strain, closing))
         for name, derivative in self._of_floating(placed, variations):
             deviation = self.discrete.deviation(name)
-            by_deviation = derivative @ self.frame_poses[name].motion
+            by_deviation = derivative @ self.system.frame_poses[name].motion
             blocks.add(rows, deviation, column_at(by_deviation, closing))
         for column, derivative in self._of_coordinate(placed, variations):
             blocks.add(rows, column, column_at(derivative, closing))
@@ -293,7 +272,7 @@ class Assembly:
         """Blocks of the multipliers in their rod's residual, −δᵀ W / (EI/ℓ), and of W that turns with its frame."""
         constraint = placed.constraint
         poses = self.system.poses(placed)
-        strains = self.unknowns.strain(placed.rod)
+        strains = self.discrete.unknowns.strain(placed.rod)
         # The virtual work of a wrench on the section is δᵀ times it; the residual of a rod is in units of its EI/ℓ.
         work = self._section_motion(placed).T / -constraint.unit
         multipliers = self.discrete.multipliers(placed)
@@ -303,18 +282,18 @@ class Assembly:
         variations = constraint.wrench_variation(poses, self.system.multipliers(placed))
         for name, derivative in self._of_floating(placed, variations):
             deviation = self.discrete.deviation(name)
-            blocks.add(strains, deviation, work @ derivative @ self.frame_poses[name].motion)
+            blocks.add(strains, deviation, work @ derivative @ self.system.frame_poses[name].motion)
         for column, derivative in self._of_coordinate(placed, variations):
             blocks.add(strains, column, work @ derivative)
 
     def _add_turned_loads(self, blocks: BlockMatrix, rod: str) -> None:
         """Blocks of a moving base in the residual of its rod: dead loads turn back, pose-dependent ones change."""
         name = FrameName("rod", rod)
-        frame_pose = self.frame_poses[name]
+        frame_pose = self.system.frame_poses[name]
         base_R_world = frame_pose.pose.rotation.T
         reaction = self._reactions[rod]
         motion = frame_pose.motion
-        strains = self.unknowns.strain(rod)
+        strains = self.discrete.unknowns.strain(rod)
         deviation = self.discrete.deviation(name)
         by_turn, _, _ = reaction.with_turn
         blocks.add(strains, deviation, by_turn @ base_R_world @ motion[:3, :])
@@ -325,26 +304,26 @@ class Assembly:
 
     def _add_borne_load(self, blocks: BlockMatrix, borne: BorneLoad) -> None:
         """Block of the motion of a body in the residual of a rod that is pressed by an obstacle on the body."""
-        strains = self.unknowns.strain(borne.rod)
+        strains = self.discrete.unknowns.strain(borne.rod)
         deviation = self.discrete.deviation(borne.body)
-        blocks.add(strains, deviation, borne.residual_with_body @ self.frame_poses[borne.body].motion)
+        blocks.add(strains, deviation, borne.residual_with_body @ self.system.frame_poses[borne.body].motion)
 
     def _add_pair(self, blocks: BlockMatrix, terms: PairTerms) -> None:
         """Blocks of two rods that push each other in the rows of their strains."""
         for (rod, other), stiffness in terms.stiffness.items():
-            rows = self.unknowns.strain(rod)
+            rows = self.discrete.unknowns.strain(rod)
             work = stiffness[: rows.stop - rows.start, :] / self.discrete.rods[rod].energy_unit
             for columns, block in self._by_side(other, work):
                 blocks.add(rows, columns, block)
 
     def _by_side(self, rod: str, derivative: Matrix) -> Iterator[tuple[slice, Matrix]]:
         """A derivative with the coordinates of a side of a pair, parted into strains and the base of the rod."""
-        strains = self.unknowns.strain(rod)
+        strains = self.discrete.unknowns.strain(rod)
         count = strains.stop - strains.start
         yield strains, derivative[:, :count]
         base = self.discrete.unloaded.floating_base(rod)
         if base is not None:
-            yield self.discrete.deviation(base), derivative[:, count:] @ self.frame_poses[base].motion
+            yield self.discrete.deviation(base), derivative[:, count:] @ self.system.frame_poses[base].motion
 
     # Rows of floating frames
 
@@ -356,15 +335,15 @@ class Assembly:
     @cached_property
     def _wrenches(self) -> dict[FrameName, Matrix]:
         """Wrench [moment about the origin; force] on every floating frame, 6×1, world axes, N m and N."""
-        wrenches: dict[FrameName, Matrix] = {name: ca.DM.zeros(6, 1) for name in self.frames}
-        for placed in self.constraints:
+        wrenches: dict[FrameName, Matrix] = {name: ca.DM.zeros(6, 1) for name in self.discrete.frames}
+        for placed in self.discrete.constraints:
             if placed.frame is not None:
                 reaction = placed.constraint.reaction(self.system.poses(placed), self.system.multipliers(placed))
                 wrenches[placed.frame] = wrenches[placed.frame] + reaction
             if placed.carried is not None:
                 wrench = placed.constraint.on_body(self.system.poses(placed), self.system.multipliers(placed))
                 wrenches[placed.carried.frame] = wrenches[placed.carried.frame] + wrench
-        for name in self.frames:
+        for name in self.discrete.frames:
             if name.kind == "rod":
                 wrenches[name] = wrenches[name] + self._rod_reaction(name)
             for load in self._body_loads[name]:
@@ -379,7 +358,7 @@ class Assembly:
     def _rod_reaction(self, name: FrameName) -> Matrix:
         """Wrench of a rod on its own floating base, world axes."""
         statics = self.system.rods[name.name].statics
-        world_R_base = self.frame_poses[name].pose.rotation
+        world_R_base = self.system.frame_poses[name].pose.rotation
         moment = world_R_base @ statics.base_moment
         force = world_R_base @ statics.base_force
         return -ca.vertcat(moment, force)
@@ -395,8 +374,8 @@ class Assembly:
 
     def _add_balance(self, blocks: BlockMatrix, name: FrameName) -> None:
         """Rows of a frame's balance, from the variations of the wrench on it."""
-        frame = self.frames[name]
-        quaternion = self.frame_poses[name].quaternion
+        frame = self.discrete.frames[name]
+        quaternion = self.system.frame_poses[name].quaternion
         rows = self.discrete.deviation(name)
         turn = turn_matrix(quaternion)
         # From a variation of the wrench [moment; force] to that of the rows [−F ℓ; −Tᵀ M], in units of EI/ℓ.
@@ -417,7 +396,7 @@ class Assembly:
         variations: list[tuple[slice, Matrix]] = []
         # Derivatives with the motions of frames are summed first: B is applied once to each frame.
         by_motion: dict[FrameName, Matrix] = defaultdict(lambda: ca.DM(6, 6))
-        for placed in self.constraints:
+        for placed in self.discrete.constraints:
             if placed.frame == name:
                 variations += self._reaction_variations(placed, by_motion)
             if placed.carried is not None and placed.carried.frame == name:
@@ -431,13 +410,13 @@ class Assembly:
             for moved, derivative in borne.with_motions(name):
                 by_motion[moved] = by_motion[moved] + derivative
             if borne.body == name:
-                variations.append((self.unknowns.strain(borne.rod), borne.wrench_with_strain))
+                variations.append((self.discrete.unknowns.strain(borne.rod), borne.wrench_with_strain))
         for terms in self.system.pairs:
             for (rod, other), stiffness in terms.stiffness.items():
                 if self.discrete.unloaded.floating_base(rod) == name:
                     variations += self._by_side(other, -stiffness[self.discrete.rods[rod].size :, :])
         for moved, derivative in by_motion.items():
-            by_deviation = derivative @ self.frame_poses[moved].motion
+            by_deviation = derivative @ self.system.frame_poses[moved].motion
             variations.append((self.discrete.deviation(moved), by_deviation))
         return variations
 
@@ -449,7 +428,7 @@ class Assembly:
         variations, by_poses = self._wrench_on_frame(placed, constraint.reaction_variation, by_motion)
         # The wrench acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
         if constraint.held.slides and placed.carried is None:
-            strains = self.unknowns.strain(placed.rod)
+            strains = self.discrete.unknowns.strain(placed.rod)
             by_strain = by_poses.section @ self._section_motion(placed)
             variations.append((strains, by_strain))
         return variations
@@ -473,10 +452,10 @@ class Assembly:
         """Variation of the wrench of a rod on its floating base with strains and multipliers; frames into by_motion."""
         rod = name.name
         reaction = self._reactions[rod]
-        rotation = self.frame_poses[name].pose.rotation
+        rotation = self.system.frame_poses[name].pose.rotation
         to_world = ca.diagcat(rotation, rotation)
         by_strain = ca.vertcat(reaction.moment_with_strain, reaction.force_with_strain)
-        variations = [(self.unknowns.strain(rod), -to_world @ by_strain)]
+        variations = [(self.discrete.unknowns.strain(rod), -to_world @ by_strain)]
         by_turn, by_shift = self._base_motion(rod)
         in_base_axes = ca.horzcat(by_turn @ rotation.T, by_shift @ rotation.T)
         by_motion[name] = by_motion[name] - to_world @ in_base_axes
@@ -521,12 +500,12 @@ class Assembly:
     @cached_property
     def _body_loads(self) -> dict[FrameName, list[BodyLoad]]:
         """Loads on the bodies at the load factor; none on the bases of rods."""
-        return {name: list(self._loads_on(name, frame.body)) for name, frame in self.frames.items()}
+        return {name: list(self._loads_on(name, frame.body)) for name, frame in self.discrete.frames.items()}
 
     def _loads_on(self, name: FrameName, body: scenes.Body | None) -> Iterator[BodyLoad]:
         if body is None:
             return
-        pose = self.frame_poses[name].pose
+        pose = self.system.frame_poses[name].pose
         loads = BodyLoads(self.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
         for load in loads.all():
             yield load.scaled(self.load_factor)
@@ -546,7 +525,7 @@ class Assembly:
     def _add_cable(self, blocks: BlockMatrix, cable: CableOfLength) -> None:
         """Row of a cable of given length, and its tension's column in the residual of its rod."""
         equation = self.system.actuators.cable_lengths[cable.tendon.name]
-        strains = self.unknowns.strain(equation.rod)
+        strains = self.discrete.unknowns.strain(equation.rod)
         tension = self.discrete.tension(cable)
         blocks.add(strains, tension, equation.pull)
         blocks.add(tension, strains, column_at(equation.strain_columns, self.load_factor))
@@ -564,9 +543,9 @@ class Assembly:
 
     def _compliances(self) -> Iterator[tuple[slice, Compliance]]:
         """The blocks of unknowns that a spring acts on, with its compliance (model/homotopy.py)."""
-        for placed in self.constraints:
+        for placed in self.discrete.constraints:
             yield self.discrete.multipliers(placed), placed.compliance
-        for name in self.frames:
+        for name in self.discrete.frames:
             yield self.discrete.deviation(name), ASSEMBLED
         for placed in self.discrete.free_coordinates:
             yield self.discrete.coordinate(placed), RELEASED

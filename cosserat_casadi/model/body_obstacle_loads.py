@@ -67,7 +67,7 @@ class BorneLoad:
     @cached_property
     def residual_with_body(self) -> Matrix:
         """Derivative of the residual of the rod with the motion of the body, world axes, n×6."""
-        by_turn, _, _ = self._with_turn
+        by_turn, _, _ = self._reaction.with_turn
         by_shift, _, _ = self._with_shift
         return self._of_body(by_turn, by_shift)
 
@@ -81,7 +81,7 @@ class BorneLoad:
             if self.base_frame is not None:
                 yield self.base_frame, self._wrench_with_base
         elif frame == self.base_frame:
-            _, force_with_turn, moment_with_turn = self._with_turn
+            _, force_with_turn, moment_with_turn = self._reaction.with_turn
             _, force_with_shift, moment_with_shift = self._with_shift
             by_turn = ca.vertcat(moment_with_turn, force_with_turn)
             by_shift = ca.vertcat(moment_with_shift, force_with_shift)
@@ -110,7 +110,7 @@ class BorneLoad:
     def _about_body_with_base(self) -> tuple[Matrix, Matrix]:
         """Derivatives of the wrench on the body with a turn and a shift of the base, base axes, 6×3 each."""
         moment, force = ca.vertsplit(self._clamp, 3)
-        _, force_with_turn, moment_with_turn = self._with_turn
+        _, force_with_turn, moment_with_turn = self._reaction.with_turn
         _, force_with_shift, moment_with_shift = self._with_shift
         # What the base sees turn back turns with it in the world.
         turned = ca.vertcat(moment_with_turn - hat(moment), force_with_turn - hat(force))
@@ -134,10 +134,6 @@ class BorneLoad:
     def _reaction(self) -> Reaction:
         """Variations of the rod's residual and of that clamp."""
         return Reaction(self.system.tangents[self.rod].under(self.load), ())
-
-    @property
-    def _with_turn(self) -> tuple[Matrix, Matrix, Matrix]:
-        return self._reaction.with_turn
 
     @property
     def _with_shift(self) -> tuple[Matrix, Matrix, Matrix]:
