@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.common_modes import Answers, CommonModes, LoadCase, Progress, Values
+from cosserat_casadi.accuracy.common_modes import Answers, CommonModes, LoadCase, Values
 from cosserat_casadi.accuracy.fixing import fixed_by_rod, on_elements_of, unfixed, with_accuracy
 from cosserat_casadi.accuracy.ranges import CaseRanges, Given, input_ranges, ranges_of_cases
 from cosserat_casadi.accuracy.verified import Verified
@@ -22,6 +22,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout
+from cosserat_casadi.numerics.progress import CountProgress
 from cosserat_casadi.result import Shown
 
 LOG = logging.getLogger(__name__)
@@ -88,7 +89,7 @@ def choose(
     scene: scenes.Scene,
     ranges: Given | None = None,
     tolerance: float | None = None,
-    progress: Progress | None = None,
+    progress: CountProgress | None = None,
     samples: int | None = None,
     *,
     cases: Sequence[Values] | None = None,
@@ -150,7 +151,7 @@ class _Search:
 
     scene: scenes.Scene
     ranges: CaseRanges
-    progress: Progress | None
+    progress: CountProgress | None
     points: list[FloatArray] = field(default_factory=list)
     samples: int = 0
 

@@ -27,6 +27,7 @@ from cosserat_casadi.equilibrium.solve import Start, solve
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.parameters import parameter_layout
+from cosserat_casadi.numerics.progress import CountProgress
 
 WORST = 3
 """Cases with the largest errors whose lack is made up at once."""
@@ -50,8 +51,6 @@ FEW_MODES, FEW_NODES = 2, 6
 """Modes and intervals to begin with where the first case has no equilibrium."""
 
 Values = Mapping[str, npt.ArrayLike]
-Progress = Callable[[int, int], None]
-"""Told how many of how many solves are done; the total may grow."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +95,7 @@ class CommonModes:
     """
 
     cases: list[LoadCase]
-    progress: Progress | None = None
+    progress: CountProgress | None = None
     _solves: int = 0
     _last: dict[int, Solution] = field(default_factory=dict)
     _well_within: dict[int, float] = field(default_factory=dict)

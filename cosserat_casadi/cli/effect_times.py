@@ -13,11 +13,11 @@ from rich.markup import escape
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.cli.reports.format import table_of
-from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.codegen.timed_program import Program, Times, best_time
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.operation_cost import without_load
 from cosserat_casadi.model.operations import Count, count
+from cosserat_casadi.numerics.progress import StageProgress
 
 TURNS = 5
 """Times that each model is timed beside others."""
@@ -68,7 +68,7 @@ def _motion_times(model: Model) -> dict[str, float]:
 
 
 def effect_times(
-    scene: scenes.Scene, compiler: str, progress: Progress | None = None
+    scene: scenes.Scene, compiler: str, progress: StageProgress | None = None
 ) -> tuple[Times | str, dict[str, Times | str]]:
     """Times of a scene, and of the scene without each of its loads and actuators by name; a sentence where one fails.
 

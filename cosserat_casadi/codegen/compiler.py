@@ -11,7 +11,7 @@ import signal
 import subprocess
 import tempfile
 import threading
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import suppress
 from pathlib import Path
@@ -28,6 +28,7 @@ from cosserat_casadi.codegen.cache import (
     mark_used,
 )
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.numerics.progress import StageProgress
 
 LOG = logging.getLogger(__name__)
 
@@ -44,16 +45,13 @@ ENDS = (".c", ".cpp", ".cu")
 LONGEST = 1200.0
 """Time that the compiler has for one file, s: the largest file of the examples takes it less than a tenth of that."""
 
-Progress = Callable[[str, int, int], None]
-"""Takes the name of the task, how much of it is done, and how much there is."""
-
 
 def shared_object(
     name: str,
     sources: Sequence[Path],
     headers: Sequence[Path],
     compiler: str,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
     *,
     flags: Sequence[str] | None = None,
     origin: str | None = None,
@@ -98,7 +96,7 @@ def compiled_texts(
     texts: Mapping[str, str],
     compiler: str,
     included: Collection[str] = frozenset(),
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
     *,
     flags: Sequence[str] | None = None,
     origin: str | None = None,
@@ -196,7 +194,12 @@ def _words(command: str) -> list[str]:
 
 
 def _compile(
-    compiler: str, flags: Sequence[str], sources: Sequence[Path], folder: Path, stem: str, progress: Progress | None
+    compiler: str,
+    flags: Sequence[str],
+    sources: Sequence[Path],
+    folder: Path,
+    stem: str,
+    progress: StageProgress | None,
 ) -> Path:
     """Compile sources into a folder, under a name that begins with a stem and tells the content."""
     name = stem.rpartition("-")[0]

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
 from cosserat_casadi.codegen.kernel_files import kernel_sources
@@ -29,6 +29,7 @@ from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.progress import StageProgress
 
 SUFFIX = ".fmu"
 
@@ -78,7 +79,7 @@ def write_fmu(
     error_estimate: float | None = None,
     verified: Verified | None = None,
     compiler: str | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> Path:
     """Write a model in motion as an FMU for co-simulation, with directional derivatives.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.codegen.compiled import Compiled
-from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.compiler import find_compiler, shared_object
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.codegen.manifest import (
     ARRANGEMENTS,
@@ -22,6 +22,7 @@ from cosserat_casadi.codegen.manifest import (
 from cosserat_casadi.codegen.texts import files_in_c
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubes
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.numerics.progress import StageProgress
 
 SCENE = "scene.toml"
 """File of an exported folder: the scene that it was made from."""
@@ -36,7 +37,9 @@ Loaded = Compiled | CompiledContact
 """An exported folder of rods, of rods in exact contact, or of concentric tubes."""
 
 
-def load(directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None) -> Loaded:
+def load(
+    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: StageProgress | None = None
+) -> Loaded:
     """Compile an exported folder, once, and load it.
 
     The shared object lies in the user's cache folder under a name that holds a hash of sources, compiler and flags:

@@ -20,7 +20,7 @@ import numpy as np
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.cache import kept_texts
-from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import (
     adjoint_and_second,
@@ -34,6 +34,7 @@ from cosserat_casadi.codegen.stage import (
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
+from cosserat_casadi.numerics.progress import StageProgress
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def compiled_motion_stage(
     *,
     curvature: bool = False,
     compiler: str | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> CompiledMotionStage:
     """The equations of a stage in motion and its poses, compiled once, with compiled derivatives.
 

@@ -17,7 +17,7 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.cache import kept_texts
-from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import identifier, library_names
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
@@ -28,6 +28,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import RELAXED, refuse_obstacles
 from cosserat_casadi.model.section_poses import SectionPoses, section_weights
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.numerics.progress import StageProgress
 
 PARTS = 4
 """Functions of a stage: its value, its Jacobian, its adjoint and the Jacobian of that."""
@@ -41,7 +42,7 @@ def compiled_stage(
     sections: Mapping[str, Sequence[float]] | None = None,
     actuators: Sequence[str] = (),
     compiler: str | None = None,
-    progress: Progress | None = None,
+    progress: StageProgress | None = None,
 ) -> ca.Function:
     """(x, inputs) ↦ (residual, pose of every tip and body, …), compiled once, with compiled derivatives.
 
@@ -92,7 +93,7 @@ def compiled_stage(
     return ca.external(name, os.fspath(compiled_texts(name, texts, found, progress=progress)))
 
 
-def written_in_c(functions: Iterator[ca.Function], name: str, progress: Progress | None) -> dict[str, str]:
+def written_in_c(functions: Iterator[ca.Function], name: str, progress: StageProgress | None) -> dict[str, str]:
     """Sources and headers of functions by file name, each function in a separate file.
 
     Args:

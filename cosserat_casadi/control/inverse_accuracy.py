@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, overload
 
@@ -30,12 +30,7 @@ from cosserat_casadi.maths.pose_change import rotation_angles
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.outcome import Outcome
-
-Report = Callable[[str], None]
-"""Told the discretisation."""
-
-Progress = Callable[[int, int], None]
-"""Told how many of how many rows are settled."""
+from cosserat_casadi.numerics.progress import CountProgress, Report
 
 Targets = tuple[scenes.Target, ...]
 """Targets that are to be met at once."""
@@ -96,7 +91,7 @@ def inverse_rows(
     *,
     stable: bool = False,
     report: Report | None = None,
-    progress: Progress | None = None,
+    progress: CountProgress | None = None,
 ) -> list[Inverse]:
     """Inputs for each of many sets of targets, every model built once for all rows that need it.
 
@@ -159,7 +154,7 @@ def _searched(
     model: SystemFunctions,
     rows: Sequence[Targets],
     stable: bool,
-    progress: Progress | None,
+    progress: CountProgress | None,
     report: Report | None,
 ) -> dict[int, Inverse]:
     """The search of every row on the first discretisation, each from its nearest neighbour that is met."""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.operations import Count, count, counts
+from cosserat_casadi.numerics.progress import StageProgress
 from cosserat_casadi.scene.records import HashedTable
-
-PriceProgress = Callable[[str, int, int], None]
-"""A function that takes the part being counted, the number of counts that are done, and their total."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +35,7 @@ def _sum(of_rods: list[Count]) -> Count:
     return Count(number, exact)
 
 
-def prices_of_effects(scene: scenes.Scene, progress: PriceProgress | None = None) -> dict[str, Count]:
+def prices_of_effects(scene: scenes.Scene, progress: StageProgress | None = None) -> dict[str, Count]:
     """Operations that each load, actuator, obstacle with a width and contact of rods adds to the residual, by name.
 
     The price is the residual with the effect less the residual without it; of contact also without the elements that it

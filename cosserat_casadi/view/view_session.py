@@ -17,7 +17,6 @@ from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
-from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.load import load
 from cosserat_casadi.equilibrium.metrics import prolong
@@ -31,6 +30,7 @@ from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.motion_refinement import simulate
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.motion.vibration_modes import modes_of
+from cosserat_casadi.numerics.progress import StageProgress
 from cosserat_casadi.page.drawn_model import DrawnModel, drawn_numbers
 from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.tubes.tube_solution import TubeSolution
@@ -180,7 +180,9 @@ def is_compiled(scene: scenes.Scene) -> bool:
     return True
 
 
-def opened(solution: Equilibrium[Any], progress: Progress | None = None, asked: Given | None = None) -> RobotSession:
+def opened(
+    solution: Equilibrium[Any], progress: StageProgress | None = None, asked: Given | None = None
+) -> RobotSession:
     """A session of a solved scene, with its library compiled, or found compiled, where it has one.
 
     Args:
