@@ -2,89 +2,63 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
-from typing import Any
 
-POSE_KINDS = ("rod", "body")
-"""Owners of a point that is led: the tip of a rod, or a body."""
+from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 
 
 class QuestionError(Exception):
     """The bytes are no question that is answered here."""
 
 
-@dataclass(frozen=True)
-class Question:
-    """Parts of a question, each checked when it is taken."""
+class Question(BaseModel):
+    """Parts of a question.
 
-    parts: Mapping[str, Any]
+    Attributes:
+        inputs: stacked inputs; None for null, which JSON has in place of a number.
+        position: a point in world axes, m.
+        pose: the tip or the body that is led to it: {"rod": name} or {"body": name}.
+    """
+
+    model_config = ConfigDict(strict=True, frozen=True)
+
+    inputs: list[FiniteFloat | None] = []
+    position: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    pose: dict[str, str] = {}
 
     @classmethod
     def read(cls, content: bytes) -> Question:
         """A question from the JSON that was sent; one without content has no parts.
 
         Raises:
-            QuestionError: it is no JSON, or no object.
+            QuestionError: it is no JSON object, or a part is not of its type.
         """
         try:
-            parts = json.loads(content or b"{}")
-        except (ValueError, RecursionError):
-            raise QuestionError("the question is not JSON that can be read") from None
-        if not isinstance(parts, dict):
-            raise QuestionError("the question is no JSON object")
-        return cls(parts)
+            return cls.model_validate_json(content or b"{}")
+        except ValidationError as error:
+            fault = error.errors(include_url=False, include_input=False)[0]
+            part = fault["loc"][0] if fault["loc"] else "the question"
+            raise QuestionError(f"{part}: {fault['msg']}") from None
 
-    def inputs(self, count: int) -> list[float | None]:
-        """So many stacked inputs; None for null, which JSON has in place of a number.
-
-        Raises:
-            QuestionError: they are missing, or are not so many numbers.
-        """
-        values = self._list("inputs", count)
-        return [None if value is None else _number("inputs", value) for value in values]
-
-    def position(self) -> list[float]:
-        """A point in world axes, shape (3,), m.
+    def all_inputs(self, count: int) -> list[float | None]:
+        """The inputs, which must be so many.
 
         Raises:
-            QuestionError: it is missing, or is no point.
+            QuestionError: they are not.
         """
-        position = [_number("position", value) for value in self._list("position", 3)]
-        if not all(map(math.isfinite, position)):
-            raise QuestionError("position must be finite")
-        return position
+        if len(self.inputs) != count:
+            raise QuestionError(f"inputs must be a list of {count}")
+        return self.inputs
 
-    def pose(self, names: Mapping[str, Collection[str]]) -> dict[str, str]:
-        """The tip or the body that is led: {"rod": name} or {"body": name}.
-
-        Args:
-            names: of the rods and the bodies of the scene, by kind.
+    def point(self, names: Mapping[str, Collection[str]]) -> tuple[dict[str, str], list[float]]:
+        """What is led, and where to, of a scene with these names of rods and bodies, by kind.
 
         Raises:
-            QuestionError: it is missing, or the scene does not have it.
+            QuestionError: a part is missing, or names nothing of the scene.
         """
-        pose = self.parts.get("pose")
-        if not isinstance(pose, dict) or len(pose) != 1:
-            raise QuestionError("pose must name one rod or one body")
-        ((kind, name),) = pose.items()
-        if kind not in POSE_KINDS or not isinstance(name, str) or name not in names[kind]:
+        if self.position is None or len(self.pose) != 1:
+            raise QuestionError("a position, and a pose that names one rod or one body, are asked for")
+        ((kind, name),) = self.pose.items()
+        if name not in names.get(kind, ()):
             raise QuestionError("pose names no rod and no body of the scene")
-        return {kind: name}
-
-    def _list(self, name: str, count: int) -> list[Any]:
-        values = self.parts.get(name)
-        if not isinstance(values, list) or len(values) != count:
-            raise QuestionError(f"{name} must be a list of {count}")
-        return values
-
-
-def _number(name: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise QuestionError(f"{name} must hold numbers")
-    try:
-        return float(value)
-    except OverflowError:
-        raise QuestionError(f"{name} has a number beyond all range") from None
+        return self.pose, list(self.position)

@@ -97,9 +97,9 @@ class Desk:
             raise QuestionError("the page asks no such question")
         given: list[Any] = []
         if name in ("move", "reset", "refined"):
-            given = [question.inputs(session.input_count)]
+            given = [question.all_inputs(session.input_count)]
         elif name == "reach":
-            given = [question.pose(session.pose_names), question.position()]
+            given = [*question.point(session.pose_names)]
         # A motion and other modes may take a minute, in which the robot can be moved: they have models of their own.
         at_once = name not in ("motion", "refined")
         with self._lock if at_once else nullcontext():
