@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import poses_of, section_poses
 from cosserat_casadi.motion.trajectory import Motion
-from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.canvas import add_canvas
 from cosserat_casadi.plots.colours import FAILURE, OBSTACLES, PLAIN_TEXT, actuator_colour, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
@@ -330,16 +330,11 @@ class _Film:
         plane, view_axes = shapes.view
         if frames.section_axes:
             plane = None
-        projection = None
-        if plane is None:
-            projection = "3d"
-
         self.figure = figure_class()(figsize=SIZE, layout="constrained")
         title = textwrap.fill(frames.model.scene.title or "Untitled scene", TITLE_LETTERS)
         self.figure.suptitle(title, fontsize=11, fontweight="bold")
-        axes = self.figure.add_subplot(projection=projection)
         self._frames = frames
-        self._canvas = Canvas(axes, plane, shapes.size, view_axes)
+        self._canvas = add_canvas(self.figure, (), (plane, view_axes), shapes.size)
         self._lines = self._draw(shapes) + self._draw_obstacles(frames, shapes)
         if frames.section_axes:
             self._lines += self._draw_section_axes(frames, shapes)
@@ -347,7 +342,7 @@ class _Film:
         draw_surfaces(self._canvas, standing, shapes.points, {})
         draw_supports(self._canvas, frames.model.scene)
         self._set_limits(shapes)
-        handles, labels = axes.get_legend_handles_labels()
+        handles, labels = self._canvas.axes.get_legend_handles_labels()
         # One rod alone needs no name.
         if len(handles) > 1:
             self.figure.legend(handles, labels, loc="outside right center", fontsize=9)

@@ -244,3 +244,12 @@ class Canvas:
         sides = self.axes.get_position().size * self.axes.figure.get_size_inches()
         room = PANEL * (sides - 2 * (SMALL_MARGIN if self.small else MARGIN)) / sides.min()
         return float((room / seen).min())
+
+
+def add_canvas(
+    figure: Any, cell: tuple[Any, ...], view: tuple[Plane | None, FloatArray], size: float, *, small: bool = False
+) -> Canvas:
+    """New axes in a cell of a figure, as ``add_subplot`` takes it; a view is a plane, None in space, and its axes."""
+    plane, view_axes = view
+    axes = figure.add_subplot(*cell, projection="3d" if plane is None else None)
+    return Canvas(axes, plane, size, view_axes, small)

@@ -18,7 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
 from cosserat_casadi.plots.animation import FRAME_RATE, AnimationFrames, save_frames
-from cosserat_casadi.plots.canvas import WORLD, Canvas
+from cosserat_casadi.plots.canvas import WORLD, Canvas, add_canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.plots.scene_view import View, view_of
@@ -80,14 +80,9 @@ def plot_modes(modes: Modes) -> Any:
     lines = _mode_lines(modes)
     for index, mode in enumerate(modes.modes):
         drawn = lines[index]
-        projection = None
-        plane, view_axes = drawn.view
-        if plane is None:
-            projection = "3d"
-        axes = figure.add_subplot(rows, columns, index + 1, projection=projection)
-        canvas = Canvas(axes, plane, drawn.size, view_axes, small=True)
+        canvas = add_canvas(figure, (rows, columns, index + 1), drawn.view, drawn.size, small=True)
         _draw_mode(canvas, modes, drawn)
-        axes.set_title(mode_words(mode, index), fontsize=10, color=FAILURE if mode.grows else PLAIN_TEXT)
+        canvas.axes.set_title(mode_words(mode, index), fontsize=10, color=FAILURE if mode.grows else PLAIN_TEXT)
     return figure
 
 

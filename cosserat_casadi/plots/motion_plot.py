@@ -16,7 +16,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
-from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.canvas import Canvas, add_canvas
 from cosserat_casadi.plots.colours import CATEGORIES, FAILURE, rod_style
 from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
@@ -80,7 +80,7 @@ def plot_motion(motion: Motion) -> Any:
     figure.get_layout_engine().set(wspace=COLUMN_SPACE)
     grid = figure.add_gridspec(panel_count, 2, width_ratios=(1.25, 1.0))
     shapes = moving_shapes(motion.model, motion.times, motion.x, motion.inputs)
-    canvas = _add_canvas(figure, grid[:, 0], shapes)
+    canvas = add_canvas(figure, (grid[:, 0],), shapes.view, shapes.size)
     _draw_shapes(canvas, motion, shapes)
     _draw_paths(figure, canvas, shapes)
     canvas.label_axes()
@@ -104,14 +104,6 @@ def plot_motion(motion: Motion) -> Any:
         panel.tick_params(labelbottom=False)
     panels[-1].set_xlabel("time, s")
     return figure
-
-
-def _add_canvas(figure: Any, cell: Any, shapes: MovingShapes) -> Canvas:
-    plane, view_axes = shapes.view
-    projection = None
-    if plane is None:
-        projection = "3d"
-    return Canvas(figure.add_subplot(cell, projection=projection), plane, shapes.size, view_axes)
 
 
 def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:

@@ -17,7 +17,7 @@ from cosserat_casadi.loads.load import Arrow, Poses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.arrow_records import LoadArrows
 from cosserat_casadi.plots.arrows import draw_arrows
-from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.canvas import Canvas, add_canvas
 from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
@@ -47,11 +47,7 @@ def plot_solution(solution: Solution) -> Any:
     grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))
     shapes = rod_shapes(solution)
     arrows = scene_arrows(solution)
-    plane, view_axes = scene_view(shapes, arrows)
-    projection = None
-    if plane is None:
-        projection = "3d"
-    canvas = Canvas(figure.add_subplot(grid[:, 0], projection=projection), plane, shapes.size, view_axes)
+    canvas = add_canvas(figure, (grid[:, 0],), scene_view(shapes, arrows), shapes.size)
     _draw_scene(canvas, solution, shapes, arrows)
     # Below the axes, where it covers no rod.
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)

@@ -18,7 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.tube_path import TubeEvent, TubePath
 from cosserat_casadi.plots.animation import SIZE, check_animation_path, save_film
 from cosserat_casadi.plots.arrows import draw_arrows
-from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.canvas import WORLD, Canvas, add_canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.path_plot import path_interval, shown_points
@@ -53,7 +53,7 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
     grid = figure.add_gridspec(1, 2, width_ratios=(1.3, 1.0))
     points = np.concatenate([solution.shape.position for solution in solutions])
     size = float(np.ptp(points, axis=0).max())
-    canvas = Canvas(figure.add_subplot(grid[0, 0], projection="3d"), None, size)
+    canvas = add_canvas(figure, (grid[0, 0],), (None, WORLD), size)
     panel = figure.add_subplot(grid[0, 1])
     for number, equilibrium in enumerate(solutions):
         _draw_robot(canvas, equilibrium, number, several=len(solutions) > 1)
@@ -200,7 +200,7 @@ def animate_tube_path(path: TubePath, file: str | Path, *, progress: Callable[[f
     solutions = [path.solutions[index] for index in shown]
     points = np.concatenate([solution.shape.position for solution in solutions])
     figure = figure_class()(figsize=SIZE, layout="constrained")
-    canvas = Canvas(figure.add_subplot(projection="3d"), None, float(np.ptp(points, axis=0).max()))
+    canvas = add_canvas(figure, (), (None, WORLD), float(np.ptp(points, axis=0).max()))
     tips = np.array([solution.tip().position for solution in solutions])
     trail = canvas.line(tips[:1], color="0.55", linewidth=1.2)
     tubes = _draw_nested(canvas, solutions[0])
