@@ -158,12 +158,20 @@ class SmoothBarriers:
         differs = slice(None) if p.shape[1] or self.model.inputs.geometry else slice(1)
         for rod, obstacle in self.watched:
             properties = self.model.at().discrete.rods[rod].properties
-            given = p if p.shape[1] else None
+            allowed = _allowed(obstacle, properties.length)
             looked_at = self._looked_at[rod]
-            end = looked_at.paths(obstacle, x, inputs, ROUGHLY, given)
-            start = looked_at.paths(obstacle, unloaded[differs], inputs[differs], ROUGHLY, given)
-            start = np.broadcast_to(start, end.shape)
-            barred |= ways_inside(obstacle, properties, start, end, _allowed(obstacle, properties.length), ROUGHLY)
+            suspected = np.flatnonzero(~barred)
+            # Few sections leave few states in doubt: of these all sections decide.
+            for every in (ROUGHLY, 1):
+                if not suspected.size:
+                    break
+                given = [part[suspected] for part in (inputs, *([p] if p.shape[1] else []))]
+                end = looked_at.paths(obstacle, x[suspected], *given, every=every)
+                given = [part[differs] for part in given]
+                start = looked_at.paths(obstacle, unloaded[suspected][differs], *given, every=every)
+                start = np.broadcast_to(start, end.shape)
+                suspected = suspected[ways_inside(obstacle, properties, start, end, allowed, every)]
+            barred[suspected] = True
         for layer in self.watched_bodies:
             for row in np.flatnonzero(~barred):
                 way = (self._place(layer, unloaded[row], inputs[row]), self._place(layer, x[row], inputs[row]))
@@ -184,7 +192,7 @@ class SmoothBarriers:
         """Whether a rod or body is deep inside an obstacle on the straight ways from state to state."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            paths = self._looked_at[rod].paths(obstacle, x, inputs, ROUGHLY)
+            paths = self._looked_at[rod].paths(obstacle, x, inputs, every=ROUGHLY)
             way = (paths[:-1], paths[1:])
             if is_inside_between(obstacle, properties, *way, _allowed(obstacle, properties.length), ROUGHLY):
                 return True

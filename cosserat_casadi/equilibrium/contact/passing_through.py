@@ -28,6 +28,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     seen_sections,
 )
 from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -40,7 +41,10 @@ DEEP = 1e-3
 """Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
 
 MIDDLE = 0.7
-"""Share of the radius of a bar or ball to which a rod may sink in: deeper it would come out on the other side."""
+"""Share of the way from its surface to the middle of a bar or ball by which a rod may sink in.
+
+Deeper it would come out on the other side. A rod with a radius touches before its centre line is at the surface.
+"""
 
 FINEST = 0.25
 """Width of the smallest parts, relative to the depth that is admitted: they miss no way through the middle."""
@@ -74,8 +78,9 @@ class LookedAt:
         obstacle: scenes.ObstacleRecord,
         x: FloatArray,
         inputs: FloatArray,
-        every: int,
         p: FloatArray | None = None,
+        *,
+        every: int,
     ) -> FloatArray:
         """Positions as of :meth:`positions` in T states, at one of ``every`` SECTIONS, shape (T, k, 3), m.
 
@@ -83,8 +88,8 @@ class LookedAt:
             obstacle: what sees them.
             x: unknowns, shape (T, model.size).
             inputs: stacked inputs, shape (T, model.inputs.size).
-            every: number of SECTIONS of which positions have one.
             p: parameters, shape (T, model.parameters.size), of a model that has some, whose obstacle stands still.
+            every: number of SECTIONS of which positions have one.
         """
         at_nodes = evaluated(self.model.fields[self.rod], x, inputs, *([] if p is None else [p]))[0]
         positions = np.asarray(self._interpolation[::every] @ np.swapaxes(at_nodes, 1, 2))
@@ -184,13 +189,29 @@ def ways_inside(
             several ways, shape (ways, k, 3).
         end: others, likewise.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
-            :data:`MIDDLE` of the radius of a bar or ball.
+            :data:`MIDDLE` of the way of its thinnest section to the middle.
         every: step from one of SECTIONS to the next one of the positions.
     """
-    admitted = min(deepest * properties.length, MIDDLE * obstacle.thickness / 2)
+    thinnest = float(section_radius(properties, SECTIONS).min())
+    admitted = min(deepest * properties.length, MIDDLE * (obstacle.thickness / 2 + thinnest))
     return _sinking(
-        lambda positions, X: section_gaps(obstacle, properties, positions, X), start, end, SECTIONS[::every], admitted
+        lambda positions, X: section_gaps(obstacle, properties, positions, X),
+        start,
+        end,
+        SECTIONS[::every],
+        admitted,
+        np.maximum(_off_chords(start), _off_chords(end)),
     )
+
+
+def _off_chords(positions: FloatArray) -> FloatArray:
+    """How far rods may be off the straight lines between their sections, shape (ways,), m.
+
+    Between sections at a distance h the arc of the curvature κ is κ h²/8 off its chord, and second differences of
+    positions are κ h². Twice that, since the curvature changes between sections.
+    """
+    bends = np.linalg.norm(np.diff(positions, 2, axis=-2), axis=-1)
+    return np.atleast_1d(bends.max(axis=-1, initial=0.0) / 4)
 
 
 def _sinking(
@@ -199,6 +220,7 @@ def _sinking(
     end: FloatArray,
     X: FloatArray,
     admitted: float,
+    off: float | FloatArray = 0.0,
 ) -> npt.NDArray[np.bool_]:
     """Straight ways of sections from their positions to others on which a gap is below −admitted, shape (ways,).
 
@@ -208,10 +230,12 @@ def _sinking(
         end: others, likewise.
         X: abscissae, shape (k,).
         admitted: depth, m.
+        off: how far the rod may be off the straight lines between its sections, m, or that of each way, shape (ways,).
     """
     start, end = start.reshape(-1, 3), end.reshape(-1, 3)
     sections = len(X)
     sunk = np.zeros(len(start) // sections, dtype=bool)
+    least: FloatArray = np.broadcast_to(np.asarray(off - admitted, dtype=float), sunk.shape)
     joints = np.arange(1, len(start)) % sections == 0
     X = np.tile(X, len(sunk))
     # Types are written: to infer those of what the loop changes takes the type checker six seconds.
@@ -231,11 +255,12 @@ def _sinking(
         after: FloatArray = (1 - weight) * end[first] + weight * end[first + 1]
         abscissae = X[first] + weight[:, 0] * (X[first + 1] - X[first])
         gaps = gaps_at(before + share[:, None] * (after - before), abscissae)
-        sunk[first[gaps < -admitted] // sections] = True
+        way = first // sections
+        sunk[way[gaps < least[way]]] = True
         by_section = along * stretches[first]
         by_way = across * np.maximum(ways[first], ways[first + 1])
         reach = (by_section + by_way) / 2
-        halved = (gaps - reach < -admitted) & (reach > FINEST * admitted) & ~sunk[first // sections]
+        halved = (gaps - reach < least[way]) & (reach > FINEST * admitted) & ~sunk[way]
         longer = (by_section > by_way)[halved]
         first = np.tile(first[halved], 2)
         section, share, along, across = (part[halved] for part in (section, share, along, across))
