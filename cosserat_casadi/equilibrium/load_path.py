@@ -86,6 +86,18 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     )
 
 
+def backwards(path: Path, end: FloatArray) -> Path:
+    """A path from an equilibrium at its end, t = 1, to its start."""
+    return replace(
+        path,
+        residual=lambda x, t: path.residual(x, 1.0 - t),
+        jacobian=lambda x, t: path.jacobian(x, 1.0 - t),
+        rate=lambda x, t: -path.rate(x, 1.0 - t),
+        start=end,
+        tangent=None,
+    )
+
+
 def input_path(
     model: SystemFunctions,
     start: FloatArray,

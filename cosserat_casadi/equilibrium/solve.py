@@ -18,7 +18,7 @@ from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
-from cosserat_casadi.equilibrium.load_path import column, continuation_limits, input_path, load_path
+from cosserat_casadi.equilibrium.load_path import backwards, column, continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, are_one, past_no_obstacle
@@ -272,16 +272,23 @@ def _relaxed_past_no_obstacle(
     return None if barriers.are_between(solution.x, settled.x, ends) else settled
 
 
-def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool:
-    """Whether an equilibrium is behind a smooth obstacle or a rod.
+def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool | None:
+    """Whether an equilibrium is behind a smooth obstacle or a rod; None where that is not known.
 
-    The straight way from the unloaded shape leads through it then, and the load path comes to another equilibrium.
+    The straight way from the unloaded shape leads through it then, and as the loads vanish the rods come to another
+    shape. Where that path stalls, an equilibrium to which growing loads lead is on this side. No path leads through an
+    obstacle or a rod.
     """
     barriers = SmoothBarriers(model)
-    if not barriers.any or not barriers.are_between(model.unloaded(), x, (inputs, inputs)):
+    unloaded = model.unloaded()
+    if not barriers.any or not barriers.are_between(unloaded, x, (inputs, inputs)):
         return False
+    path = past_no_obstacle(backwards(load_path(model, inputs), x), model, (inputs, inputs))
+    released = follow(path, continuation_limits(model, watched=True))
+    if released.outcome is Outcome.CONVERGED:
+        return not are_one(released.x, unloaded)
     led = solve(model, inputs, estimate_error=False)
-    return not (led.converged and are_one(led.x, x))
+    return False if led.converged and are_one(led.x, x) else None
 
 
 def _settled_on_obstacles(

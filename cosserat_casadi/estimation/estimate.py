@@ -36,7 +36,14 @@ from cosserat_casadi.estimation.beforehand import (
     with_unknown_parameters,
 )
 from cosserat_casadi.estimation.consistency import Consistency, consistency
-from cosserat_casadi.estimation.estimate_outcome import BEHIND, NOT_DETERMINED, REASONS, Estimate, information_of
+from cosserat_casadi.estimation.estimate_outcome import (
+    BEHIND,
+    NOT_DETERMINED,
+    REASONS,
+    UNREACHED,
+    Estimate,
+    information_of,
+)
 from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact
@@ -95,17 +102,17 @@ def estimate_model(
     told = information_of(found.first(own), known, layout.own_labels)
     inputs = table.inputs.copy()
     inputs[:, indices] = found.unknowns
-    behind = _behind(model, found, inputs)
-    told = replace(told, determined=told.determined & ~behind)
-    covariance = np.where(behind[:, None, None], np.nan, told.covariance)
+    beyond = _beyond_obstacles(model, found, inputs)
+    barred = np.array([bool(word) for word in beyond])
+    told = replace(told, determined=told.determined & ~barred)
+    covariance = np.where(barred[:, None, None], np.nan, told.covariance)
     drawn = None
     if model.scene.estimation.draws:
         drawn = search.sampled(found, covariance, model.scene.estimation.draws)
         covariance = np.where(drawn.sound[:, None, None], drawn.covariance, covariance)
     outcomes = []
-    for ending, determined, hidden in zip(found.outcome.tolist(), told.determined.tolist(), behind, strict=True):
-        word = BEHIND if hidden else NOT_DETERMINED
-        outcomes.append(word if ending == 0 and not determined else ENDINGS[ending])
+    for ending, determined, word in zip(found.outcome.tolist(), told.determined.tolist(), beyond, strict=True):
+        outcomes.append((word or NOT_DETERMINED) if ending == 0 and not determined else ENDINGS[ending])
     values = np.where(told.determined[:, None], found.unknowns[:, :own], np.nan)
     inputs[:, indices] = np.where(told.determined[:, None], found.unknowns, np.nan)
     sensors = sensor_names(model, sections, table.at)
@@ -136,21 +143,23 @@ def estimate_model(
     return replace(result, warnings=tuple(remarks))
 
 
-def _behind(model: Model, found: Estimates, inputs: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether the equilibrium of each row is behind a smooth obstacle or a rod, shape (cases,).
+def _beyond_obstacles(model: Model, found: Estimates, inputs: FloatArray) -> list[str]:
+    """Of each row BEHIND where it is behind a smooth obstacle or a rod, UNREACHED where it may be, else nothing.
 
     Args:
         model: with its parameters free.
         found: estimates of the rows.
         inputs: stacked inputs, then parameters, of each row, shape (cases, inputs + parameters).
     """
-    behind = np.zeros(len(found.x), dtype=bool)
+    words = [""] * len(found.x)
     if not SmoothBarriers(model).any:
-        return behind
+        return words
     for row in np.flatnonzero(found.outcome == 0):
         given, parameters = np.split(inputs[row], [model.inputs.size])
-        behind[row] = is_behind(model.at(parameters), found.x[row], given)
-    return behind
+        behind = is_behind(model.at(parameters), found.x[row], given)
+        if behind is not False:
+            words[row] = BEHIND if behind else UNREACHED
+    return words
 
 
 def _stability(result: Estimate) -> Iterator[bool | None]:

@@ -37,6 +37,9 @@ NOT_DETERMINED = "not_determined"
 BEHIND = "behind"
 """Word for a row whose search led through a smooth obstacle or a rod."""
 
+UNREACHED = "unreached"
+"""Word for a row whose search may have led through one: paths of its loads stall before they show that."""
+
 
 @dataclass(frozen=True, repr=False)
 class Estimate(Result):
@@ -140,6 +143,7 @@ REASONS = {
     "singular": "A limit or bifurcation point: no derivatives there.",
     "not_found": "The search found no least misfit.",
     BEHIND: "The search led through an obstacle or a rod, which no load brings the rods past: give a nearer prior.",
+    UNREACHED: "An obstacle or a rod is in the way, and paths of loads stall: rods may be behind.",
     NOT_DETERMINED: "Neither data nor priors determine the unknowns: give priors, or measure more.",
 }
 """Why a case was not found, by its outcome."""

@@ -34,8 +34,10 @@ from cosserat_casadi import (
 )
 from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.control import embedded, motion_stage
+from cosserat_casadi.equilibrium.contact.passing_through import LookedAt
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
+from cosserat_casadi.equilibrium.solve import is_behind
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.estimation.estimate import estimate
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
@@ -751,6 +753,33 @@ def test_no_row_of_estimates_is_found_behind_a_wire() -> None:
         assert np.isnan(found.values[1, 0]) == bool(obstacle)
 
 
+@pytest.mark.parametrize(
+    ("begun", "force", "wire", "behind"),
+    [
+        ([0, 0, -0.3], [0, 0, -0.3], [0.9, -0.1], True),
+        pytest.param([-1.8, 0, 0.02], [-1.8, 0, -0.02], [0.5, 0.01], None, marks=pytest.mark.slow),
+        ([0, 0, -0.3], [0, 0, -0.3], [0.9, -0.3], False),
+    ],
+    ids=["below", "snapped", "above"],
+)
+def test_what_paths_of_loads_do_not_tell_to_be_behind_is_not_known_to_be(
+    begun: list[float], force: list[float], wire: list[float], behind: bool | None
+) -> None:
+    """A rod below a wire stays there as its load vanishes; a column that fell against its load snaps on that way."""
+
+    def with_wire_at(x: float, z: float, force: list[float]) -> Model:
+        ends = [f"wire.{end}={[x, y, z]}" for end, y in (("from", -1.0), ("to", 1.0))]
+        few = ["accuracy.modes=3", "accuracy.nodes=8"]
+        return build(parse_scene(ROD + PUSH + WIRE, [*few, *ends, f"push.force={force}"]))
+
+    free = solve(with_wire_at(0.5, 5.0, begun), stable=begun[0] < 0)
+    model = with_wire_at(*wire, force)
+    found = solve(model, start=free.x)
+    assert found.converged
+    assert_allclose(found.tip().position, free.tip().position, rtol=0, atol=2e-2)
+    assert is_behind(model, found.x, found.inputs) is behind
+
+
 THIN = WIRE.replace("radius = 4e-3", "radius = 1e-3").replace("width = 1e-3", "width = 4e-4")
 
 CROSSING = """
@@ -795,6 +824,59 @@ def test_rows_behind_are_those_whose_straight_way_is_barred(head: str, barriers:
     ]
     assert found.tolist() == one_by_one
     assert 0 < found.sum() < len(x)
+
+
+THICK = """
+schema = 1
+accuracy = { modes = 4, nodes = 10 }
+[[rods]]
+name = "rod"
+length = 0.5
+strain = "planar"
+material = { youngs_modulus = 1e6, poisson_ratio = 0.4, density = 1000.0 }
+section = { shape = "circle", radius = 0.01 }
+base = { tangent = [1, 0, 0] }
+[[obstacles]]
+name = "wire"
+kind = "capsule"
+from = [0.35, -1, -0.013]
+to = [0.35, 1, -0.013]
+radius = 1e-3
+width = 9.5e-4
+stiffness = 4000.0
+"""
+
+
+def test_a_thick_rod_may_sink_into_a_thin_wire_by_its_width() -> None:
+    """By 0.94 of the radius of the wire, a tenth of that of the rod: its axis is far from the middle of the wire."""
+    model = build(parse_scene(THICK + PUSH.replace("-0.6", "-0.03")))
+    pressed = solve(model)
+    assert pressed.converged
+    (contact,) = pressed.contacts
+    assert contact.gap is not None and -9.5e-4 < contact.gap < -9e-4
+    harder = solve(model, {"push.force": [0, 0, -0.0303]}, start=pressed)
+    assert harder.converged, harder.message
+    assert harder.contacts[0].gap < contact.gap
+
+
+@pytest.mark.parametrize(("beyond", "passes"), [(4.5e-5, True), (-1e-4, False)], ids=["through", "before"])
+def test_a_wire_between_the_few_sections_that_are_looked_at_bars_the_way(beyond: float, passes: bool) -> None:
+    """A rod that coils past a wire, or not as far: the chords of every eighth section are 7.5e-5 off its arc."""
+    few = ["accuracy.modes=1", "accuracy.nodes=6"]
+    model = build(parse_scene(ROD + PUSH + THIN, few))
+    x = np.full(model.size, 6.0)
+    assert_allclose(model.tip["rod"](x, model.pack())[0].full()[0, 0], np.sin(6.0) / 6.0, rtol=0, atol=1e-6)
+    # The place of X = 0.505, and the direction in which the rod comes there.
+    nodes = LookedAt(model, "rod").positions(model.scene.obstacles[0], x, model.pack())
+    outwards = nodes[404] - (nodes[400] + nodes[408]) / 2
+    centre = nodes[404] - beyond * outwards / np.linalg.norm(outwards)
+    ends = [f"wire.{end}={[float(centre[0]), y, float(centre[2])]}" for end, y in (("from", -1.0), ("to", 1.0))]
+    barriers = SmoothBarriers(
+        build(parse_scene(ROD + PUSH + THIN, [*few, *ends, "wire.radius=4e-5", "wire.width=1e-5"]))
+    )
+    inputs = model.pack()
+    assert barriers.are_between(model.unloaded(), x, (inputs, inputs)) == passes
+    assert barriers.barred(x[None], inputs[None]).tolist() == [passes]
 
 
 @pytest.mark.slow
