@@ -24,6 +24,9 @@ THINNEST = 1e-3
 MOST_ENDS = 400
 """Ends of steps at which rods are looked at, at most: of more steps every second, third, …"""
 
+NOT_OF_RODS = "A motion of the discrete model was computed that rods cannot make."
+"""First sentence where a motion leads through an obstacle or a rod: more modes would not help."""
+
 CLOSER = 17
 """Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
 
@@ -79,7 +82,7 @@ def too_deep(history: History, duration: float) -> str:
     if depths[worst] <= 1.0:
         return ""
     return (
-        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle or a rod, too deep "
+        f"At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle or a rod, too deep "
         "to be contact: give the contact more width or stiffness."
     )
 

@@ -21,7 +21,7 @@ from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
-from cosserat_casadi.motion.contact_checks import laid_down, told_inside, told_passage, too_deep
+from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_inside, told_passage, too_deep
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.event_restart import Restart
@@ -563,10 +563,11 @@ def judged(
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
     if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED
-        message = message_of(history, outcome) + too_deep(history, duration)
+        deep = too_deep(history, duration)
+        message = f"{NOT_OF_RODS} {deep}" if deep else message_of(history, outcome)
     elif passed := told_passage(history, duration):
         outcome = MotionOutcome.UNRESOLVED
-        message = f"{outcome.value} {passed}"
+        message = f"{NOT_OF_RODS} {passed}"
     elif beyond is not None:
         outcome, message = beyond
     elif entered:
@@ -610,7 +611,11 @@ def motion_of(
     times = wanted[(history.begin <= wanted) & (wanted <= history.end.time)]
     if history.stopped is not None:
         times = np.union1d(times, history.end.time)
-    states = [history.at(float(time)) for time in times]
+    x, v, a = (np.empty((len(times), model.size)) for _ in range(3))
+    inputs = np.empty((len(times), model.inputs.size))
+    for row, time in enumerate(times.tolist()):
+        state = history.at(time)
+        x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
     strands = [_strand(history, 0.0, 0.0)]
@@ -621,10 +626,10 @@ def motion_of(
         outcome=outcome,
         message=message,
         times=times,
-        x=_stacked([state.x for state in states], model.size),
-        v=_stacked([state.v for state in states], model.size),
-        a=_stacked([state.a for state in states], model.size),
-        inputs=_stacked([state.inputs for state in states], model.inputs.size),
+        x=x,
+        v=v,
+        a=a,
+        inputs=inputs,
         error_estimate=error,
         statistics=history.statistics,
         start=simulator.start.sentence,
@@ -671,11 +676,6 @@ def _tips(history: History, time: float) -> dict[str, list[float]]:
     model = history.model
     x, inputs = history.rough_positions(np.array([time]))
     return {name: poses_of(model.tip[name], x, inputs).position[0].tolist() for name in model.discrete.rods}
-
-
-def _stacked(rows: list[FloatArray], size: int) -> FloatArray:
-    """Vectors one below the other, shape (T, size); T is zero where a motion ends before the first time asked for."""
-    return np.array(rows, dtype=float).reshape(len(rows), size)
 
 
 def not_started(model: Model, start: Start) -> Motion:
