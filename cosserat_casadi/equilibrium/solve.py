@@ -144,6 +144,9 @@ def solve(
     unknowns = len(task.first_iterate)
     if unknowns != model.size:
         raise ValueError(f"the start has {unknowns} unknowns, the model {model.size}")
+    if isinstance(start, Solution) and len(start.inputs) != model.inputs.size:
+        counts = f"{len(start.inputs)} inputs, the model {model.inputs.size}"
+        raise ValueError(f"the start has {counts}: give its unknowns, start=solution.x")
     if method not in _METHODS:
         raise ValueError(f"method is one of {', '.join(_METHODS)}, got {method!r}")
     if stable:

@@ -49,6 +49,14 @@ def test_start_of_another_model_is_refused() -> None:
         solve(build(scene(push())), start=start)
 
 
+def test_start_with_other_inputs_is_refused_and_its_unknowns_are_not() -> None:
+    start = solve(build(scene(push())))
+    model = build(scene(push(), WEIGHT))
+    with pytest.raises(ValueError, match=f"the start has {start.inputs.size} inputs, the model {model.inputs.size}"):
+        solve(model, start=start)
+    assert_allclose(solve(model, start=start.x).x, solve(model).x, rtol=0, atol=1e-9)
+
+
 def test_unknown_method_is_refused() -> None:
     with pytest.raises(ValueError, match="continuation"):
         solve(build(scene(push())), method="magic")
