@@ -301,6 +301,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
         "first": first_step(model),
         "margins": len(margins),
         "paths": sum(margin.kind == "path" for margin in margins),
+        "planes": sum(margin.kind == "plane" for margin in margins),
         "vanished": VANISHED,
         **status_words(names),
         **input_words(model, names),

@@ -22,7 +22,9 @@ OUTCOMES = _without(Outcome.CONTACT_UNSETTLED, Outcome.OUT_OF_RANGE)
 CONTACT_OUTCOMES = _without(Outcome.OUT_OF_RANGE)
 """Statuses of the solver of rods in exact contact."""
 
-TUBE_OUTCOMES = _without(Outcome.PATH_VANISHED, Outcome.BEYOND_MATERIAL, Outcome.CONTACT_UNSETTLED)
+TUBE_OUTCOMES = _without(
+    Outcome.PATH_VANISHED, Outcome.BEYOND_MATERIAL, Outcome.OUT_OF_PLANE, Outcome.CONTACT_UNSETTLED
+)
 """Statuses of the solver of concentric tubes."""
 
 
@@ -43,6 +45,10 @@ class MotionStatus(Enum):
     BEYOND_MATERIAL = (
         "At the end of the step a strain, or the pressure in a chamber, is beyond where its law holds: lessen the "
         "loads, or give the law for larger ones."
+    )
+    OUT_OF_PLANE = (
+        "At the end of the step a joint or a support is out of the plane that its rods bend in, or turned out of it: "
+        "keep it in the plane, or admit the other bending and torsion of the rods."
     )
 
     @property

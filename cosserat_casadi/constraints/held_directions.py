@@ -80,6 +80,13 @@ def in_any_plane(held: HeldDirections, normal: FloatArray) -> HeldDirections:
     return HeldDirections(_basis((ALL - along_normal) @ held.positions), _basis(along_normal @ held.rotations), True)
 
 
+def across_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> HeldDirections:
+    """Held directions that a plane holds already: displacements along its normal, rotations about axes in it."""
+    along_normal = np.outer(normal, normal)
+    positions = _basis(along_normal @ held.positions)
+    return HeldDirections(positions, _basis((ALL - along_normal) @ held.rotations), held.turn_with_pose)
+
+
 def keeps_plane(held: HeldDirections, normal: FloatArray = NORMAL) -> bool:
     """Whether a body that is held so may be held in a plane by something else alone.
 

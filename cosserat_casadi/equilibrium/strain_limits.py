@@ -1,4 +1,4 @@
-"""States that no rod can be in: tendons whose paths have no length left, materials and chambers beyond their laws."""
+"""States that no rod can be in, as :mod:`cosserat_casadi.model.strain_margins` measures them."""
 
 from __future__ import annotations
 
@@ -30,12 +30,14 @@ class BeyondLimit(NamedTuple):
     @property
     def word(self) -> str:
         """The name of an outcome: those of solves, paths and motions have it alike."""
-        return "PATH_VANISHED" if self.margin.kind == "path" else "BEYOND_MATERIAL"
+        return {"path": "PATH_VANISHED", "plane": "OUT_OF_PLANE"}.get(self.margin.kind, "BEYOND_MATERIAL")
 
     @property
     def whose(self) -> str:
         """Whose limit it is, as the beginning of a sentence."""
         kind, name = self.margin
+        if kind == "plane":
+            return f"It is {name}"
         return f"It is the {kind} of '{name}'" if kind in ("path", "material") else f"It is the {kind} '{name}'"
 
 

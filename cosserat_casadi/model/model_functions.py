@@ -159,7 +159,8 @@ class ModelFunctions:
         """(x, inputs) ↦ how far strains are from what a rod cannot be: a number for each thing that has an end.
 
         For each tendon whose path can change the length per length of the rod that it has left where it has least: at
-        zero the rod has pressed it to nothing. Then for each rod whose material is not linear, and for each chamber
+        zero the rod has pressed it to nothing. Then for each joint or support of rods in a plane, where inputs or
+        parameters may take it out of the plane. Then for each rod whose material is not linear, and for each chamber
         whose area grows, how far it is from where the law ends. None where none of them is there.
         """
         margins = strain_margins(written.system)

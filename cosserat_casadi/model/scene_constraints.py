@@ -17,6 +17,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import (
     CLAMPED,
     NORMAL,
+    across_plane,
     in_any_plane,
     in_plane,
     keeps_plane,
@@ -82,6 +83,7 @@ class PlacedConstraint:
         frame: the floating frame on the other side; None for the world.
         joint: place of the joint in the scene's list; None of supports and clamped bases.
         at_base: whether it holds a base to the pose that the scene, or an input, gives it in the world.
+        held_by_plane: directions that it leaves to the plane of its rods; None where it holds them all itself.
         where: path of the scene's table.
         what: the two sides in words.
         compliance: how it yields on the way to the scene.
@@ -99,6 +101,7 @@ class PlacedConstraint:
     step_weight: float = FORCE_WEIGHT
     joint: int | None = None
     at_base: bool = False
+    held_by_plane: HeldDirections | None = None
 
     @property
     def size(self) -> int:
@@ -394,15 +397,20 @@ def _held_in_world(
     target = place_of(record)
     floats = unloaded.floating_base(rod) is not None
     normal = None
+    held_by_plane = None
     if _held_in_plane(unloaded, record, target):
         normal = target.rotation.T @ unloaded.base(rod).rotation[:, 1]
         # Directions that turn with the pose are given in its axes, others in those of the base.
-        directions = in_plane(directions, normal if directions.turn_with_pose else NORMAL)
+        own_normal = normal if directions.turn_with_pose else NORMAL
+        held_by_plane = across_plane(directions, own_normal)
+        directions = in_plane(directions, own_normal)
     if floats:
-        return section.held_to(section.nearer_sign(target, None), directions, None, words), normal
+        placed = section.held_to(section.nearer_sign(target, None), directions, None, words)
+        return replace(placed, held_by_plane=held_by_plane), normal
     # The scene's own sign of the quaternion says by which way round the tip is to be turned.
     placed = section.held_to(target, directions, None, words)
-    return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT), normal
+    placed = replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT, held_by_plane=held_by_plane)
+    return placed, normal
 
 
 def _held_in_plane(unloaded: UnloadedScene, record: scenes.Support | scenes.Joint, target: NumericPose) -> bool:
@@ -469,7 +477,9 @@ def _with_coordinate(
         problem = f"would take {joint.rod!r} out of the plane that it bends in"
         raise SceneError(Problem(f"joints[{index}].axis", problem, "admit its other bending and torsion"))
     held = held_along(coordinate, normal)
-    return replace(placed, joint=index, constraint=replace(placed.constraint, held=held, coordinate=coordinate))
+    held_by_plane = None if normal is None else across_plane(held_along(coordinate, None), normal)
+    constraint = replace(placed.constraint, held=held, coordinate=coordinate)
+    return replace(placed, joint=index, constraint=constraint, held_by_plane=held_by_plane)
 
 
 def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> PlacedConstraint:
@@ -497,12 +507,14 @@ def _joint(unloaded: UnloadedScene, index: int, normal: FloatArray | None) -> Pl
     coplanar = list(_coplanar(unloaded, joint))
     in_a_plane = normal is not None or (len(coplanar) > 1 and coplanar[0] != joint)
     directions = JOINT_KINDS[joint.kind].directions(joint)
+    held_by_plane = None
     if in_a_plane:
+        held_by_plane = across_plane(directions)
         directions = in_plane(directions)
     elif len(coplanar) > 1:
         # Of planar rods that hold one body in their plane, only the first keeps it there.
         directions = upright(directions)
-    placed = section.held_to(target, directions, frame, words)
+    placed = replace(section.held_to(target, directions, frame, words), held_by_plane=held_by_plane)
     return _with_coordinate(placed, unloaded, index, target.rotation, NORMAL if in_a_plane else None)
 
 
@@ -521,7 +533,9 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | N
         target = NumericPose(target.position, -target.quaternion)
     unit, length = unloaded.units([])
     directions = JOINT_KINDS[joint.kind].directions(joint)
+    held_by_plane = None
     if normal is not None:
+        held_by_plane = across_plane(directions, normal)
         directions = in_any_plane(directions, normal)
     placed = PlacedConstraint(
         constraint=SectionConstraint(length, unit, 0.0, directions, target),
@@ -531,6 +545,7 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | N
         where=f"joints[{index}]",
         what=f"{joint.carries.body!r} at {joint.body or 'its place in the world'!r}",
         carried=CarriedPlace(carried, place),
+        held_by_plane=held_by_plane,
     )
     return _with_coordinate(placed, unloaded, index, target.rotation, normal)
 

@@ -1,8 +1,11 @@
-"""Margins to states that no rod can be in: paths of tendons without length, materials and chambers beyond their laws.
+"""Margins to states that no rod can be in: paths without length, joints out of a plane, laws that have ended.
 
 A path at D(X) in the sections has the tangent T = Γ + K × D + D'/ℓ. With plane, rigid sections the determinant of the
 deformation gradient is T_z there: where it vanishes matter is pressed to nothing, and beyond it is turned inside out.
 A cable has no length along the rod there, which the equations, that know |T| alone, do not see.
+
+Where rods stay in a plane their joints hold them in it alone. Parameters and inputs that move a joint out of the plane
+would leave it open there, which the equations do not see.
 
 A material that is not linear has a law for some strains, and is stable where every further strain costs energy: where
 the pivots of its tangent stiffness are positive.
@@ -10,6 +13,7 @@ the pivots of its tangent stiffness are positive.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import casadi as ca
@@ -23,13 +27,17 @@ from cosserat_casadi.rod.material_functions import material_margin
 VANISHED = 1e-3
 """Margin that counts as none: a path that is followed to zero ends short of it by a last step."""
 
+BESIDE = 1e-6
+"""Distance over the length, or angle, by which a joint may be out of the plane of its rods: rounding, of floats too."""
+
 
 class StrainMargin(NamedTuple):
-    """The actuator or the rod that has a margin.
+    """The actuator, the rod or the joint that has a margin.
 
     Attributes:
-        kind: "path" of a tendon, "material" of a rod, or the kind of an actuator whose law has an end.
-        name: name of the actuator, or of the rod.
+        kind: "path" of a tendon, "plane" of a joint or a support, "material" of a rod, or the kind of an actuator whose
+            law has an end.
+        name: name of the actuator or of the rod; of a joint or a support its two sides in words.
     """
 
     kind: str
@@ -37,11 +45,12 @@ class StrainMargin(NamedTuple):
 
 
 def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
-    """Margins where they are least, 1×1 each: first those of paths, then those of laws.
+    """Margins where they are least, 1×1 each: first those of paths, then those of planes, then those of laws.
 
-    Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a material the least
-    pivot of its tangent stiffness relative to its Hooke tensor, or how far the strain is from the ends of its law. Of
-    an actuator how far its inputs are from the end of its law.
+    Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a joint in the plane
+    of its rods one less the square of its distance from it, over BESIDE; none where neither inputs nor parameters move
+    the places of constraints. Of a material the least pivot of its tangent stiffness relative to its Hooke tensor, or
+    how far the strain is from the ends of its law. Of an actuator how far its inputs are from the end of its law.
     """
     margins: dict[StrainMargin, Matrix] = {}
     for actuator in system.discrete.scene.actuators:
@@ -51,6 +60,7 @@ def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
         along = conjugate.stretch_along
         if along is not None and not along.is_constant():
             margins[StrainMargin("path", actuator.name)] = ca.mmin(along)
+    margins |= _plane_margins(system)
     for name, rod in system.discrete.rods.items():
         # Shapes take their time: those of linear rods are not asked for.
         margin = None if rod.properties.beyond_hooke is None else material_margin(system.shapes[name])
@@ -62,6 +72,22 @@ def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
         if margin is not None:
             margins[StrainMargin(actuator.kind, actuator.name)] = margin + VANISHED
     return margins
+
+
+def _plane_margins(system: System) -> dict[StrainMargin, Matrix]:
+    gaps = {}
+    for placed in system.discrete.constraints:
+        if placed.held_by_plane is not None:
+            beside = replace(placed.constraint, held=placed.held_by_plane)
+            gaps[placed.what] = beside.residual(system.poses(placed))
+    if not gaps:
+        return {}
+    # Floating frames follow what constraints hold them to: one that is moved may move them all.
+    held = [placed.constraint.residual(system.poses(placed)) for placed in system.discrete.constraints]
+    given = ca.symvar(ca.veccat(ca.MX(system.arguments.inputs), system.discrete.parameters.symbol))
+    if not ca.depends_on(ca.veccat(*gaps.values(), *held), ca.veccat(*given)):
+        return {}
+    return {StrainMargin("plane", what): 1 - ca.sumsqr(gap) / BESIDE**2 for what, gap in gaps.items()}
 
 
 def margins_of(discrete: DiscreteScene) -> list[StrainMargin]:

@@ -19,8 +19,8 @@ NEARLY_TAUT = 1e-3
 DEPENDENT = 1e-2
 """Independence of the constraints below which they end a motion: it falls with the root of the time that is left."""
 
-BEYOND_LIMITS = (MotionOutcome.PATH_VANISHED, MotionOutcome.BEYOND_MATERIAL)
-"""Ends of motions with strains beyond their limits."""
+BEYOND_LIMITS = (MotionOutcome.PATH_VANISHED, MotionOutcome.BEYOND_MATERIAL, MotionOutcome.OUT_OF_PLANE)
+"""Ends of motions with states that no rod can be in."""
 
 OUTCOMES = {
     StepOutcome.COMPLETED: MotionOutcome.COMPLETED,

@@ -66,6 +66,10 @@ class MotionOutcome(Enum):
         "A motion of the discrete model was computed, but on its way a strain, or the pressure in a chamber, is beyond "
         "where its law holds: lessen the loads, or give the law for larger ones."
     )
+    OUT_OF_PLANE = (
+        "A motion of the discrete model was computed, but on its way a joint or a support is out of the plane that its "
+        "rods bend in: keep it in the plane, or admit the other bending and torsion of the rods."
+    )
 
     @property
     def label(self) -> str:

@@ -37,6 +37,10 @@ class Outcome(Enum):
         "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a "
         "further strain would set energy free: lessen the loads, or give the law for larger ones."
     )
+    OUT_OF_PLANE = (
+        "No equilibrium of the scene: a joint or a support is out of the plane that its rods bend in, or turned out of "
+        "it: keep it in the plane, or admit the other bending and torsion of the rods."
+    )
     CONTACT_UNSETTLED = (
         "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "
         "and forces that only push."

@@ -60,6 +60,10 @@ class PathOutcome(Enum):
         "The rod cannot follow the path of the discrete model: a strain, or the pressure in a chamber, is beyond "
         "where its law holds."
     )
+    OUT_OF_PLANE = (
+        "The rod cannot follow the path of the discrete model: a joint or a support leaves the plane that its rods "
+        "bend in."
+    )
 
     @property
     def label(self) -> str:

@@ -243,6 +243,8 @@ const char *follower_reissner_status_text(follower_reissner_status status) {
       return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
     case FOLLOWER_REISSNER_BEYOND_MATERIAL:
       return "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones.";
+    case FOLLOWER_REISSNER_OUT_OF_PLANE:
+      return "No equilibrium of the scene: a joint or a support is out of the plane that its rods bend in, or turned out of it: keep it in the plane, or admit the other bending and torsion of the rods.";
   }
   return "No such status.";
 }
@@ -269,6 +271,8 @@ const char *follower_reissner_status_label(follower_reissner_status status) {
       return "path_vanished";
     case FOLLOWER_REISSNER_BEYOND_MATERIAL:
       return "beyond_material";
+    case FOLLOWER_REISSNER_OUT_OF_PLANE:
+      return "out_of_plane";
   }
   return "unknown";
 }

@@ -95,7 +95,8 @@ typedef enum {
   NITINOL_WIRE_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
   NITINOL_WIRE_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
   NITINOL_WIRE_PATH_VANISHED      = 8, /* No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis. */
-  NITINOL_WIRE_BEYOND_MATERIAL    = 9  /* No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones. */
+  NITINOL_WIRE_BEYOND_MATERIAL    = 9, /* No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones. */
+  NITINOL_WIRE_OUT_OF_PLANE       = 10 /* No equilibrium of the scene: a joint or a support is out of the plane that its rods bend in, or turned out of it: keep it in the plane, or admit the other bending and torsion of the rods. */
 } nitinol_wire_status;
 
 typedef struct {

@@ -72,7 +72,8 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
   return index;
 }
 
-/* The first limit that strains are beyond, those of paths of tendons before those of materials and chambers; else -1. */
+/* The first limit that is passed, those of paths of tendons first, then those of planes of rods, then those of materials
+   and chambers; else -1. */
 static int first_beyond(const real *x, const real *inputs, workspace *work) {
   real margins[4];
   ARGUMENTS(tendon_robot_k_strain_margins, x, inputs);
@@ -84,12 +85,14 @@ static int first_beyond(const real *x, const real *inputs, workspace *work) {
   return -1;
 }
 
-/* The end of a solve in view of the strains: paths of tendons have length left, materials and chambers are within their laws. */
+/* The end of a solve in view of the limits: paths of tendons have length left, joints are in the plane of their rods,
+   materials and chambers are within their laws. */
 static solver_status within_limits(solver_status end, const real *x, const real *inputs, workspace *work) {
   if (end != SOLVER_CONVERGED && end != SOLVER_LOAD_STALLED) return end;
   const int beyond = first_beyond(x, inputs, work);
   if (beyond < 0) return end;
-  return beyond < 4 ? SOLVER_PATH_VANISHED : SOLVER_BEYOND_MATERIAL;
+  if (beyond < 4) return SOLVER_PATH_VANISHED;
+  return beyond < 4 + 0 ? SOLVER_OUT_OF_PLANE : SOLVER_BEYOND_MATERIAL;
 }
 
 /* Which missing coordinates are of one of the two highest degrees of their strain. */
@@ -295,6 +298,8 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
       return "No equilibrium of the rod: it is bent so far that the path of a tendon has no length left in it, and beyond that its matter would be turned inside out: lessen the loads, or move the path nearer to the axis.";
     case TENDON_ROBOT_BEYOND_MATERIAL:
       return "No equilibrium of the rod: a strain, or the pressure in a chamber, is beyond where its law holds, or a further strain would set energy free: lessen the loads, or give the law for larger ones.";
+    case TENDON_ROBOT_OUT_OF_PLANE:
+      return "No equilibrium of the scene: a joint or a support is out of the plane that its rods bend in, or turned out of it: keep it in the plane, or admit the other bending and torsion of the rods.";
   }
   return "No such status.";
 }
@@ -321,6 +326,8 @@ const char *tendon_robot_status_label(tendon_robot_status status) {
       return "path_vanished";
     case TENDON_ROBOT_BEYOND_MATERIAL:
       return "beyond_material";
+    case TENDON_ROBOT_OUT_OF_PLANE:
+      return "out_of_plane";
   }
   return "unknown";
 }

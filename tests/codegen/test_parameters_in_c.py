@@ -17,7 +17,8 @@ from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
-from tests.codegen.libraries import ARMS, HAND, LOAD, QUICK, WRISTS, Exported, Recipe, gcc, run
+from tests.codegen.libraries import ARCH, ARMS, HAND, LOAD, QUICK, WRISTS, Exported, Recipe, gcc, run
+from tests.codegen.libraries import PIN as ARCH_PIN
 from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, scene
 
@@ -73,6 +74,8 @@ RECIPES = {
     ),
 }
 """A rod with a tendon, a rod that is held at both ends, and an assembly that is eliminated rod after rod."""
+
+PINNED_ARCH = scene(WEIGHT, **ARCH, supports=[ARCH_PIN], inputs=[], parameters=["supports[0].position"])
 
 STEP = 1e-5
 """Change of a parameter for differences, relative."""
@@ -393,3 +396,18 @@ def test_values_by_name_are_judged_by_the_scene(tmp_path: Path) -> None:
     # Without its scene a folder has nobody to ask.
     (folder / "scene.toml").unlink()
     assert load(folder).parameters.pack(beyond)[0] == 2.0
+
+
+def test_support_out_of_the_plane_of_its_rod_is_told(export_recipe: Callable[..., Exported]) -> None:
+    """It holds the rod in its plane alone; C, which takes values as they are, would end beside it."""
+    compiled = export_recipe("pinned_arch", Recipe(PINNED_ARCH, 2, 5), estimates=False).compiled
+    inside = compiled.parameters.pack() + np.array([0.01, 0.0, -0.02])
+    beside = inside + np.array([0.0, 1e-4, 0.0])
+    solution = compiled.solve(parameters=inside)
+    assert solution.converged
+    tip = compiled.tip["rod"](solution.x, compiled.defaults, inside)[0]
+    assert_allclose(tip.full()[:, 0], inside, rtol=0, atol=1e-9)
+    assert compiled.solve(parameters=beside).outcome is Outcome.OUT_OF_PLANE
+    assert compiled.solve(start=solution.x, parameters=beside).outcome is Outcome.OUT_OF_PLANE
+    batch = compiled.solve_batch(compiled.defaults, parameters=np.array([beside, inside]))
+    assert [one.outcome for one in batch] == [Outcome.OUT_OF_PLANE, Outcome.CONVERGED]

@@ -257,3 +257,14 @@ def test_a_bob_on_a_link_swings_as_the_pendulum() -> None:
     )
     wanted = LENGTH * np.column_stack([np.cos(fall.y[0]), -np.sin(fall.y[0])])
     assert_allclose(motion.body("bob").position[:, [0, 2]], wanted, rtol=0, atol=2e-5 * LENGTH)
+
+
+@pytest.mark.parametrize(("position", "outcome"), [([0.05, 0, -0.1], "CONVERGED"), ([0, 0.03, 0], "OUT_OF_PLANE")])
+def test_base_as_an_input_keeps_a_closed_chain_in_its_plane(position: list[float], outcome: str) -> None:
+    """The joints hold the chain in its plane alone: beside it they would stay open, unseen by the residual."""
+    tables = closed_chain(inputs=["a.base.position"])
+    solution = solve(build(scene_from_dict(tables)), {"a.base.position": position})
+    assert solution.outcome.name == outcome
+    if not solution.converged:
+        assert "'b' at its joint in the world" in solution.message
+    assert_allclose(solution.tip("b").position[[0, 2]], [0.6, 0.1], rtol=0, atol=1e-9)

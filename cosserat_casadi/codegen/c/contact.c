@@ -39,7 +39,7 @@ static void move_inputs(const real *from, const real *to, const contact_options 
   real done = 0;
   real step = 1;
   real *inputs = work->path_inputs;
-  real index[3] = {0, 1, 1}; /* of resolution; the least margins of paths of tendons and of materials */
+  real index[4] = {0, 1, 1, 1}; /* of resolution; the least margins of paths of tendons, of planes and of materials */
   {
     const arrangement *at = ARRANGEMENT + work->solved[0].arrangement;
     call(at->nodes, work->solved[0].z, from, work->nodes_before, index, work);
@@ -65,7 +65,8 @@ static void move_inputs(const real *from, const real *to, const contact_options 
       /* Nodes or modes too few for so bent a rod give equations whose solution is not one of the rod. */
       info->status = index[0] <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
       if (info->status == CONTACT_CONVERGED && index[1] <= VANISHED) info->status = CONTACT_PATH_VANISHED;
-      if (info->status == CONTACT_CONVERGED && index[2] <= VANISHED) info->status = CONTACT_BEYOND_MATERIAL;
+      if (info->status == CONTACT_CONVERGED && index[2] <= VANISHED) info->status = CONTACT_OUT_OF_PLANE;
+      if (info->status == CONTACT_CONVERGED && index[3] <= VANISHED) info->status = CONTACT_BEYOND_MATERIAL;
       return;
     }
     step *= 2;
@@ -234,7 +235,7 @@ contact_status contact_margins(const contact_state *state, real *force, real *ga
   if (!is_in_equilibrium(state, work)) return CONTACT_NOT_IN_EQUILIBRIUM;
   const arrangement *at = ARRANGEMENT + state->arrangement;
   const real largest = largest_force(at, state->z);
-  real index[3];
+  real index[4];
   call(at->nodes, state->z, state->inputs, work->nodes, index, work);
   *force = *gap = HUGE_VAL;
   for (int k = 0; k < at->touches; k++) *force = smaller(*force, least_force(at, state->z, k, largest, 1));

@@ -99,7 +99,7 @@ static real estimated_error(int number, const real *z, const real *inputs, works
   const arrangement *at = ARRANGEMENT + number;
   const arrangement *richer = at + ARRANGEMENTS;
   real *fine = work->solved[1].z;
-  real index[3];
+  real index[4];
   real depth_of_lines = 0;
   change changes[MOST_FAULTS + TOUCH_ROOM];
   contact_info info = no_result();

@@ -162,16 +162,14 @@ class ArrangementKernels:
         return ca.horzcat(*positions)
 
     def _indices(self) -> Matrix:
-        """Index of resolution, and the least margins of paths and of laws; one where there is none."""
+        """Index of resolution, and the least margins of paths, of planes and of laws; one where there is none."""
         system = self._written.system
         symbols = {"x": ca.MX(system.arguments.x), "inputs": ca.MX(system.arguments.inputs)}
         index = resolution_index(Expressions(system.discrete, "", symbols))
-        margins = strain_margins(system)
-        least = []
-        for of_path in (True, False):
-            own = [value for margin, value in margins.items() if (margin.kind == "path") is of_path]
-            least.append(ca.mmin(ca.vertcat(1, *own)))
-        indices: Matrix = ca.vertcat(index, *least)
+        least: dict[str, list[Matrix]] = {"path": [], "plane": [], "law": []}
+        for margin, value in strain_margins(system).items():
+            least.get(margin.kind, least["law"]).append(value)
+        indices: Matrix = ca.vertcat(index, *(ca.mmin(ca.vertcat(1, *own)) for own in least.values()))
         return indices
 
     def _tips(self) -> Matrix:
