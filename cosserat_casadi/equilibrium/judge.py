@@ -33,8 +33,8 @@ MAX_DISTANCE = 0.5
 ASIDE = 0.05
 """Way along a neutral variation on which an equilibrium alike is looked for (2-norm of the unknowns)."""
 
-ASIDE_STEPS = 8
-"""Newton steps that this may take."""
+ASIDE_STEPS = 24
+"""Newton steps that this may take: a rod that lies on a stiff obstacle takes 15 to turn on it."""
 
 
 def judge(

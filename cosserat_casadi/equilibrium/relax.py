@@ -82,7 +82,7 @@ def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | N
 def can_relax(model: Model) -> bool:
     """Whether a model's energy is a function of strains alone: no frames move, no cable has a length to keep."""
     discrete = model.discrete
-    return not discrete.is_assembly and not discrete.cables
+    return not discrete.is_assembly and not discrete.frames and not discrete.cables
 
 
 def _tries(solution: Solution) -> Iterator[_Try]:

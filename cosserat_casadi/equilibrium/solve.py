@@ -35,7 +35,7 @@ from cosserat_casadi.numerics.newton import NewtonResult, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
-CANNOT_RELAX = " Assemblies and cables of given length cannot be let settle to less energy."
+CANNOT_RELAX = " Assemblies, free rods and cables of given length cannot be let settle to less energy."
 """Sentence in the message of a solution where relaxing is not offered."""
 
 IN_CONTACT = " Rods in contact cannot be let settle to less energy."

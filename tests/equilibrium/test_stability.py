@@ -184,6 +184,31 @@ def test_critical_equilibrium_is_neither_called_stable_nor_neutral() -> None:
     assert "critical" in critical.message
 
 
+def free_rod_on_a_table(tangent: list[float]) -> Scene:
+    """A soft rod that lies or stands on a stiff table, and may slide and turn on it."""
+    base = {"position": [0, 0, 8e-3], "tangent": tangent, "free": True}
+    material = {"youngs_modulus": 5e6, "poisson_ratio": 0.48, "density": 1100.0}
+    soft = {"name": "rod", "length": 0.4, "strain": "planar", "material": material, "base": base}
+    table = {"name": "table", "kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "width": 4e-3, "stiffness": 1e5}
+    rods = [{**soft, "section": {"shape": "circle", "radius": 8e-3}}]
+    weight = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+    return scene(weight, rods=rods, obstacles=[table], accuracy={"modes": 3, "nodes": 8})
+
+
+def test_rod_that_lies_on_a_table_is_neutral() -> None:
+    """It slides and turns on it without energy; Newton's method takes 15 steps beside a table as stiff as that."""
+    lying = solve(build(free_rod_on_a_table([1, 0, 0.15])), stable=True)
+    assert lying.stable is True
+    assert "neutral" in lying.message
+
+
+def test_free_rod_is_not_let_settle() -> None:
+    standing = solve(build(free_rod_on_a_table([0, 0, 1])), stable=True)
+    assert standing.converged
+    assert standing.stable is False
+    assert "free rods" in standing.message
+
+
 def test_verdict_of_eigenvalues() -> None:
     assert stability_of(np.zeros(0)).stable
     assert stability_of(np.array([0.1, 2.0])).stable
