@@ -128,16 +128,22 @@ class Onset:
             return self
         return self.at(self.before.v + least_change(self.saddle, self._gradients(touches), self.rates(touches)))
 
-    def struck(self, touching: Touches) -> Struck | None:
-        """The state after an impact at sections without a gap; None where no impulses settle it."""
+    def struck(self, touching: Touches, known: int) -> Struck | None:
+        """The state after an impact at sections without a gap; None where no impulses settle it.
+
+        Args:
+            touching: these sections.
+            known: how many of them, the first ones, touched before: what presses them on in the blow does not rebound.
+        """
         if not touching:
             return Struck(self.before.v, np.zeros(0), np.zeros(0), ())
         speeds = self.rates(touching)
         still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
         gradients = self._gradients(touching)
         answers = response(self.saddle, gradients.T)
-        # Newton's law: γ⁺ ≥ −e γ⁻ where gaps close. What has touched before closes by rounding alone.
+        # Newton's law: γ⁺ ≥ −e γ⁻ where gaps close. Of what has touched before γ⁻ is zero.
         shares = np.array([self.facings[touch.facing].obstacle.restitution for touch in touching])
+        shares[:known] = 0.0
         rebound = np.where(speeds < -still, -shares * speeds, 0.0)
         impulses = least_pushes(gradients @ answers, speeds - rebound, still)
         if impulses is None:

@@ -145,6 +145,8 @@ class ExactContacts:
         phases: ContactPhase,
         guard: int | None,
         interval: float,
+        *,
+        jerked: bool = False,
     ) -> Restart[ContactPhase]:
         """How a motion goes on, or begins.
 
@@ -155,6 +157,7 @@ class ExactContacts:
             phases: what touches before it.
             guard: number of the guard that came to zero; None for a start, or another piece of the inputs.
             interval: time after it in which the inputs are smooth, s.
+            jerked: whether a cable or a stop has changed the velocities at this instant.
         """
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
@@ -166,7 +169,7 @@ class ExactContacts:
         known = self._known(phases, guard, before, onset.inputs.value)
         if changes > MOST_IN_A_MOMENT:
             known = self._all_lie(known, before, onset.inputs.value)
-        restart = self._struck(onset, known)
+        restart = self._struck(onset, known, jerked=jerked)
         counted = replace(restart.phases, moment=moment, changes=changes)
         return replace(restart, phases=counted)
 
@@ -289,13 +292,14 @@ class ExactContacts:
                 known = self._lying(known, touch, before, inputs, LAID_DOWN)
         return known
 
-    def _struck(self, onset: Onset, known: _Known) -> Restart[ContactPhase]:
-        """How a motion goes on after what touches anew has struck."""
+    def _struck(self, onset: Onset, known: _Known, *, jerked: bool) -> Restart[ContactPhase]:
+        """How a motion goes on after what touches anew has struck, or what touches was jerked."""
         x, inputs = onset.before.x, onset.inputs.value
         old = (*known.held, *known.left)
         touching, laid = self._touching(x, inputs, old, known.laid)
-        onset = onset.held_still(touching[: len(old)])
-        struck = onset.struck(touching)
+        if not jerked:
+            onset = onset.held_still(touching[: len(old)])
+        struck = onset.struck(touching, len(old))
         if struck is None:
             return self._stopped(onset, known, touching)
         laid_now = [touch for touch in touching[len(old) :] if touch.facing in laid - known.laid]
@@ -311,6 +315,9 @@ class ExactContacts:
             stopped = after.held_still((*struck.staying, *soon_back))
             lost += after.kinetic() - stopped.kinetic()
             after = stopped
+        if jerked:
+            off = [touch for touch in leaving if touch in touching[: len(known.held)] and touch not in soon_back]
+            events += [self._event("lift_off", onset.before.time, touch) for touch in off]
         pressing = after.pressing(self._on_sections((*staying, *soon_back), laid))
         if pressing is None:
             return self._stopped(onset, known, touching)

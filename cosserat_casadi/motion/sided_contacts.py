@@ -1,9 +1,9 @@
 """Exact contact beside cables that may go slack and stops of joints: one kind of event at a time, all of them kept.
 
 A cable that becomes taut, or a joint that meets its stop, takes its impact as if nothing touched; what touches then
-takes another one, in which taut cables and held joints stay so. Where both are plastic that is the impact of all at
-once, as a projection of velocities on a part of a plane follows one on the plane. A stop that a blow of an obstacle
-would make pull is left.
+takes another one, in which taut cables and held joints stay so: obstacles push, and what is jerked off them leaves.
+Where both are plastic that is the impact of all at once, as a projection of velocities on a part of a plane follows
+one on the plane. A stop that a blow of an obstacle would make pull is left.
 """
 
 from __future__ import annotations
@@ -90,15 +90,18 @@ class SidedContacts:
         def begin(closed: Closed, v: FloatArray) -> Restart[ContactPhase]:
             equations = self.sided.equations(plain, piece, closed)
             instant = Instant(before.time, before.x, v, before.a)
-            return self.contacts.restarted(equations, piece, instant, phases, of_contact, interval)
+            jerked = v is not before.v
+            return self.contacts.restarted(equations, piece, instant, phases, of_contact, interval, jerked=jerked)
 
         settled = self.sided.settled(
             plain, piece, before, phases.closed, of_pair, interval, begin, told=guard is not None
         )
         onward, closed, events = settled.onward, settled.closed, settled.events
-        if any(event.kind == "impact" for event in onward.events):
+        jerked = settled.v is not before.v
+        if jerked or any(event.kind == "impact" for event in onward.events):
             for number, pair in enumerate(self.sided.pairs):
-                if not (closed[number] and pair.rigid):
+                # What jerks stays closed: without it velocities would be those before, which close it.
+                if not (closed[number] and pair.rigid) or (jerked and number == of_pair):
                     continue
                 without = (*closed[:number], False, *closed[number + 1 :])
                 free = begin(without, settled.v)

@@ -121,6 +121,62 @@ def test_a_blow_of_a_floor_takes_a_joint_off_its_stop_or_presses_it_on(reach: fl
     assert np.abs(motion.energy.imbalance).max() < 1e-5
 
 
+STOP = 0.3
+"""Way of the upper link to its stop, rad."""
+
+
+def sliding(reach: float) -> dict[str, Any]:
+    """Two links in one line, whose ball rests on a floor; let go, it slides until the upper link meets its stop."""
+    tables = leaning(reach)
+    tables["joints"][0]["upper_stop"] = STOP
+    height = 1.0 - (FIRST + reach) * np.cos(WIDE) - RADIUS
+    tables["obstacles"][0] |= {"point": [0, 0, height], "restitution": 0.5}
+    tables["simulation"] |= {"duration": 0.23, "frames": 24}
+    return tables
+
+
+def slid(reach: float, times: FloatArray) -> tuple[FloatArray, float, bool]:
+    """Angles of the links, time at which the stop is met, and whether that jerks the ball off the floor."""
+
+    def lever(q: FloatArray) -> FloatArray:
+        return np.array([FIRST, reach]) * np.sin(q)
+
+    def on_floor(_: float, y: FloatArray) -> FloatArray:
+        q, v = y[:2], y[2:]
+        turning = np.array([FIRST, reach]) @ (np.cos(q) * v**2)
+        bordered = np.block([[mass(q), -lever(q)[:, None]], [lever(q)[None], np.zeros((1, 1))]])
+        return np.concatenate([v, np.linalg.solve(bordered, np.append(efforts(q, v), -turning))[:2]])
+
+    def meets(_: float, y: FloatArray) -> float:
+        return float(y[0] + WIDE - STOP)
+
+    meets.terminal = True  # type: ignore[attr-defined]
+    exact = {"rtol": 1e-11, "atol": 1e-12, "dense_output": True}
+    first = solve_ivp(on_floor, (0, times[-1]), [-WIDE, -WIDE, 0, 0], events=meets, **exact)
+    q, v, blow = first.y[:2, -1], first.y[2:, -1], float(first.t[-1])
+    # The stop alone takes the upper link's speed; where the lower one then presses on the floor both stand still.
+    swings = v[1] + mass(q)[0, 1] / mass(q)[1, 1] * v[0]
+    leaves = bool(lever(q)[1] * swings > 0.0)
+    second = solve_ivp(rates, (blow, times[-1]), [*q, 0.0, swings], args=(True,), **exact)
+    angles = [first.sol(t)[:2] if t < blow else second.sol(t)[:2] if leaves else q for t in times]
+    return np.array(angles), blow, leaves
+
+
+@pytest.mark.parametrize("reach", mostly_slow(FLOORS, [0.2]))
+def test_a_stop_jerks_what_slides_off_a_floor_or_presses_it_on(reach: float) -> None:
+    """The floor held the ball that the stop jerked off: both links stood still at once, told to be right to 1e-7."""
+    motion = simulate(scene_from_dict(sliding(reach)))
+    assert motion.converged
+    angles, blow, leaves = slid(reach, motion.times)
+    assert leaves == (reach < 0.25)
+    assert {event.kind for event in motion.events} == ({"stop_hit", "lift_off"} if leaves else {"stop_hit"})
+    assert_allclose([event.time for event in motion.events], blow, rtol=0, atol=1e-6)
+    across = -FIRST * np.sin(angles[:, 0]) - reach * np.sin(angles[:, 1])
+    height = 1.0 - FIRST * np.cos(angles[:, 0]) - reach * np.cos(angles[:, 1])
+    assert_allclose(motion.body("lower").position, np.column_stack([across, 0 * across, height]), rtol=0, atol=2e-6)
+    assert np.abs(motion.energy.imbalance).max() < 1e-5
+
+
 def arm_with_cable() -> Scene:
     """An arm over a floor, whose cable spans its inner half: the bend of the gap jumps at the cable's holes."""
     rod = {
