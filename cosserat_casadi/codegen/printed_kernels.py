@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -72,6 +72,15 @@ INTEGERS = """#undef INTEGERS
 #define INTEGERS(first) ({stem}_integers + (first))
 """
 """How kernels read tables of whole numbers."""
+
+
+NUMBERS = """#undef C
+#define C {stem}_numbers
+"""
+"""How functions read constants that several of them have."""
+
+NUMBER = re.compile(r"NUMBER\(([^()]+)\)")
+"""A constant in the text of a function until it is known whether it is there once."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +182,7 @@ class PrintedSources:
 
     Attributes:
         source: text for the source.
-        functions: the functions alone, of kernels that make no calls four at a time.
+        functions: the functions alone, with all constants in place, of kernels that make no calls four at a time.
         prototypes: text for the header.
         included: files by name that the source includes.
     """
@@ -207,8 +216,13 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
         "once": "\n".join(bodies.values()),
         "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in public),
     }
+    texts = [*functions, words["once"]]
+    shared = {} if qualifier else _shared_numbers(texts)
     source = _tables_in_c(tables, stem)
+    if shared:
+        source += _array("double", f"{stem}_numbers", list(shared)) + NUMBERS.format(stem=stem)
     included = {}
+    *functions, words["once"] = [_with_numbers(text, shared) for text in texts]
     if functions:
         source += fill(resource("templates", "fours.c.in"), words)
         included[f"{stem}_in_fours.h"] = "\n".join(["/* Included once for each width of vectors. */", *functions])
@@ -217,7 +231,25 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
         included["program.h"] = resource("c", "program.h")
     source += fill(resource("templates", "kernels_once.c.in"), words)
     prototypes = "".join(kernel.prototype(qualifier) for kernel in public)
-    return PrintedSources(source, "\n".join([*functions, words["once"]]), prototypes, included)
+    in_place = "\n".join(_with_numbers(text, {}) for text in texts)
+    return PrintedSources(source, in_place, prototypes, included)
+
+
+def _shared_numbers(texts: Iterable[str]) -> dict[str, str]:
+    """Where constants that stand in these texts several times are in one array, by their text."""
+    counts = Counter(number for text in texts for number in NUMBER.findall(text))
+    several = [number for number, count in counts.items() if count > 1]
+    return {number: f"C[{i}]" for i, number in enumerate(several)}
+
+
+def _with_numbers(text: str, shared: Mapping[str, str]) -> str:
+    """Text with constants in place, or read from the array that shared ones are in."""
+    return NUMBER.sub(lambda match: shared.get(match[1]) or _in_place(match[1]), text)
+
+
+def _in_place(number: str) -> str:
+    """A constant among operations."""
+    return f"({number})" if number.startswith("-") else number
 
 
 def _choice(name: str, parameters: Mapping[str, str]) -> str:

@@ -33,6 +33,7 @@ from cosserat_casadi.codegen.printed_kernels import (
     PrintedKernel,
 )
 from cosserat_casadi.codegen.statements import (
+    ATOM,
     FOURS,
     LONGEST,
     LONGEST_OF_NUMBERS,
@@ -377,8 +378,8 @@ class _Writing:
         if self._is_of_all_columns(number):
             return
         if isinstance(value, Read):
-            entry = f"arg[{value.argument}] ? arg[{value.argument}][{value.entry}] : {self.arithmetic.number(0.0)}"
-            self.main.statements.append(Statement(entry, [], number))
+            entry = f"ENTRY({value.argument}, {value.entry})"
+            self.main.statements.append(Statement(entry, [], number, ATOM))
         elif isinstance(value, Computed):
             self.main.statements.append(self.arithmetic.operation(value.operation, value.operands, number))
         if number in self.place:
@@ -410,12 +411,14 @@ class _Writing:
         count = self.signature.n_out()
         for result in range(count):
             entries = self.listing.outputs[result]
-            asked = f"if (res[{result}]) " if count > 1 else ""
+            may_be_absent = count > 1
+            asked = f"if (res[{result}]) " if may_be_absent else ""
             for entry in range(self.listing.function.nnz_out(result)):
                 place = f"res[{result}][{entry}]"
                 if entry in entries:
                     self._compute(entries[entry])
-                    self.main.statements.append(Statement(f"{asked}{place} = {{0}};", [entries[entry]]))
+                    stored = Statement(f"{asked}{place} = {{0}};", [entries[entry]], asked=may_be_absent)
+                    self.main.statements.append(stored)
                 else:
                     self.main.statements.append(Statement(f"{asked}{place} = {self.arithmetic.number(0.0)};", []))
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 from math import inf, isfinite
 
 import casadi as ca
@@ -22,6 +22,12 @@ LONGEST_OF_NUMBERS = 400
 CHOICE, SUM, PRODUCT, ATOM = range(4)
 """How tightly expressions bind in C: choices and comparisons, sums, products, and what needs no parentheses."""
 
+NEARNESS = 8
+"""Part of the length of a function by which its end may move to where fewer values pass to the next one."""
+
+SHARED_NUMBER = "C[000]"
+"""About how a constant looks that several functions have."""
+
 LONGEST_LINE = 110
 """Characters up to which the expression of a value that is read once stands where it is read."""
 
@@ -36,6 +42,7 @@ class Statement:
         made: number of the value of the expression; None for a statement that only writes.
         binding: how tightly the expression binds, of ATOM, PRODUCT, SUM and CHOICE; a written text takes any operand.
         sides: how tightly each operand must bind to stand without parentheses.
+        asked: whether it writes only where a result is asked for.
     """
 
     text: str
@@ -43,6 +50,11 @@ class Statement:
     made: int | None = None
     binding: int = 0
     sides: Sequence[int] = ()
+    asked: bool = False
+
+    def stores(self, value: int | None) -> bool:
+        """Whether it only stores a value, whatever is asked for."""
+        return self.made is None and not self.asked and list(self.operands) == [value]
 
     def with_operand(self, place: int, other: Statement) -> Statement:
         """The same statement with the expression of another in place of an operand."""
@@ -57,7 +69,8 @@ class Statement:
         if self.sides:
             # The operands of the other stand in its text already.
             sides = [*self.sides[:place], *[CHOICE] * count, *self.sides[place + 1 :]]
-        return Statement(self.text.format(*before, inner, *behind), operands, self.made, self.binding, sides)
+        text = self.text.format(*before, inner, *behind)
+        return replace(self, text=text, operands=operands, sides=sides)
 
 
 @dataclass
@@ -87,15 +100,22 @@ class Block:
         variable: dict[int, str] = {}
         free: list[str] = []
         lines = []
+        computed = ""
         for i, statement in enumerate(statements):
-            texts = [text_of(operand) or variable[operand] for operand in statement.operands]
+            texts = [computed or text_of(operand) or variable[operand] for operand in statement.operands]
+            computed = ""
             done = [operand for operand in dict.fromkeys(statement.operands) if last_use[operand] == i]
             free += [variable[operand] for operand in done if operand in variable]
             text = statement.text.format(*texts)
             if statement.made is not None:
                 made = free.pop() if free else self._another()
                 variable[statement.made] = made
-                text = f"{made} = {text};"
+                text = f"{made} = {text}"
+                if last_use[statement.made] > i + 1 and statements[i + 1].stores(statement.made):
+                    # The next statement, which stores it, computes it too.
+                    computed = text
+                    continue
+                text += ";"
             lines.append(f"  {text}")
         return [*self._declarations(), *lines]
 
@@ -199,7 +219,8 @@ def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None
 
 def _length(statement: Statement, text_of: Callable[[int], str | None]) -> int:
     """Characters of a statement, whose variables are short."""
-    return len(statement.text.format(*[text_of(operand) or "a00" for operand in statement.operands]))
+    texts = [text_of(operand) or "a00" for operand in statement.operands]
+    return len(statement.text.format(*[SHARED_NUMBER if "NUMBER" in text else text for text in texts]))
 
 
 @dataclass(frozen=True)
@@ -242,14 +263,8 @@ def in_parts(
     Returns:
         the parts, with statements that store the values that other parts read, and the number of these values.
     """
-    count = max(-(-len(statements) // longest), 1)
-    # A Jacobian that reads no columns has no statements for them.
-    size = max(-(-len(statements) // count), 1)
-    parts = [list(statements[first : first + size]) for first in range(0, len(statements), size)]
-    for part, following in pairwise(parts):
-        if following[0].made is None:
-            # It stores what the last statement computes.
-            part.append(following.pop(0))
+    ends = _ends_of_parts(statements, longest, stored)
+    parts = [statements[first:end] for first, end in pairwise([0, *ends])]
     passed: dict[int, int] = {}
     before: set[int] = set()
     for part in parts:
@@ -260,6 +275,32 @@ def in_parts(
                     passed.setdefault(operand, len(passed))
         before |= own
     return [_part(part, passed, store) for part in parts], len(passed)
+
+
+def _ends_of_parts(statements: Sequence[Statement], longest: int, stored: Container[int]) -> list[int]:
+    """Where parts end: as equal ones do, or near there where fewer values pass."""
+    count = max(-(-len(statements) // longest), 1)
+    size = len(statements) // count
+    passing = _passing(statements, stored)
+    ends = []
+    for number in range(1, count):
+        near = range(number * size - size // NEARNESS, number * size + size // NEARNESS + 1)
+        # What a statement computes is stored in the same part.
+        possible = [end for end in near if not statements[end].stores(statements[end - 1].made)]
+        ends.append(min(possible or near, key=passing.__getitem__))
+    # A Jacobian that reads no columns has no statements for them.
+    return [*ends, len(statements)] if statements else []
+
+
+def _passing(statements: Sequence[Statement], stored: Container[int]) -> list[int]:
+    """For each number of statements how many values these compute, and store nowhere, that others read."""
+    last_use = {operand: i for i, statement in enumerate(statements) for operand in statement.operands}
+    change = [0] * (len(statements) + 1)
+    for i, statement in enumerate(statements):
+        if statement.made in last_use and statement.made not in stored:
+            change[i + 1] += 1
+            change[last_use[statement.made] + 1] -= 1
+    return list(accumulate(change))
 
 
 def _part(part: Sequence[Statement], passed: dict[int, int], store: Callable[[int], str]) -> StatementPart:
@@ -279,4 +320,7 @@ def number_in_c(value: float) -> str:
     if not isfinite(value):
         return {inf: "INFINITY", -inf: "(-INFINITY)"}.get(value, "NAN")
     text = repr(value)
+    if len(text) > len(SHARED_NUMBER):
+        # Those that are there several times are read from an array.
+        return f"NUMBER({text})"
     return f"({text})" if value < 0 else text

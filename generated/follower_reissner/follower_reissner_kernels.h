@@ -11,17 +11,17 @@ int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, cas
 #define follower_reissner_k_residual_SZ_ARG 3
 #define follower_reissner_k_residual_SZ_RES 1
 #define follower_reissner_k_residual_SZ_IW 0
-#define follower_reissner_k_residual_SZ_W 469
+#define follower_reissner_k_residual_SZ_W 464
 int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_jacobian_SZ_ARG 3
 #define follower_reissner_k_jacobian_SZ_RES 1
 #define follower_reissner_k_jacobian_SZ_IW 0
-#define follower_reissner_k_jacobian_SZ_W 1601
+#define follower_reissner_k_jacobian_SZ_W 1561
 int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_rate_SZ_ARG 5
 #define follower_reissner_k_rate_SZ_RES 1
 #define follower_reissner_k_rate_SZ_IW 0
-#define follower_reissner_k_rate_SZ_W 662
+#define follower_reissner_k_rate_SZ_W 656
 int follower_reissner_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tangent_SZ_ARG 1
 #define follower_reissner_k_tangent_SZ_RES 1
@@ -36,37 +36,37 @@ int follower_reissner_k_richer_lack(const casadi_real** arg, casadi_real** res, 
 #define follower_reissner_k_richer_lack_SZ_ARG 2
 #define follower_reissner_k_richer_lack_SZ_RES 1
 #define follower_reissner_k_richer_lack_SZ_IW 0
-#define follower_reissner_k_richer_lack_SZ_W 724
+#define follower_reissner_k_richer_lack_SZ_W 701
 int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_richer_balance_SZ_ARG 4
 #define follower_reissner_k_richer_balance_SZ_RES 1
 #define follower_reissner_k_richer_balance_SZ_IW 0
-#define follower_reissner_k_richer_balance_SZ_W 929
+#define follower_reissner_k_richer_balance_SZ_W 909
 int follower_reissner_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_watched_SZ_ARG 2
 #define follower_reissner_k_watched_SZ_RES 1
 #define follower_reissner_k_watched_SZ_IW 0
-#define follower_reissner_k_watched_SZ_W 204
+#define follower_reissner_k_watched_SZ_W 199
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3
 #define follower_reissner_k_igm_SZ_IW 0
-#define follower_reissner_k_igm_SZ_W 436
+#define follower_reissner_k_igm_SZ_W 429
 int follower_reissner_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_SZ_ARG 2
 #define follower_reissner_k_tip_SZ_RES 2
 #define follower_reissner_k_tip_SZ_IW 0
-#define follower_reissner_k_tip_SZ_W 204
+#define follower_reissner_k_tip_SZ_W 199
 int follower_reissner_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_jacobian_SZ_ARG 2
 #define follower_reissner_k_tip_jacobian_SZ_RES 2
 #define follower_reissner_k_tip_jacobian_SZ_IW 0
-#define follower_reissner_k_tip_jacobian_SZ_W 720
+#define follower_reissner_k_tip_jacobian_SZ_W 716
 int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_shape_SZ_ARG 3
 #define follower_reissner_k_shape_SZ_RES 2
 #define follower_reissner_k_shape_SZ_IW 0
-#define follower_reissner_k_shape_SZ_W 204
+#define follower_reissner_k_shape_SZ_W 199
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -11,17 +11,17 @@ int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
 #define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 502
+#define nitinol_wire_k_residual_SZ_W 490
 int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_jacobian_SZ_ARG 3
 #define nitinol_wire_k_jacobian_SZ_RES 1
 #define nitinol_wire_k_jacobian_SZ_IW 0
-#define nitinol_wire_k_jacobian_SZ_W 1322
+#define nitinol_wire_k_jacobian_SZ_W 1270
 int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_rate_SZ_ARG 5
 #define nitinol_wire_k_rate_SZ_RES 1
 #define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 709
+#define nitinol_wire_k_rate_SZ_W 696
 int nitinol_wire_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tangent_SZ_ARG 1
 #define nitinol_wire_k_tangent_SZ_RES 1
@@ -36,37 +36,37 @@ int nitinol_wire_k_richer_lack(const casadi_real** arg, casadi_real** res, casad
 #define nitinol_wire_k_richer_lack_SZ_ARG 2
 #define nitinol_wire_k_richer_lack_SZ_RES 1
 #define nitinol_wire_k_richer_lack_SZ_IW 0
-#define nitinol_wire_k_richer_lack_SZ_W 699
+#define nitinol_wire_k_richer_lack_SZ_W 662
 int nitinol_wire_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_richer_balance_SZ_ARG 4
 #define nitinol_wire_k_richer_balance_SZ_RES 1
 #define nitinol_wire_k_richer_balance_SZ_IW 0
-#define nitinol_wire_k_richer_balance_SZ_W 756
+#define nitinol_wire_k_richer_balance_SZ_W 715
 int nitinol_wire_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_watched_SZ_ARG 2
 #define nitinol_wire_k_watched_SZ_RES 1
 #define nitinol_wire_k_watched_SZ_IW 0
-#define nitinol_wire_k_watched_SZ_W 199
+#define nitinol_wire_k_watched_SZ_W 198
 int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_igm_SZ_ARG 4
 #define nitinol_wire_k_igm_SZ_RES 3
 #define nitinol_wire_k_igm_SZ_IW 0
-#define nitinol_wire_k_igm_SZ_W 453
+#define nitinol_wire_k_igm_SZ_W 425
 int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_SZ_ARG 2
 #define nitinol_wire_k_tip_SZ_RES 2
 #define nitinol_wire_k_tip_SZ_IW 0
-#define nitinol_wire_k_tip_SZ_W 199
+#define nitinol_wire_k_tip_SZ_W 198
 int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_jacobian_SZ_ARG 2
 #define nitinol_wire_k_tip_jacobian_SZ_RES 2
 #define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 760
+#define nitinol_wire_k_tip_jacobian_SZ_W 747
 int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_shape_SZ_ARG 3
 #define nitinol_wire_k_shape_SZ_RES 2
 #define nitinol_wire_k_shape_SZ_IW 0
-#define nitinol_wire_k_shape_SZ_W 199
+#define nitinol_wire_k_shape_SZ_W 198
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

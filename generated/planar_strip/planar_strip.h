@@ -158,7 +158,7 @@ typedef struct {
   planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 3 + 7];
   planar_strip_real watched[7];
   planar_strip_real watched_after[7];
-  planar_strip_real kernel_reals[307];
+  planar_strip_real kernel_reals[293];
   int kernel_integers[1];
 } planar_strip_workspace;
 

@@ -21,7 +21,7 @@ int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* 
 #define planar_strip_k_rate_SZ_ARG 5
 #define planar_strip_k_rate_SZ_RES 1
 #define planar_strip_k_rate_SZ_IW 0
-#define planar_strip_k_rate_SZ_W 306
+#define planar_strip_k_rate_SZ_W 292
 int planar_strip_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tangent_SZ_ARG 1
 #define planar_strip_k_tangent_SZ_RES 1
@@ -36,12 +36,12 @@ int planar_strip_k_richer_lack(const casadi_real** arg, casadi_real** res, casad
 #define planar_strip_k_richer_lack_SZ_ARG 2
 #define planar_strip_k_richer_lack_SZ_RES 1
 #define planar_strip_k_richer_lack_SZ_IW 0
-#define planar_strip_k_richer_lack_SZ_W 287
+#define planar_strip_k_richer_lack_SZ_W 279
 int planar_strip_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_richer_balance_SZ_ARG 4
 #define planar_strip_k_richer_balance_SZ_RES 1
 #define planar_strip_k_richer_balance_SZ_IW 0
-#define planar_strip_k_richer_balance_SZ_W 290
+#define planar_strip_k_richer_balance_SZ_W 285
 int planar_strip_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_watched_SZ_ARG 2
 #define planar_strip_k_watched_SZ_RES 1
@@ -51,7 +51,7 @@ int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define planar_strip_k_igm_SZ_ARG 4
 #define planar_strip_k_igm_SZ_RES 3
 #define planar_strip_k_igm_SZ_IW 0
-#define planar_strip_k_igm_SZ_W 207
+#define planar_strip_k_igm_SZ_W 203
 int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tip_SZ_ARG 2
 #define planar_strip_k_tip_SZ_RES 2

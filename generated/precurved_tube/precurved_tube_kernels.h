@@ -11,17 +11,17 @@ int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_residual_SZ_ARG 3
 #define precurved_tube_k_residual_SZ_RES 1
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 544
+#define precurved_tube_k_residual_SZ_W 542
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_jacobian_SZ_ARG 3
 #define precurved_tube_k_jacobian_SZ_RES 1
 #define precurved_tube_k_jacobian_SZ_IW 0
-#define precurved_tube_k_jacobian_SZ_W 1770
+#define precurved_tube_k_jacobian_SZ_W 1711
 int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_rate_SZ_ARG 5
 #define precurved_tube_k_rate_SZ_RES 1
 #define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 753
+#define precurved_tube_k_rate_SZ_W 743
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tangent_SZ_ARG 1
 #define precurved_tube_k_tangent_SZ_RES 1
@@ -36,12 +36,12 @@ int precurved_tube_k_richer_lack(const casadi_real** arg, casadi_real** res, cas
 #define precurved_tube_k_richer_lack_SZ_ARG 2
 #define precurved_tube_k_richer_lack_SZ_RES 1
 #define precurved_tube_k_richer_lack_SZ_IW 0
-#define precurved_tube_k_richer_lack_SZ_W 716
+#define precurved_tube_k_richer_lack_SZ_W 700
 int precurved_tube_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_richer_balance_SZ_ARG 4
 #define precurved_tube_k_richer_balance_SZ_RES 1
 #define precurved_tube_k_richer_balance_SZ_IW 0
-#define precurved_tube_k_richer_balance_SZ_W 876
+#define precurved_tube_k_richer_balance_SZ_W 821
 int precurved_tube_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_watched_SZ_ARG 2
 #define precurved_tube_k_watched_SZ_RES 1
@@ -51,7 +51,7 @@ int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int*
 #define precurved_tube_k_igm_SZ_ARG 4
 #define precurved_tube_k_igm_SZ_RES 3
 #define precurved_tube_k_igm_SZ_IW 0
-#define precurved_tube_k_igm_SZ_W 465
+#define precurved_tube_k_igm_SZ_W 431
 int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_SZ_ARG 2
 #define precurved_tube_k_tip_SZ_RES 2
@@ -61,12 +61,12 @@ int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, ca
 #define precurved_tube_k_tip_jacobian_SZ_ARG 2
 #define precurved_tube_k_tip_jacobian_SZ_RES 2
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 893
+#define precurved_tube_k_tip_jacobian_SZ_W 874
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_shape_SZ_ARG 3
 #define precurved_tube_k_shape_SZ_RES 2
 #define precurved_tube_k_shape_SZ_IW 0
-#define precurved_tube_k_shape_SZ_W 272
+#define precurved_tube_k_shape_SZ_W 270
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -5,7 +5,7 @@
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and
    turn section coordinates into world coordinates. The unknowns x and the residual are without unit; q are the strain
-   coordinates of one rod. Functions need at most 9.5 kB of stack.
+   coordinates of one rod. Functions need at most 9 kB of stack.
 
    The scene asks for a tip pose within 0.001 of the length. The discretisation was judged at the scene's own inputs:
    estimated error 7.4e-04. Far larger loads need it judged anew.
@@ -236,7 +236,7 @@ typedef struct {
   six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 108 + 175];
   six_rod_platform_real watched[175];
   six_rod_platform_real watched_after[175];
-  six_rod_platform_real kernel_reals[2881];
+  six_rod_platform_real kernel_reals[2719];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 

@@ -8,7 +8,7 @@ import casadi as ca
 import pytest
 
 from cosserat_casadi.codegen.listing import BINARY, Constant, Listing, Read
-from cosserat_casadi.codegen.statements import LONGEST_LINE, SINGLE, Block, Statement, computations
+from cosserat_casadi.codegen.statements import LONGEST_LINE, SINGLE, Block, Statement, computations, in_parts
 
 SYMBOLS = 4
 VALUES = [0.1, 0.7, -1.3, 3.1]
@@ -72,3 +72,26 @@ def test_nested_expressions_are_rounded_as_casadi_rounds(seed: int) -> None:
     numbers = in_python(lines)
     assert [numbers[f"r{i}"] for i in range(6)] == expected
     assert max(map(len, lines)) <= LONGEST_LINE + len("a00 = ;")
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_a_value_is_computed_where_it_is_stored(asked: bool) -> None:
+    """Unless the store may be left out."""
+    store = Statement("r0 = {0};", [2], asked=asked)
+    statements = [SINGLE.operation(ca.OP_MUL, [0, 1], 2), store, Statement("r1 = {0} + {0};", [2])]
+    block = Block("casadi_real", "a", statements)
+    _, *lines = [line.strip() for line in block.lines(lambda number: f"x{number}" if number < 2 else None)]
+    both = ["a0 = x0 * x1;", "r0 = a0;"] if asked else ["r0 = a0 = x0 * x1;"]
+    assert lines == [*both, "r1 = a0 + a0;"]
+
+
+@pytest.mark.parametrize("fewest_at", [9, 10, 11])
+def test_parts_end_where_few_values_pass(fewest_at: int) -> None:
+    statements = [Statement("1", [], i) for i in range(fewest_at - 1)]
+    statements.append(Statement("sum", range(fewest_at - 1), fewest_at - 1))
+    statements += [Statement("{0} + {0}", [i], i + 1) for i in range(fewest_at - 1, 19)]
+    parts, passed = in_parts(statements, 10, lambda place: f"passed[{place}] = {{0}};")
+    first, second = parts
+    assert passed == 1
+    assert len(first.statements) == fewest_at + 1
+    assert second.passed == {fewest_at - 1: 0}

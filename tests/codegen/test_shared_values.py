@@ -170,3 +170,20 @@ def test_short_common_parts_stay_where_they_are() -> None:
     common = ca.sin(x[0] * inputs[1])
     short = [ca.Function(f"f{k}", [x, inputs], [common + k * x[1]], ["x", "inputs"], ["a"]) for k in range(2)]
     assert all(not function.kernels for function in with_shared_kernels(short, "shared"))
+
+
+def test_constants_that_are_there_several_times_stand_in_one_array() -> None:
+    x = ca.SX.sym("x", 2)
+    often, once = -0.123456789, 0.987654321
+    kernels = [
+        ca.Function("first", [x], [often * x[0] + once], ["x"], ["a"]),
+        ca.Function("second", [x], [x[1] - often * x[0] * x[1] + 0.5], ["x"], ["b"]),
+    ]
+    texts = external_sources(kernels, "constants", "long long int")
+    assert texts["constants.c"].count(repr(often)) == 1
+    assert "double constants_numbers[1]" in texts["constants.c"]
+    library = os.fspath(compiled_texts("constants", texts, find_compiler()))
+    for kernel in kernels:
+        given = [0.3, -0.7]
+        found = ca.external(kernel.name(), library)(given)
+        assert_allclose(float(found), float(kernel(given)), rtol=1e-15, atol=0)
