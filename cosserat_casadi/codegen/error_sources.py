@@ -16,10 +16,9 @@ STEPS_OF_ESTIMATE = 1
 FOLLOWED = 0.5
 """Length of the second step over that of the first, up to which the Jacobian that Newton has left is believed."""
 
-LACK = "richer_lack"
 BALANCE = "richer_balance"
 WATCHED = "watched"
-KERNELS = (LACK, BALANCE, WATCHED)
+KERNELS = (BALANCE, WATCHED)
 """The kernels that a library has which estimates errors."""
 
 

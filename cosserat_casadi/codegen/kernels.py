@@ -90,7 +90,6 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     missing = [numbers[rod] for rod in discrete.richer.missing_rods]
     watched = [numbers[owner] for owner in watched_owners(discrete)]
     owners = {
-        error_sources.LACK: [*unknowns, *missing],
         error_sources.BALANCE: [*unknowns, *missing, *unknowns, *watched],
         error_sources.WATCHED: watched,
     }[entry.spec.name]

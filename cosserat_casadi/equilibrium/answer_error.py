@@ -249,14 +249,11 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     missing = np.zeros(model.discrete.richer.missing_size)
     before = None
     for _ in range(MOST_SWEEPS):
-        if before is None:
-            step, missing_step = first_steps(solution)
-        else:
-            lacking = richer_balance(solution, known, missing)
-            step, missing_step = lacking.step, lacking.missing_step
-            if not _contracts(before, missing_step):
-                return
-        known = known + step
+        lacking = richer_balance(solution, known, missing)
+        missing_step = lacking.missing_step
+        if before is not None and not _contracts(before, missing_step):
+            return
+        known = known + lacking.step
         missing = missing + missing_step
         balance = richer_balance(solution, known, missing)
         following = _following(solution, inverse, balance.residual)
@@ -265,13 +262,6 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         contracts = before is not None or _contracts(missing_step, balance.missing_step)
         yield Correction(known, missing, change_with_following(solution, balance, following), contracts)
         before = missing_step
-
-
-def first_steps(solution: Solution) -> tuple[FloatArray, FloatArray]:
-    """Elastic steps of the unknowns and of the missing coordinates at the answer itself."""
-    model = solution.model
-    steps = column(model.richer_lack(solution.x, solution.inputs))
-    return steps[: model.size], steps[model.size :]
 
 
 def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) -> FloatArray:

@@ -25,7 +25,7 @@ from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_ve
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
-from cosserat_casadi.model.discretise import enriched, for_first_step
+from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -436,15 +436,6 @@ class DiscreteScene:
         discretisation = {
             name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
             for name, rod in self.rods.items()
-        }
-        return Richer(self, self._on(discretisation))
-
-    @cached_property
-    def richer_for_first_step(self) -> Richer:
-        """The same with rotations of a lower order: what the first step of the missing modes is taken with."""
-        richer = self.richer.discrete.rods
-        discretisation = {
-            name: for_first_step(richer[name].discretisation, rod.discretisation) for name, rod in self.rods.items()
         }
         return Richer(self, self._on(discretisation))
 

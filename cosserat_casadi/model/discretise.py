@@ -36,9 +36,6 @@ NODES_ABOVE_MODES_IN_CONTACT = 8
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
 
-PREVIOUS_ORDER = {"magnus6": "magnus4", "magnus8": "magnus6"}
-"""Rotation integrators of a lower order, with which the first step of missing modes is exact enough."""
-
 ENOUGH_GROWTH = 1.4
 """Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
 
@@ -132,15 +129,3 @@ def enriched(discretisation: Discretisation, signal_modes: int, *, meets_obstacl
     if nodes < ENOUGH_GROWTH * discretisation.nodes:
         transport = NEXT_ORDER.get(transport, transport)
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)
-
-
-def for_first_step(rich: Discretisation, answer: Discretisation) -> Discretisation:
-    """A discretisation on which the first step of missing modes is known to a few per cent, at less cost.
-
-    The rest is in the balance on the richer discretisation, which comes after it.
-
-    Args:
-        rich: the richer discretisation of a rod.
-        answer: the discretisation of the answer on that rod.
-    """
-    return replace(rich, transport=PREVIOUS_ORDER.get(answer.transport, answer.transport))

@@ -199,23 +199,13 @@ class ModelFunctions:
         positions = [side.at_sections for terms in written.system.pairs for side in (terms.sides[0], terms.sides[-1])]
         return [ca.horzcat(*positions)] if positions else None
 
-    @scene_function(Output("steps"), kernel="richer_lack", judges_answers=True)
-    def richer_lack(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ what the balance with modes and intervals added lacks at an answer; docs/theory.md, section 10.
-
-        Elastic steps of the unknowns and of the coordinates of the missing modes, one below the other.
-        """
-        none = ca.DM.zeros(written.discrete.richer.missing_size, 1)
-        richer = written.discrete.richer_for_first_step
-        system = _enriched(written, richer, written["x"], none)
-        return [ca.densify(ca.vertcat(*_elastic_steps(richer, system)))]
-
     @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance", judges_answers=True)
     def richer_balance(self, written: Expressions) -> list[Matrix]:
         """(x, correction, missing, inputs) ↦ the balance with modes and intervals added at a corrected answer.
 
-        One below the other, at x + correction and the missing coordinates: elastic steps as above, the residual in the
-        unknowns, and the watched poses and lengths, as the next function gives them.
+        One below the other, at x + correction and the missing coordinates: elastic steps of the unknowns and of the
+        coordinates of the missing modes, the residual in the unknowns, and the watched poses and lengths, as the next
+        function gives them. See docs/theory.md, section 10.
         """
         richer = written.discrete.richer
         known = written["x"] + written["correction"]

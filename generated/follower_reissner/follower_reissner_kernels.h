@@ -32,11 +32,6 @@ int follower_reissner_k_resolution_index(const casadi_real** arg, casadi_real** 
 #define follower_reissner_k_resolution_index_SZ_RES 1
 #define follower_reissner_k_resolution_index_SZ_IW 0
 #define follower_reissner_k_resolution_index_SZ_W 0
-int follower_reissner_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define follower_reissner_k_richer_lack_SZ_ARG 2
-#define follower_reissner_k_richer_lack_SZ_RES 1
-#define follower_reissner_k_richer_lack_SZ_IW 0
-#define follower_reissner_k_richer_lack_SZ_W 701
 int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_richer_balance_SZ_ARG 4
 #define follower_reissner_k_richer_balance_SZ_RES 1

@@ -32,11 +32,6 @@ int planar_strip_k_resolution_index(const casadi_real** arg, casadi_real** res, 
 #define planar_strip_k_resolution_index_SZ_RES 1
 #define planar_strip_k_resolution_index_SZ_IW 0
 #define planar_strip_k_resolution_index_SZ_W 0
-int planar_strip_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_richer_lack_SZ_ARG 2
-#define planar_strip_k_richer_lack_SZ_RES 1
-#define planar_strip_k_richer_lack_SZ_IW 0
-#define planar_strip_k_richer_lack_SZ_W 279
 int planar_strip_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_richer_balance_SZ_ARG 4
 #define planar_strip_k_richer_balance_SZ_RES 1

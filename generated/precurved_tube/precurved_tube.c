@@ -83,14 +83,8 @@ static solver_status within_limits(solver_status end, const real *x, const real 
 /* Which missing coordinates are of one of the two highest degrees of their strain. */
 static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1};
 
-/* Elastic steps of unknowns and missing coordinates at the answer itself, one behind the other. */
-static void richer_lack_at(const real *x, const real *inputs, real *steps, workspace *work) {
-  ARGUMENTS(precurved_tube_k_richer_lack, x, inputs);
-  RESULTS(steps);
-  CALL(precurved_tube_k_richer_lack);
-}
-
-/* The same at a corrected answer, the residual in the unknowns, and what is watched, one behind the other. */
+/* Elastic steps of unknowns and missing coordinates at a corrected answer, the residual in the unknowns, and what is
+   watched, one behind the other. */
 static void richer_balance_at(const real *x, const real *correction, const real *missing, const real *inputs, real *balance,
                               workspace *work) {
   ARGUMENTS(precurved_tube_k_richer_balance, x, correction, missing, inputs);

@@ -52,11 +52,6 @@ int six_rod_platform_k_resolution_index(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_resolution_index_SZ_RES 1
 #define six_rod_platform_k_resolution_index_SZ_IW 0
 #define six_rod_platform_k_resolution_index_SZ_W 55
-int six_rod_platform_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_richer_lack_SZ_ARG 2
-#define six_rod_platform_k_richer_lack_SZ_RES 1
-#define six_rod_platform_k_richer_lack_SZ_IW 0
-#define six_rod_platform_k_richer_lack_SZ_W 1760
 int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_richer_balance_SZ_ARG 4
 #define six_rod_platform_k_richer_balance_SZ_RES 1

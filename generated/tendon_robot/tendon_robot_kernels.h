@@ -11,17 +11,17 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 691
+#define tendon_robot_k_residual_SZ_W 700
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
 #define tendon_robot_k_jacobian_SZ_IW 0
-#define tendon_robot_k_jacobian_SZ_W 2203
+#define tendon_robot_k_jacobian_SZ_W 2212
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 892
+#define tendon_robot_k_rate_SZ_W 901
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -37,11 +37,6 @@ int tendon_robot_k_strain_margins(const casadi_real** arg, casadi_real** res, ca
 #define tendon_robot_k_strain_margins_SZ_RES 1
 #define tendon_robot_k_strain_margins_SZ_IW 0
 #define tendon_robot_k_strain_margins_SZ_W 0
-int tendon_robot_k_richer_lack(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_richer_lack_SZ_ARG 2
-#define tendon_robot_k_richer_lack_SZ_RES 1
-#define tendon_robot_k_richer_lack_SZ_IW 0
-#define tendon_robot_k_richer_lack_SZ_W 1517
 int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
@@ -66,7 +61,7 @@ int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casa
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 970
+#define tendon_robot_k_tip_jacobian_SZ_W 928
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2

@@ -12,7 +12,6 @@ from cosserat_casadi import Solution, build, discretise, read_scene, solve
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.discretise import ADDED_MODES
 from tests.conftest import AWAY, ROOT
 from tests.families import mostly_slow
 from tests.pose_errors import pose_error
@@ -147,18 +146,6 @@ def test_estimate_falls_as_fast_as_the_error() -> None:
     assert max(ratios) < MOST_ABOVE
     assert min(ratios) > LEAST
     assert solution.error_estimate < 1e-6
-
-
-@pytest.mark.parametrize("transport", ["magnus6", "magnus8"])
-def test_first_step_is_nearly_that_of_the_richer_balance(transport: str) -> None:
-    """It is taken with rotations of a lower order."""
-    pushed = scene(push(force=[3.0, 2.0, -1.0], moment=[0.0, 0.5, 0.3]))
-    for modes in (1, 3, 6):
-        solution = solve(build(pushed, discretise(pushed, modes, modes + 3, transport)), estimate_error=False)
-        balance = estimates.richer_balance(solution, np.zeros(solution.model.size), np.zeros(3 * ADDED_MODES))
-        wanted = balance.missing_step
-        _, step = estimates.first_steps(solution)
-        assert 0 < np.linalg.norm(step - wanted) < 0.02 * np.linalg.norm(wanted)
 
 
 def test_wrench_at_the_clamp_knows_its_error() -> None:

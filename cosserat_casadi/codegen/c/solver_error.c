@@ -4,7 +4,7 @@
 
    cosserat_casadi/equilibrium/answer_error.py holds the same in Python, docs/theory.md, section 10, derives it.
 
-   Uses of the equations: richer_lack_at, richer_balance_at, watched_at. */
+   Uses of the equations: richer_balance_at, watched_at. */
 
 enum {
   MISSING = SOLVER_MISSING,
@@ -169,8 +169,7 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
     real next;
     real shortening;
     const int is_first = k == 0;
-    if (is_first) richer_lack_at(x, inputs, work->balance, work);
-    const real step = is_first ? norm_of_missing(work->balance + N) : balance(x, work->missing, inputs, work);
+    const real step = balance(x, work->missing, inputs, work);
     if (!is_first && !contracts(step_before, step)) break;
     const real change = sweep(x, inputs, jacobian, &next, &shortening, work);
     /* An old Jacobian that is far from that of the answer tells nothing. */
