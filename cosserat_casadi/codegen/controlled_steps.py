@@ -107,9 +107,14 @@ def steps_are_at_hand() -> bool:
     Raises:
         ExportError: there is no compiler.
     """
-    if steps_library.cache_info().currsize:
+    if steps_are_loaded():
         return True
     return compiled_from(NAME, _origin(), find_compiler()) is not None
+
+
+def steps_are_loaded() -> bool:
+    """Whether this process has the loop."""
+    return bool(steps_library.cache_info().currsize)
 
 
 @cache
@@ -220,10 +225,10 @@ class CompiledSteps:
         record.drifting = run.settings.drifting
         record.longest_allowed = control.longest
         record.reason = OUTCOMES.index(StepOutcome.STEP_TOO_SMALL)
-        if run.before is not None:
-            self._before[:] = run.before.unknowns
-            record.before_size = run.before.size
-            record.longest = run.before.longest
+        if run.memory is not None:
+            self._before[:] = run.memory.unknowns
+            record.before_size = run.memory.size
+            record.longest = run.memory.longest
         if run.linearised_at is not None and run.linearisation is not None:
             self._linearised_at[:] = run.linearised_at.x, run.linearised_at.v, run.linearised_at.a
             record.linearised_time = run.linearised_at.time

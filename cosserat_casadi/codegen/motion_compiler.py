@@ -83,6 +83,12 @@ MOTIONS_TO_COME = 2.0
 MOTIONS_AFTER_FIRST = 4.0
 """Work of a search after its first motion, over that of it: 2.3 to 5.2 in searches for modes."""
 
+TELLING_SHARE = 0.1
+"""Share of a piece of its inputs after which the work so far tells that of a motion."""
+
+TO_BEGIN = 40
+"""Iterations of the first steps, which are short, beyond those of others: they tell nothing of what is to come."""
+
 
 @dataclass
 class MotionCompiler:
@@ -109,18 +115,23 @@ class MotionCompiler:
 
     def learn(self, statistics: StepStatistics) -> None:
         """Take note of the work of the motion for which kernels were asked last."""
-        is_first = self.last is None
-        self.last = statistics
-        saved_by_steps = ITERATION * statistics.iterations
+        saved_by_steps = self._saved_by_steps(statistics)
         for name, (model, found) in self.asked.items():
             if found is None:
                 _spent(model)[name] += _interpreted_time(model, name, statistics)
-                if name == RESIDUAL and not can_be_centred(model):
-                    # Programs are run by steps in C alone.
-                    saved_by_steps += SAVED[PROGRAM] * _interpreted_time(model, name, statistics)
-        if is_first:
+        if self.last is None:
             self.saved_by_steps = saved_by_steps
+        self.last = statistics
         MotionCompiler.spent_on_steps += saved_by_steps
+
+    def _saved_by_steps(self, work: StepStatistics) -> float:
+        """Time that steps in C save of a motion whose kernels were asked for last, s."""
+        saved = ITERATION * work.iterations
+        model, found = self.asked.get(RESIDUAL, (None, None))
+        if model is not None and found is None and not can_be_centred(model):
+            # Programs are run by steps in C alone.
+            saved += SAVED[PROGRAM] * _interpreted_time(model, RESIDUAL, work)
+        return saved
 
     def kernels(self, model: Model) -> StepKernels:
         """The kernels for the next motion of a model.
@@ -130,16 +141,17 @@ class MotionCompiler:
         """
         residual = self._compiled(model, RESIDUAL)
         jacobians = self._compiled(model, JACOBIANS)
-        stepper = self._stepper()
+        stepper = self._stepper(MOTIONS_AFTER_FIRST * self.saved_by_steps)
         if residual is None:
             residual = interpreted_residual(model)
             # In centred coordinates steps have a residual of their own.
-            if stepper is not None and not can_be_centred(model):
-                residual.program = _program_of(model, write=self._pays(model, PROGRAM))
+            if not can_be_centred(model):
+                # Steps in C alone run it.
+                residual.program = _program_of(model, write=stepper is not None and self._pays(model, PROGRAM))
                 residual.program_after = partial(_program_after, model)
-        if jacobians is None:
-            return StepKernels(residual, interpreted_jacobians(model), stepper)
-        return StepKernels(residual, jacobians.matrices, stepper, jacobians.library)
+        of_jacobians = interpreted_jacobians(model) if jacobians is None else jacobians.matrices
+        library = None if jacobians is None else jacobians.library
+        return StepKernels(residual, of_jacobians, stepper, library, self._stepper_after)
 
     def library(self, model: Model) -> str | None:
         """The shared object with the residual and all that is written beside it; None where it is not at hand."""
@@ -148,10 +160,28 @@ class MotionCompiler:
             residual = self._compiled(model, RESIDUAL)
         return None if residual is None else residual.library
 
-    def _stepper(self) -> Stepper | None:
-        """The steps in machine code; None where they are not at hand and do not pay, or where there is no compiler."""
+    def _stepper_after(self, iterations: int, share: float) -> Stepper | None:
+        """The steps in machine code for the rest of a motion and of the search, where they are foreseen to pay.
+
+        Args:
+            iterations: that Python has taken in a piece of the inputs.
+            share: of the piece that is done.
+        """
+        if share < TELLING_SHARE:
+            return None
+        of_piece = self._saved_by_steps(_iterations(iterations - TO_BEGIN)) / share
+        motions = MOTIONS_TO_COME if self.last else 1.0 + MOTIONS_AFTER_FIRST
+        foreseen = (motions - share) * of_piece
+        return self._stepper(foreseen) if foreseen > TO_COMPILE_STEPS else None
+
+    def _stepper(self, foreseen: float) -> Stepper | None:
+        """The steps in machine code; None where they are not at hand and do not pay, or where there is no compiler.
+
+        Args:
+            foreseen: time that they save of what is to come, s.
+        """
         try:
-            if not (self.always or steps_are_at_hand() or self._steps_pay()):
+            if not (self.always or steps_are_at_hand() or self._steps_pay(foreseen)):
                 return None
             steps_library()
         except ExportError:
@@ -160,12 +190,12 @@ class MotionCompiler:
             return None
         return CompiledSteps
 
-    def _steps_pay(self) -> bool:
+    def _steps_pay(self, foreseen: float) -> bool:
         """Whether steps in machine code save more time than they take to compile.
 
-        That is foreseen of the rest of the search, or where steps in Python have taken so long in this process.
+        That is foreseen of the rest of the search, s, or where steps in Python have taken so long in this process.
         """
-        return max(MOTIONS_AFTER_FIRST * self.saved_by_steps, self.spent_on_steps) > TO_COMPILE_STEPS
+        return max(foreseen, self.spent_on_steps) > TO_COMPILE_STEPS
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""
@@ -216,8 +246,13 @@ def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:
 
 def _program_after(model: Model, iterations: int) -> ScalarProgram | None:
     """The program for a motion that has taken so many iterations without; None where it does not pay yet."""
-    work = StepStatistics(0, 0, iterations, 0, float("nan"), float("nan"))
-    return _program_of(model, write=_saves(model, PROGRAM, MOTIONS_TO_COME * _interpreted_time(model, PROGRAM, work)))
+    foreseen = MOTIONS_TO_COME * _interpreted_time(model, PROGRAM, _iterations(iterations))
+    return _program_of(model, write=_saves(model, PROGRAM, foreseen))
+
+
+def _iterations(iterations: int) -> StepStatistics:
+    """The work of a motion by its iterations alone."""
+    return StepStatistics(0, 0, iterations, 0, float("nan"), float("nan"))
 
 
 def _spent(model: Model) -> dict[str, float]:

@@ -547,7 +547,17 @@ def _switched(
             if free and settings.size is None and not model.scene.touches_exactly:
                 own = replace(own, drifting=DRIFTING * (piece.end - piece.start))
             integration = integrate(
-                equations, begin, piece.end, method, own, after_step, guards, settled, memory, kernels.stepper
+                equations,
+                begin,
+                piece.end,
+                method,
+                own,
+                after_step,
+                guards,
+                settled,
+                memory,
+                kernels.stepper,
+                kernels.stepper_after,
             )
             memory = None
             legs.append(Leg(piece, restart, integration, plain))

@@ -16,7 +16,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall
 from cosserat_casadi.motion.trajectory import StepStatistics
-from cosserat_casadi.numerics.time_steps import Stepper
+from cosserat_casadi.numerics.time_steps import Stepper, StepperAfter
 
 MATRICES = 3
 """Derivatives of inverse dynamics: stiffness, damping, mass."""
@@ -31,12 +31,14 @@ class StepKernels:
         jacobians: ↦ its derivatives with x, v and a, each of shape (size, size).
         stepper: takes the steps in machine code; None where Python takes them.
         derivatives: the shared object that has the derivatives; None where CasADi's virtual machine runs them.
+        stepper_after: asked in steps of Python for a stepper that takes the rest; None where none is to come.
     """
 
     residual: Callable[..., FloatArray]
     jacobians: Callable[..., list[FloatArray]]
     stepper: Stepper | None = None
     derivatives: str | None = None
+    stepper_after: StepperAfter | None = None
 
     @property
     def library(self) -> str | None:

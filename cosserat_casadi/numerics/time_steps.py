@@ -65,6 +65,9 @@ class StepsElsewhere(Protocol):
 Stepper = Callable[[StepRun, StepControl, float], StepsElsewhere]
 """(run, control, shortest step) ↦ the steps of the run, whose sizes are controlled."""
 
+StepperAfter = Callable[[int, float], Stepper | None]
+"""(iterations taken, share of the piece done) ↦ other code for the rest of the steps; None while there is none."""
+
 
 def integrate(
     equations: MotionEquations,
@@ -77,6 +80,7 @@ def integrate(
     settled: Settle | None = None,
     memory: CarriedStep | None = None,
     stepper: Stepper | None = None,
+    stepper_after: StepperAfter | None = None,
 ) -> Integration:
     """Integrate equations of motion over a piece in which they are smooth.
 
@@ -92,6 +96,7 @@ def integrate(
         settled: what puts the end of each step right; None for ends as they are.
         memory: of the steps up to the start, where a motion goes on in a piece: it takes the very steps of one motion.
         stepper: other code that takes steps whose sizes are controlled; None for that of this module.
+        stepper_after: asked after each step of this module for other code that takes the rest; None for none.
 
     Raises:
         ValueError: the method does not suit the equations or the settings; or times, sizes or tolerances are not
@@ -104,7 +109,7 @@ def integrate(
         # Numbers that overflow are found where they are judged.
         with np.errstate(all="ignore"):
             if settings.size is None:
-                outcome = _controlled_steps(run, after_step, stepper)
+                outcome = _controlled_steps(run, after_step, stepper, stepper_after)
             else:
                 outcome = _equal_steps(run, settings.size, after_step)
     except KeyboardInterrupt:
@@ -179,7 +184,9 @@ def _crawls(reached: Sequence[float], length: float) -> bool:
     return reached[-1] - middle > (middle - reached[0]) / 2
 
 
-def _controlled_steps(run: StepRun, after_step: AfterStep | None, stepper: Stepper | None) -> StepOutcome:
+def _controlled_steps(
+    run: StepRun, after_step: AfterStep | None, stepper: Stepper | None, stepper_after: StepperAfter | None
+) -> StepOutcome:
     """Take steps as long as the tolerance allows."""
     length = run.stop - run.begun
     resolved = RESOLVED_TIME * max(abs(run.start.time), abs(run.stop))
@@ -188,8 +195,10 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None, stepper: Stepp
     control = StepControl(run.method.stages, run.settings.longest, min(first, run.settings.longest))
     if run.before is not None:
         control.remember(run.before.size, run.before.error)
-    # Linear systems with eliminated entries are condensed here alone.
-    if stepper is not None and run.method.stages == STAGES and not len(run.equations.eliminated):
+    if run.method.stages != STAGES or len(run.equations.eliminated):
+        # Linear systems with eliminated entries are condensed here alone.
+        stepper = stepper_after = None
+    if stepper is not None:
         return _steps_elsewhere(run, control, stepper(run, control, shortest), after_step)
     reason = StepOutcome.STEP_TOO_SMALL
     singular_steps = 0
@@ -211,6 +220,10 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None, stepper: Stepp
                 return StepOutcome.GUARDED
             if after_step is not None:
                 after_step(end, run.steps[-1].size)
+            if stepper_after is not None and run.now.time < run.stop:
+                stepper = stepper_after(run.iterations, (run.now.time - run.begun) / length)
+                if stepper is not None:
+                    return _steps_elsewhere(run, control, stepper(run, control, shortest), after_step)
             continue
         reason = refusal
         run.rejected += 1

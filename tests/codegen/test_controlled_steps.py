@@ -78,6 +78,29 @@ def test_steps_are_the_same_over_many_calls() -> None:
     assert len(taken.steps) > 2 * MOST_TRIES
 
 
+def test_steps_that_python_began_are_gone_on_with_in_c() -> None:
+    """The rest has the sizes, the guesses and the Jacobian of a motion that Python takes alone."""
+    asked = list[tuple[int, float]]()
+
+    def later(iterations: int, share: float) -> Stepper | None:
+        asked.append((iterations, share))
+        return CompiledSteps if share > 0.4 else None
+
+    for equations, x, v, end in ((DUFFING, [1.0], [0.3], 30.0), (PENDULUM, *pendulum_state(1.0, 0.5), 3.0)):
+        asked.clear()
+        both = run_of(equations, x, v, end, stepper_after=later)
+        alone = run_of(equations, x, v, end)(None)
+        joined = both(None)
+        assert joined.outcome is StepOutcome.COMPLETED
+        assert work_of(joined) == work_of(alone)
+        assert 1 < len(asked) < len(joined.steps)
+        assert asked[-2][1] <= 0.4 < asked[-1][1]
+        assert_allclose(joined.end.x, alone.end.x, rtol=0, atol=1e-8)
+        # What C has taken over leaves no trace: the first step of its own is as long as that of Python.
+        sizes = [[step.size for step in taken.steps[: len(asked) + 1]] for taken in (joined, alone)]
+        assert_allclose(*sizes, rtol=1e-6, atol=0)
+
+
 def test_multipliers_and_directions_without_mass() -> None:
     assert_same(run_of(PENDULUM, *pendulum_state(1.0, 0.5), 3.0))
     top = Top(np.array([1.0, 2.0, 2.5]))

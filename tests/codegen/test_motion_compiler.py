@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
-from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps, steps_library
+from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps, steps_are_loaded, steps_library
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
@@ -30,9 +30,12 @@ from cosserat_casadi.motion.simulate import moving_inputs, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted, interpreted_jacobians, interpreted_residual
 from cosserat_casadi.motion.tip_paths import functions_of_sections
 from cosserat_casadi.motion.trajectory import StepStatistics
+from cosserat_casadi.numerics import time_steps
 from cosserat_casadi.numerics.collocation import radau
-from cosserat_casadi.numerics.integration import StepSettings
+from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.step_control import StepControl
+from cosserat_casadi.numerics.step_run import StepRun
 from tests.codegen.test_load import needs_compiler
 from tests.families import mostly_slow
 from tests.moving_scenes import FAMILIES, model_of
@@ -239,6 +242,33 @@ def test_steps_of_a_long_motion_are_compiled_for_the_next(monkeypatch: pytest.Mo
     compiler.learn(work(500, 1))
     assert MotionCompiler.spent_on_steps < TO_COMPILE_STEPS
     assert compiler.kernels(model).stepper is CompiledSteps
+
+
+def test_steps_are_compiled_within_a_motion_that_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
+    steps_library.cache_clear()
+    compiler = MotionCompiler()
+    kernels = compiler.kernels(moving(arm()))
+    assert kernels.stepper is None
+    assert kernels.stepper_after is not None
+    # Few iterations, and few at the beginning, tell of no long motion.
+    assert kernels.stepper_after(20, 0.5) is None
+    assert kernels.stepper_after(500, 0.05) is None
+    assert not steps_are_loaded()
+    in_python = list[float]()
+    plain = time_steps._try_step
+
+    def counted(run: StepRun, control: StepControl, end: float) -> StepOutcome | None:
+        in_python.append(end)
+        return plain(run, control, end)
+
+    monkeypatch.setattr(time_steps, "_try_step", counted)
+    motion = simulate(moving(arm(duration=2.0, tolerance=1e-6)))
+    assert motion.converged
+    assert steps_are_loaded()
+    # The first part of the first motion, whose inputs move for 0.1 s, and a tenth of the second one.
+    assert 0.1 < max(in_python) < 0.4
+    assert 5 < len(in_python) < 0.3 * motion.statistics.steps
 
 
 def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> None:
