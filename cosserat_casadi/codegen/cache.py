@@ -45,6 +45,9 @@ FOLDERS = {"win32": "AppData/Local", "darwin": "Library/Caches"}
 LIMIT = 500_000_000
 """Bytes of all files of ours in the folder, beyond which some are removed."""
 
+MOST_TALLIED = 60_000
+"""Bytes of a tally, a millisecond each: nothing takes that long to compile."""
+
 IN_USE = 3600.0
 """Seconds since its last use for which a library is not removed: a process may be about to load it."""
 
@@ -53,9 +56,10 @@ SCRATCH = "cosserat_casadi-compiling-"
 
 LIBRARY = ".so"
 TEXTS = ".texts"
-"""Ends of the names of libraries and of texts."""
+TALLY = ".tally"
+"""Ends of the names of libraries, of texts, and of tallies of the time that went without a library."""
 
-OURS = re.compile(rf"\w+-[0-9a-f]{{20}}(-[0-9a-f]{{20}})?(\{LIBRARY}|\{TEXTS})")
+OURS = re.compile(rf"\w+-[0-9a-f]{{20}}(-[0-9a-f]{{20}})?(\{LIBRARY}|\{TEXTS}|\{TALLY})")
 """Names of these files; libraries of earlier versions had no hash of their content.
 
 Whatever else lies in the folder is not ours to remove."""
@@ -157,6 +161,34 @@ def _keep_texts(folder: Path, stem: str, texts: Mapping[str, str]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         write_atomically(folder / file_name(stem, content, TEXTS), content)
         keep_within(folder)
+
+
+def tallied(stem: str | None) -> float:
+    """Time that all processes have noted under a stem, s: see :func:`tally`."""
+    if stem is None:
+        return 0.0
+    with suppress(OSError):
+        return 1e-3 * _tally_of(stem).stat().st_size
+    return 0.0
+
+
+def tally(stem: str | None, seconds: float) -> None:
+    """Note time that went for want of a library, for processes to come: each of them may be short.
+
+    A byte stands for a millisecond, so that processes may append to the file at once. Without a stem nothing is noted.
+    """
+    if stem is None:
+        return
+    file = _tally_of(stem)
+    with suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("ab") as opened:
+            left = max(MOST_TALLIED - opened.tell(), 0)
+            opened.write(bytes(min(round(1e3 * seconds), left)))
+
+
+def _tally_of(stem: str) -> Path:
+    return cache_folder() / f"{stem}{TALLY}"
 
 
 def content_hash(compiler: Sequence[str], flags: Sequence[str], contents: Iterable[bytes]) -> str:

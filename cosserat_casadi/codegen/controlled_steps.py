@@ -123,6 +123,11 @@ def _origin() -> str:
     return hashlib.sha256("\0".join(_texts().values()).encode()).hexdigest()
 
 
+def stem_of_steps() -> str:
+    """Name of the tally of the time that went without the loop."""
+    return f"{NAME}-{_origin()[:20]}"
+
+
 @cache
 def _texts() -> dict[str, str]:
     """The sources by file name."""

@@ -12,13 +12,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.cache import cache_folder
+from cosserat_casadi.codegen.cache import cache_folder, tallied, tally
 from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
-from cosserat_casadi.codegen.controlled_steps import CompiledSteps, steps_are_at_hand, steps_library
+from cosserat_casadi.codegen.controlled_steps import (
+    CompiledSteps,
+    stem_of_steps,
+    steps_are_at_hand,
+    steps_are_loaded,
+    steps_library,
+)
 from cosserat_casadi.codegen.description import key_of
 from cosserat_casadi.codegen.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
@@ -99,14 +105,12 @@ class MotionCompiler:
         last: the work of the motion before; None before the first.
         asked: for each function the model that it was looked for, and its machine code, None where there was none.
         saved_by_steps: time that steps in C would have saved of the first motion, s.
-        spent_on_steps: that of all motions in this process, s.
     """
 
     always: bool = False
     last: StepStatistics | None = None
     asked: dict[str, tuple[Model, RepeatedCall | None]] = field(default_factory=dict)
     saved_by_steps: float = 0.0
-    spent_on_steps: ClassVar[float] = 0.0
 
     @cached_property
     def _compiler(self) -> str:
@@ -118,11 +122,14 @@ class MotionCompiler:
         saved_by_steps = self._saved_by_steps(statistics)
         for name, (model, found) in self.asked.items():
             if found is None:
-                _spent(model)[name] += _interpreted_time(model, name, statistics)
+                spent = _interpreted_time(model, name, statistics)
+                _spent(model)[name] += spent
+                tally(_stem(model, name), spent)
         if self.last is None:
             self.saved_by_steps = saved_by_steps
         self.last = statistics
-        MotionCompiler.spent_on_steps += saved_by_steps
+        if not steps_are_loaded():
+            tally(stem_of_steps(), saved_by_steps)
 
     def _saved_by_steps(self, work: StepStatistics) -> float:
         """Time that steps in C save of a motion whose kernels were asked for last, s."""
@@ -193,9 +200,9 @@ class MotionCompiler:
     def _steps_pay(self, foreseen: float) -> bool:
         """Whether steps in machine code save more time than they take to compile.
 
-        That is foreseen of the rest of the search, s, or where steps in Python have taken so long in this process.
+        That is foreseen of the rest of the search, s, or where steps in Python have taken so long on this machine.
         """
-        return max(foreseen, self.spent_on_steps) > TO_COMPILE_STEPS
+        return max(foreseen, tallied(stem_of_steps())) > TO_COMPILE_STEPS
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""
@@ -217,11 +224,13 @@ class MotionCompiler:
         """Whether machine code saves more time than it takes to compile.
 
         That is foreseen where the next motions would take as long as the last one, or where earlier motions of this
-        model have taken so long in this process: more of them are likely.
+        model have taken so long, of any process where it is kept for others: more of them are likely.
         """
         if self.last is None:
             return False
         spent = _spent(model)[RESIDUAL if name == PROGRAM else name]
+        if name != PROGRAM:
+            spent = max(spent, tallied(_stem(model, name)))
         return _saves(model, name, max(MOTIONS_TO_COME * _interpreted_time(model, name, self.last), spent))
 
 
@@ -295,7 +304,7 @@ def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> 
 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
     """The shared object with a function; arguments as of :func:`_in_machine_code`."""
-    key = key_of(name, *_equations(model))
+    key = _key(model, name)
     kept = None if key is None else compiled_from(name, key, compiler)
     if kept is not None or not write:
         return kept
@@ -307,6 +316,20 @@ def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | N
     # Sources that changed meanwhile may have written parts of it.
     origin = None if sources_hash() is None else key
     return compiled_texts(name, texts, compiler, origin=origin)
+
+
+def _key(model: Model, name: str) -> str | None:
+    """Key of the origin of a function of a model; None where it has none."""
+    keys: dict[str, str | None] = kept_with(model, "_keys_of_equations", dict)
+    if name not in keys:
+        keys[name] = key_of(name, *_equations(model))
+    return keys[name]
+
+
+def _stem(model: Model, name: str) -> str | None:
+    """Name of the tally of the time that went without machine code of a function of a model; None without a key."""
+    key = _key(model, name)
+    return None if key is None else f"{name}-{key}"
 
 
 def _equations(model: Model) -> list[Any]:

@@ -8,13 +8,26 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, build, discretise, export, load
 from cosserat_casadi.codegen import cache, compiler
-from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
+from cosserat_casadi.codegen.cache import (
+    ABANDONED,
+    IN_USE,
+    MOST_TALLIED,
+    OURS,
+    SCRATCH,
+    cache_folder,
+    content_hash,
+    keep_within,
+    tallied,
+    tally,
+)
 from cosserat_casadi.codegen.compiler import find_compiler
 from tests.families import mostly_slow
 from tests.scenes import push, scene
@@ -36,6 +49,23 @@ def strip(strip_once: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
     monkeypatch.setattr(compiler, "FLAGS", tuple("-O0" if flag == "-O2" else flag for flag in compiler.FLAGS))
     return Path(shutil.copytree(strip_once, tmp_path / "strip"))
+
+
+def test_processes_note_their_time_together(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
+    stem = "steps-0123456789abcdef0123"
+    assert tallied(stem) == 0.0
+    # None is the stem of what has no key.
+    tally(None, 1.0)
+    assert tallied(None) == 0.0
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda _: tally(stem, 3.4e-3), range(100)))
+    assert_allclose(tallied(stem), 0.3, rtol=1e-12, atol=0)
+    tally(stem, 1e6)
+    tally(stem, 1e6)
+    assert_allclose(tallied(stem), 1e-3 * MOST_TALLIED, rtol=1e-12, atol=0)
+    (file,) = (tmp_path / "kept").iterdir()
+    assert OURS.fullmatch(file.name), "it is removed with what else is ours"
 
 
 def counting_compiler(tmp_path: Path) -> tuple[str, Path]:

@@ -14,7 +14,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.codegen import description, kernel_files
-from cosserat_casadi.codegen.controlled_steps import FEW_TRIES, CompiledSteps, steps_are_loaded, steps_library
+from cosserat_casadi.codegen.cache import tallied
+from cosserat_casadi.codegen.controlled_steps import (
+    FEW_TRIES,
+    CompiledSteps,
+    stem_of_steps,
+    steps_are_loaded,
+    steps_library,
+)
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
@@ -215,37 +222,33 @@ def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:
     assert_array_equal(displacements(moving(arm()), library), displacements(model))
 
 
-def test_steps_are_compiled_where_motions_tell_that_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
+def test_steps_are_compiled_where_motions_tell_that_it_pays() -> None:
     steps_library.cache_clear()
     model = moving(arm())
     compiler = MotionCompiler()
     assert compiler.kernels(model).stepper is None
     compiler.learn(work(50, 1))
     assert compiler.kernels(model).stepper is None
-    # Many short motions of one process are as good a reason as a long one.
-    while MotionCompiler.spent_on_steps < TO_COMPILE_STEPS:
+    # Many short motions, each of which may be a process of its own, are as good a reason as a long one.
+    while tallied(stem_of_steps()) < TO_COMPILE_STEPS:
         assert MotionCompiler().kernels(model).stepper is None
         compiler.learn(work(50, 1))
     assert MotionCompiler().kernels(model).stepper is CompiledSteps
     steps_library.cache_clear()
-    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
     assert MotionCompiler().kernels(model).stepper is CompiledSteps, "they are in the cache"
 
 
-def test_steps_of_a_long_motion_are_compiled_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
+def test_steps_of_a_long_motion_are_compiled_for_the_next() -> None:
     steps_library.cache_clear()
     model = moving(arm())
     compiler = MotionCompiler()
     compiler.kernels(model)
     compiler.learn(work(500, 1))
-    assert MotionCompiler.spent_on_steps < TO_COMPILE_STEPS
+    assert tallied(stem_of_steps()) < TO_COMPILE_STEPS
     assert compiler.kernels(model).stepper is CompiledSteps
 
 
 def test_steps_are_compiled_within_a_motion_that_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MotionCompiler, "spent_on_steps", 0.0)
     steps_library.cache_clear()
     compiler = MotionCompiler()
     kernels = compiler.kernels(moving(arm()))
@@ -286,11 +289,15 @@ def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> No
         assert (is_compiled(compiler, RESIDUAL), is_compiled(compiler, JACOBIANS)) == expected
 
 
-def test_functions_are_compiled_where_motions_of_a_model_have_taken_long() -> None:
+@pytest.mark.parametrize("in_one_process", [True, False])
+def test_functions_are_compiled_where_motions_of_a_model_have_taken_long(in_one_process: bool) -> None:
     model = moving(arm())
     motions = 0
     while motions < 100:
         motions += 1
+        if not in_one_process:
+            # A model that shares nothing with the last one knows its time by the cache alone.
+            model = moving(arm())
         compiler = MotionCompiler()
         compiler.kernels(model)
         # A search of its own each time, which begins with no motion to foresee the next ones by.
