@@ -25,6 +25,7 @@ from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
+from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.codegen.shared_values import COMMON, with_shared_kernels
@@ -61,7 +62,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
     wanted = functions_in_c(model, names)
     of_motion = [] if motion is None else motion.kernels
-    of_parameters = _parameter_kernels(model, names, parts)
+    of_parameters = [*_parameter_kernels(model, names, parts), *passage_kernels(model, names)]
     if parts is None:
         most = MOST_IN_COLUMNS if motion is None else MOST_BESIDE_STEPS
         return [*_of_one_rod(model, names, wanted, most), *of_parameters, *of_motion]

@@ -26,6 +26,7 @@ from cosserat_casadi.codegen.motion_sources import MOTION_FILES, motion_words
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameter_sources import parameter_words
 from cosserat_casadi.codegen.parameters import given_size
+from cosserat_casadi.codegen.passages import PASSAGE_FILES, passage_words, watches_passages
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import initialiser, pose_name, result_struct_words, vector_words
 from cosserat_casadi.codegen.texts import render, resource
@@ -57,7 +58,7 @@ FOURS = ("fours.h",)
 PROGRAM = ("program.h",)
 LEAST_MISFIT = "least_misfit.c"
 SECOND_VARIATION = "second_variation.c"
-SOLVER_FILES = (*SHARED, *ERROR_FILES, *DENSE, *BLOCKS, *MOTION_FILES, LEAST_MISFIT, SECOND_VARIATION)
+SOLVER_FILES = (*SHARED, *ERROR_FILES, *PASSAGE_FILES, *DENSE, *BLOCKS, *MOTION_FILES, LEAST_MISFIT, SECOND_VARIATION)
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
 """Files of the folder ``c`` that sources of a library include, as they are."""
 
@@ -88,6 +89,8 @@ ROLES = {
     "solver_track.c": "a turn of a control loop",
     "solver_error.c": "the error of an answer, from modes that the model lacks",
     "solver_recover.c": "a turn of its way back",
+    "passages.c": "whether a step leads through something thin",
+    "interpolation.c": "positions between nodes",
     "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
     "linear_blocks.c": "factorisation of the Jacobian, rod after rod",
@@ -145,12 +148,13 @@ class FolderContents:
     beside: Mapping[str, str] = field(default_factory=dict)
     on_device: bool = False
 
-    def verbatim(self, names: Names) -> tuple[str, ...]:
+    def verbatim(self, model: Model, names: Names) -> tuple[str, ...]:
         """Files of the folder ``c`` that the library includes."""
         estimate = ERROR_FILES if estimates_errors(names) else ()
         linear = DENSE if self.parts is None else BLOCKS
         motion = () if self.motion is None else MOTION_FILES
-        return (*SHARED, *estimate, *linear, *motion)
+        passages = PASSAGE_FILES if watches_passages(model) else ()
+        return (*SHARED, *estimate, *passages, *linear, *motion)
 
     def to_compile(self, names: Names) -> dict[str, str]:
         """Words of the build file for sources and headers that a plain folder does not have."""
@@ -195,7 +199,7 @@ def library_sources(
     if contents.on_device:
         files |= {file: render(f"device_batch.{file.rpartition('.')[2]}.in", words) for file in device_files(name)}
     beside = {*files, *contents.generated, *contents.beside, MANIFEST}
-    return files | rendered(words, contents.verbatim(names), beside=beside)
+    return files | rendered(words, contents.verbatim(model, names), beside=beside)
 
 
 def device_files(name: str) -> tuple[str, str]:
@@ -285,7 +289,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     sizes |= parameter_words(sizes, model, names, dynamics=motion is not None)
     linear = dense_words(sizes) if parts is None else block_words(sizes, parts)
     in_motion = {} if motion is None else motion_words(sizes, model, names, motion)
-    sizes |= error_words(model, names)
+    sizes |= error_words(model, names) | passage_words(model, names)
     sizes |= _batch_words(names.name, contents.rows)
     functions = public_functions(model, names)
     margins = margins_of(model.discrete)

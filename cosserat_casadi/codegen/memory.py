@@ -93,7 +93,7 @@ def workspace_kb(words: Mapping[str, Any]) -> str:
     point = 3 * size + 1
     vectors = 7 * size + 2 * inputs
     derivatives = size * inputs + 7 * size
-    rooms = ("kernel_reals", "linear_reals", "parameter_reals", "error_reals", "motion_reals")
+    rooms = ("kernel_reals", "linear_reals", "parameter_reals", "error_reals", "place_reals", "motion_reals")
     reals = 2 * jacobian + 3 * point + vectors + derivatives + sum(words.get(room, 0) for room in rooms)
     integers = 2 * (size + 3) + words["kernel_integers"] + words.get("motion_integers", 0)
     return f"{(REAL * reals + INTEGER * integers) / 1000:.1f}"

@@ -30,7 +30,9 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_depth import thin_layers
 from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.numerics.continuation import Path, PathPoint
 
 EVERY = 2
@@ -59,9 +61,7 @@ class SmoothBarriers:
     @cached_property
     def watched_bodies(self) -> list[ContactLayer]:
         """The layers of such obstacles for bodies and disks."""
-        layers = [load for load in self.model.discrete.loads if isinstance(load, ContactLayer)]
-        of_bodies = [layer for layer in layers if layer.body is not None or layer.at is not None]
-        return [layer for layer in of_bodies if isfinite(layer.obstacle.thickness)]
+        return [layer for layer in thin_layers(self.model.discrete) if layer.body is not None or layer.at is not None]
 
     @property
     def any(self) -> bool:
@@ -98,7 +98,7 @@ class SmoothBarriers:
             properties = self.model.discrete.rods[rod].properties
             start = at_start._looked_at[rod].positions(obstacle, before, inputs[0])
             end = self._looked_at[rod].positions(obstacle, after, inputs[1])
-            if is_inside_between(obstacle, properties, start, end, _allowed(obstacle, properties.length)):
+            if is_inside_between(obstacle, properties, start, end, depth_allowed(obstacle, properties.length)):
                 return True
         for layer in self.watched_bodies:
             way = (at_start._place(layer, before, inputs[0]), self._place(layer, after, inputs[1]))
@@ -108,15 +108,9 @@ class SmoothBarriers:
 
     def _is_inside_between(self, layer: ContactLayer, start: FloatArray, end: FloatArray) -> bool:
         """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between positions."""
-        discrete = self.model.discrete
-        if layer.body is not None:
-            length = discrete.body_frame(layer.body).length
-        else:
-            assert layer.rod is not None, "a layer of no body is of a rod"
-            length = discrete.rods[layer.rod].properties.length
-        radius = min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius
-        allowed = _allowed(layer.obstacle, length)
-        return ball_is_inside_between(layer.obstacle, radius, length, start, end, allowed)
+        length, radius = length_of(self.model.discrete, layer), ball_in(layer)
+        depth = depth_allowed(layer.obstacle, length)
+        return ball_is_inside_between(layer.obstacle, radius, length, start, end, depth)
 
     def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """Position of a body or a disk in the axes of its obstacle, shape (3,), m."""
@@ -158,7 +152,7 @@ class SmoothBarriers:
         differs = slice(None) if p.shape[1] or self.model.inputs.geometry else slice(1)
         for rod, obstacle in self.watched:
             properties = self.model.at().discrete.rods[rod].properties
-            allowed = _allowed(obstacle, properties.length)
+            allowed = depth_allowed(obstacle, properties.length)
             looked_at = self._looked_at[rod]
             suspected = np.flatnonzero(~barred)
             # Few sections leave few states in doubt: of these all sections decide.
@@ -194,7 +188,7 @@ class SmoothBarriers:
             properties = self.model.discrete.rods[rod].properties
             paths = self._looked_at[rod].paths(obstacle, x, inputs, every=ROUGHLY)
             way = (paths[:-1], paths[1:])
-            if is_inside_between(obstacle, properties, *way, _allowed(obstacle, properties.length), ROUGHLY):
+            if is_inside_between(obstacle, properties, *way, depth_allowed(obstacle, properties.length), ROUGHLY):
                 return True
         for layer in self.watched_bodies:
             path = np.array([self._place(layer, *state) for state in zip(x, inputs, strict=True)])
@@ -259,7 +253,20 @@ def are_one(x: FloatArray, other: FloatArray) -> bool:
     return bool(np.linalg.norm(x - other) <= SAME * (1 + np.linalg.norm(x)))
 
 
-def _allowed(obstacle: scenes.ObstacleRecord, length: float) -> float:
+def length_of(discrete: DiscreteScene, layer: ContactLayer) -> float:
+    """Length that depths before a layer are relative to: of its rod, or of the longest one that holds its body, m."""
+    if layer.body is not None:
+        return discrete.body_frame(layer.body).length
+    assert layer.rod is not None, "a layer of no body is of a rod"
+    return discrete.rods[layer.rod].properties.length
+
+
+def ball_in(layer: ContactLayer) -> float:
+    """Radius of the largest ball in the body or the disk of a layer, m."""
+    return float(min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius)
+
+
+def depth_allowed(obstacle: scenes.ObstacleRecord, length: float) -> float:
     """Depth inside a smooth obstacle that is not deep, relative to the length."""
     assert obstacle.width is not None
     return DEEP + obstacle.width / length

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 import casadi as ca
 import numpy as np
 
@@ -10,6 +12,7 @@ from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -24,21 +27,25 @@ def contact_depths(system: System) -> list[Matrix]:
     return [*of_obstacles, *(terms.section_pairs.depth for terms in system.pairs)]
 
 
+def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
+    """The layers of smooth obstacles that have another side."""
+    layers = [load for load in discrete.loads if isinstance(load, ContactLayer)]
+    return [layer for layer in layers if isfinite(layer.obstacle.thickness)]
+
+
 def _depth(system: System, layer: ContactLayer) -> Matrix:
     if layer.at is not None:
         of_disk: Matrix = -_gap_of_disk(system, layer) / layer.obstacle.width
         return of_disk
-    if layer.body is not None:
-        positions = system.frame(FrameName("body", layer.body)).position
-        radii: Matrix | float = layer.radius
-    else:
+    radii: Matrix | float = layer.radius
+    if layer.body is None:
         assert layer.rod is not None, "a layer is in front of a rod or a body"
-        positions = system.seen_from(layer.obstacle.body, _node_positions(system, layer.rod))
         rod = system.discrete.rods[layer.rod]
         radii = as_matrix(section_radii(rod.properties, rod.grid.nodes_at(np.arange(rod.grid.size)))).T
     point = ca.SX.sym("point", 3)
     distance = ca.SX(SURFACES[layer.obstacle.kind].distance(layer.obstacle, point))
     function = ca.Function("distance", [point], ca.cse([distance]))
+    positions = positions_before(system, layer)
     gaps = function.map(positions.shape[1])(positions) - radii
     depth: Matrix = -ca.mmin(gaps) / layer.obstacle.width
     return depth
@@ -51,8 +58,20 @@ def _gap_of_disk(system: System, layer: ContactLayer) -> Matrix:
     node = shape.rod.grid.node_at(layer.at)
     rotation = quaternion_to_matrix(system.base(layer.rod).quaternion) @ shape.rotation_at(node)
     size = ca.vertcat(layer.radius, layer.thickness)
-    gap, _ = push_on_disk(layer)(_node_positions(system, layer.rod)[:, node], rotation, size)
+    gap, _ = push_on_disk(layer)(positions_before(system, layer), rotation, size)
     return ca.MX(gap)
+
+
+def positions_before(system: System, layer: ContactLayer) -> Matrix:
+    """Positions of what a layer pushes in the axes of its obstacle, m: nodes of a rod, 3×M, a disk or a body, 3×1."""
+    if layer.body is not None:
+        return system.frame(FrameName("body", layer.body)).position
+    assert layer.rod is not None, "a layer is in front of a rod or a body"
+    positions = system.seen_from(layer.obstacle.body, _node_positions(system, layer.rod))
+    if layer.at is None:
+        return positions
+    of_disk: Matrix = positions[:, system.discrete.rods[layer.rod].grid.node_at(layer.at)]
+    return of_disk
 
 
 def _node_positions(system: System, rod: str) -> Matrix:

@@ -30,6 +30,7 @@ from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.section_poses import interpolation_weights
 from cosserat_casadi.model.strain_margins import strain_margins
 from cosserat_casadi.model.system import Arguments, System, ratio_of
+from cosserat_casadi.model.thin import places
 from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
 from cosserat_casadi.model.watched import watched
 from cosserat_casadi.rod import kinematics
@@ -198,6 +199,12 @@ class ModelFunctions:
         """
         positions = [side.at_sections for terms in written.system.pairs for side in (terms.sides[0], terms.sides[-1])]
         return [ca.horzcat(*positions)] if positions else None
+
+    @scene_function(Output("positions", "m"), kernel="places")
+    def places(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ positions of what may pass through something thin, 3×…, as model/thin.py; None without such."""
+        positions = places(written.system)
+        return None if positions is None else [positions]
 
     @scene_function(Output("balance"), arguments=CORRECTED, kernel="richer_balance", judges_answers=True)
     def richer_balance(self, written: Expressions) -> list[Matrix]:

@@ -20,6 +20,7 @@ static int settle(const load_path *path, const progress *end, real *x, solver_me
   const newton_result result = newton(&at, &limits, settled, end->point->residual, end->spare, work);
   count_work(info, &result);
   if (result.status != SOLVER_CONVERGED || shape_distance(settled, end->point->x) > SAME_BRANCH) return 0;
+  if (is_beyond(end->point->x, at.inputs, settled, at.inputs, work)) return 0;
   memcpy(x, settled, sizeof work->reached);
   for (int i = 0; i < INPUTS; i++) memory->inputs[i] = at.inputs[i];
   memory->has_jacobian = 0;

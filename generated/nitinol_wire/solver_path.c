@@ -117,10 +117,10 @@ static newton_limits corrector_limits(const path_point *next, int max_iterations
   return limits;
 }
 
-static int is_trusted(const newton_result *result, const progress *now, workspace *work) {
+static int is_trusted(const load_path *path, const newton_result *result, const progress *now, workspace *work) {
   if (result->status != SOLVER_CONVERGED || result->damped) return 0;
   for (int i = 0; i < N; i++) work->correction[i] = now->next->x[i] - now->point->x[i] - work->predicted[i];
-  return is_small(work->correction, work->predicted);
+  return is_small(work->correction, work->predicted) && !is_barred(path, now, work);
 }
 
 /* The next point becomes the point. */
@@ -171,7 +171,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
     const newton_limits corrector = corrector_limits(now.next, limits->max_iterations - info->iterations);
     const newton_result result = newton(&at, &corrector, now.next->x, now.next->residual, now.spare, work);
     count_work(info, &result);
-    if (!is_trusted(&result, &now, work)) {
+    if (!is_trusted(path, &result, &now, work)) {
       step /= 2;
       continue;
     }
@@ -229,6 +229,9 @@ static newton_result start_path(const load_path *path, const newton_limits *limi
   const loads at = loads_at(path, 0, work);
   residual_at(first->x, &at, first->residual, work);
   newton_result result = newton(&at, limits, first->x, first->residual, jacobian, work);
+  if (result.status == SOLVER_CONVERGED && is_beyond(x, at.inputs, first->x, at.inputs, work)) {
+    result.status = SOLVER_NOT_IN_EQUILIBRIUM;
+  }
   if (result.status == SOLVER_CONVERGED) {
     result.jacobians += tangent_at(path, first, result.jacobians > 0, jacobian, work);
   }

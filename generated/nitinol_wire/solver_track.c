@@ -49,7 +49,8 @@ static solver_status reach(const solver_memory *memory, const solver_options *op
   };
   work->updated_jacobians[0].factors = memory->jacobian;
   work->updated_jacobians[0].count = 0;
-  if (!correct(&limits, inputs, x, work, found) && !follow_last_turn(memory, options, inputs, x, work, found)) {
+  const real *before = memory->has_inputs ? memory->inputs : inputs;
+  if (!correct(&limits, before, inputs, x, work, found) && !follow_last_turn(memory, options, inputs, x, work, found)) {
     return SOLVER_LOST_TRACK;
   }
   return finish(x, inputs, 0, found, 0, work);

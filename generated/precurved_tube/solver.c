@@ -12,9 +12,10 @@ static real shape_distance(const real *a, const real *b) {
   return SQUARE_ROOT(sum);
 }
 
-/* Newton at the full load from x; zero, and x as it was, where that strays so far that it may be another branch. Leaves
-   the last Jacobian in updated_jacobians[0]. */
-static int correct(const newton_limits *limits, const real *inputs, real *x, workspace *work, solver_info *info) {
+/* Newton at the full load from x, that of the inputs before; zero, and x as it was, where that strays so far that it may be
+   another branch, or is beyond something thin. Leaves the last Jacobian in updated_jacobians[0]. */
+static int correct(const newton_limits *limits, const real *before, const real *inputs, real *x, workspace *work,
+                   solver_info *info) {
   real *trial = work->points[0].x;
   real *residual = work->points[0].residual;
   const loads at = full_load(inputs);
@@ -23,7 +24,7 @@ static int correct(const newton_limits *limits, const real *inputs, real *x, wor
   const newton_result result = newton(&at, limits, trial, residual, work->updated_jacobians, work);
   count_work(info, &result);
   if (result.status != SOLVER_CONVERGED || result.damped) return 0;
-  if (shape_distance(trial, x) > SAME_BRANCH) return 0;
+  if (shape_distance(trial, x) > SAME_BRANCH || is_beyond(x, before, trial, inputs, work)) return 0;
   memcpy(x, trial, N * sizeof *x);
   info->status = result.status;
   info->residual_norm = result.residual_norm;
@@ -74,7 +75,7 @@ solver_status solver_solve(const real *inputs, real *x, solver_workspace *work, 
   updated_jacobian *jacobian = 0;
   if (all_finite(inputs, INPUTS)) {
     const int warm = all_finite(x, N) && !is_zero(x);
-    if (!warm || !correct(&DAMPED_NEWTON, inputs, x, work, &found)) {
+    if (!warm || !correct(&DAMPED_NEWTON, inputs, inputs, x, work, &found)) {
       jacobian = solve_from_unloaded(inputs, x, work, &found);
     } else if (found.jacobians > 0) {
       jacobian = work->updated_jacobians;

@@ -33,6 +33,7 @@ from cosserat_casadi import (
     sweep,
 )
 from cosserat_casadi.codegen.rows import row_library
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.control import embedded, motion_stage
 from cosserat_casadi.equilibrium.contact.passing_through import LookedAt
 from cosserat_casadi.equilibrium.load_path import input_path
@@ -881,15 +882,13 @@ def test_a_wire_between_the_few_sections_that_are_looked_at_bars_the_way(beyond:
 
 @pytest.mark.slow
 def test_no_row_of_a_sweep_converges_behind_a_thin_wire() -> None:
-    """The solver in C steps through the wire, and comes to the equilibrium of the rod without it."""
+    """The solver in C stalls before the wire; Python may settle the row."""
     few = ["accuracy.modes=2", "accuracy.nodes=6"]
     scene = parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + THIN, few)
     pushes = np.array([-0.1, -0.25])
     table = np.stack([0 * pushes, 0 * pushes, pushes], axis=1)
-    in_c = row_library(build(scene)).solve(table)
-    assert in_c[:, 0].tolist() == [0.0, 0.0]
-    free = solve(build(parse_scene(ROD + PUSH, ["accuracy.modes=6", "accuracy.nodes=14"])), {"push.force": table[1]})
-    assert_allclose(in_c[1, 3:6], free.tip().position, rtol=0, atol=1e-6)
+    ends = row_library(build(scene)).solve(table)[:, 0].astype(int)
+    assert [OUTCOMES[end] for end in ends] == [Outcome.CONVERGED, Outcome.LOAD_STALLED]
     found = sweep(scene, {"push.force.x": 0.0, "push.force.y": 0.0, "push.force.z": pushes}, cores=1)
     watched = solve(build(scene), {"push.force": table[1]})
     assert found.outcome == ["converged", watched.outcome.label]

@@ -1,5 +1,7 @@
 /* Shapes of rods: from the elements of one arrangement to those of another, and distances from obstacles. */
 
+#include "interpolation.c"
+
 /* The element of a rod that an abscissa lies in; an end is of the element that it ends. */
 static int element_at(const arrangement *at, const real *z, int rod, real X) {
   int e = 0;
@@ -146,19 +148,7 @@ static void position_at(const arrangement *at, const real *z, const real *nodes,
   const int e = element_at(at, z, rod, X);
   const real local = local_abscissa(at, z, rod, e, X);
   const real *first = nodes + 3 * (at->rods[rod].first_node + e * count);
-  real sum = 0;
-  for (int i = 0; i < 3; i++) position[i] = 0;
-  for (int k = 0; k < count; k++) {
-    const real difference = local - own->local_nodes[k];
-    if (fabs(difference) < 1e-300) {
-      memcpy(position, first + 3 * k, 3 * sizeof *position);
-      return;
-    }
-    const real weight = own->barycentric[k] / difference;
-    sum += weight;
-    for (int i = 0; i < 3; i++) position[i] += weight * first[3 * k + i];
-  }
-  for (int i = 0; i < 3; i++) position[i] /= sum;
+  point_of_curve(first, own->local_nodes, own->barycentric, count, local, position);
 }
 
 /* Distance of the surface of a section from an obstacle, over the length of the rod. */

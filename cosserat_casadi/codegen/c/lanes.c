@@ -99,7 +99,7 @@ static void take_step(row *own) {
 static void end_correction(row *own) {
   const newton_result *result = &own->newton.result;
   count_work(&own->info, result);
-  if (!is_trusted(result, &own->now, own->work)) {
+  if (!is_trusted(&own->path, result, &own->now, own->work)) {
     own->step /= 2;
     take_step(own);
   } else if (own->now.next->t < 1) {

@@ -258,6 +258,7 @@ static solver_motion_status take_parts(int count, const step_start *whole, const
     if (status != SOLVER_MOTION_DONE) return status;
     /* The last stage is the end. */
     stage_at(&start, STAGES - 1, unknowns, &work->at);
+    if (is_beyond(start.x, start.inputs, work->at.state, work->at.inputs, work)) return SOLVER_MOTION_NOT_SOLVED;
     memcpy(work->end.x, work->at.state, sizeof work->end.x);
     memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
     memcpy(work->end.a, work->at.state + 2 * N, sizeof work->end.a);

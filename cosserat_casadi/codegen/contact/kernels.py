@@ -13,11 +13,12 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.kernels import by_columns, kernel, with_derivatives
+from cosserat_casadi.codegen.passages import distance_kernel
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, obstacle_of, pairs
-from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
@@ -309,7 +310,5 @@ def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:
     kernels = {}
     for _, obstacle in (*pairs(chosen.scene), *body_pairs(chosen.scene)):
         number = [other.name for other in chosen.scene.obstacles].index(obstacle.name)
-        point = ca.SX.sym("point", 3)
-        distance = distance_from(obstacle)(point)
-        kernels[obstacle.name] = ca.Function(f"{name}_{number}", [point], [ca.densify(distance)])
+        kernels[obstacle.name] = distance_kernel(obstacle, f"{name}_{number}")
     return list(kernels.values())

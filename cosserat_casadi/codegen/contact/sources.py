@@ -56,7 +56,15 @@ from cosserat_casadi.model.strain_margins import VANISHED
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.scene.writing import scene_text
 
-VERBATIM = ("contact.h", "contact_newton.c", "contact_shape.c", "contact_faults.c", "contact_settle.c", "contact.c")
+VERBATIM = (
+    "contact.h",
+    "contact_newton.c",
+    "interpolation.c",
+    "contact_shape.c",
+    "contact_faults.c",
+    "contact_settle.c",
+    "contact.c",
+)
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "contact_demo.c.in")

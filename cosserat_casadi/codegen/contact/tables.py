@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.codegen.block_sources import numbers
+from cosserat_casadi.codegen.block_sources import numbers, reals, record, record_table
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, touches_bodies, words_of
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
@@ -149,8 +149,8 @@ class Tables:
                 "local_nodes": f"LOCAL_NODES_{suffix}",
                 "barycentric": f"BARYCENTRIC_{suffix}",
             }
-            entries.append(_initialiser(fields))
-        return "\n".join([*lines, _table("rod_modes", f"{level.prefix}ROD_MODES", "RODS", entries)])
+            entries.append(record(fields))
+        return "\n".join([*lines, record_table("rod_modes", f"{level.prefix}ROD_MODES", "RODS", entries)])
 
     def _modes_of_rod(self, number: str, rod: DiscreteRod) -> list[str]:
         intervals = rod.grid.intervals
@@ -161,15 +161,15 @@ class Tables:
         polynomials = POLYNOMIALS[rod.properties.basis]
         lines = [
             f"static const int MODES_{number}[] = {{{numbers(list(modes))}}};",
-            _reals(f"LOCAL_POINTS_{number}", local),
+            reals(f"LOCAL_POINTS_{number}", local),
         ]
         inverses = {count: np.linalg.pinv(polynomials(count, local)) for count in sorted(set(modes))}
-        lines += [_reals(f"FIT_{number}_{count}", inverse.ravel()) for count, inverse in inverses.items()]
+        lines += [reals(f"FIT_{number}_{count}", inverse.ravel()) for count, inverse in inverses.items()]
         fits = ", ".join(f"FIT_{number}_{count}" for count in modes)
         lines += [
             f"static const real *const FITS_{number}[] = {{{fits}}};",
-            _reals(f"LOCAL_NODES_{number}", chebyshev.nodes(intervals)),
-            _reals(f"BARYCENTRIC_{number}", chebyshev.barycentric_weights(intervals)),
+            reals(f"LOCAL_NODES_{number}", chebyshev.nodes(intervals)),
+            reals(f"BARYCENTRIC_{number}", chebyshev.barycentric_weights(intervals)),
         ]
         return lines
 
@@ -191,7 +191,7 @@ class Tables:
             }
             if self.chosen.judges_stability:
                 fields["energy"] = repr(float(rod.energy_unit / self._largest_unit))
-            entries.append(_initialiser({"rank": ranks.index(name), **fields}))
+            entries.append(record({"rank": ranks.index(name), **fields}))
         radii_of_bodies = {body.name: ball_radius(body) for body in self.chosen.scene.bodies}
         for name in bodies:
             fields = {
@@ -201,8 +201,8 @@ class Tables:
                 "length": repr(float(discrete.body_frame(name).length)),
                 "force_unit": repr(float(discrete.contact_unit(name, of_body=True))),
             }
-            entries.append(_initialiser(fields))
-        return _table("rod_entry", "ROD", "OWNERS", entries)
+            entries.append(record(fields))
+        return record_table("rod_entry", "ROD", "OWNERS", entries)
 
     @cached_property
     def _largest_unit(self) -> float:
@@ -245,8 +245,8 @@ class Tables:
                 "obstacle": number,
                 "distance": f"{self.name}_k_distance_{number}",
             }
-            entries.append(_initialiser(fields))
-        return _table("pair_entry", "PAIR", "PAIRS", entries)
+            entries.append(record(fields))
+        return record_table("pair_entry", "PAIR", "PAIRS", entries)
 
     def _arrangement(self, level: _Level, number: int, equations: ContactEquations) -> str:
         lines = [f"\n/* {described(equations)} */"]
@@ -259,7 +259,7 @@ class Tables:
             suffix = f"{level.prefix}{number}_{rod_number}"
             places = self._places_of_ends(equations, name)
             lines.append(f"static const int PLACES_{suffix}[] = {{{numbers(places)}}};")
-            lines.append(_reals(f"NOMINAL_{suffix}", np.array(discretisation.breaks)))
+            lines.append(reals(f"NOMINAL_{suffix}", np.array(discretisation.breaks)))
             fields = {
                 "elements": rod.grid.elements,
                 "first_strain": model.discrete.unknowns.strain(name).start,
@@ -267,13 +267,13 @@ class Tables:
                 "place_of_end": f"PLACES_{suffix}",
                 "nominal": f"NOMINAL_{suffix}",
             }
-            elements.append(_initialiser(fields))
+            elements.append(record(fields))
             first_node += rod.grid.size
-        lines.append(_table("rod_elements", f"ELEMENTS_{level.prefix}{number}", "RODS", elements))
+        lines.append(record_table("rod_elements", f"ELEMENTS_{level.prefix}{number}", "RODS", elements))
         if self.chosen.judges_stability and not level.prefix:
-            lines.append(_reals(f"ROOTS_{number}", self.roots(equations)))
+            lines.append(reals(f"ROOTS_{number}", self.roots(equations)))
         if equations.state.touches:
-            lines.append(_table("contact_entry", f"TOUCHES_{level.prefix}{number}", "", self._touches(equations)))
+            lines.append(record_table("contact_entry", f"TOUCHES_{level.prefix}{number}", "", self._touches(equations)))
         return "\n".join(lines)
 
     def _places_of_ends(self, equations: ContactEquations, rod: str) -> list[int]:
@@ -303,7 +303,7 @@ class Tables:
                 "along": along,
                 "first_place": first_place,
             }
-            entries.append(_initialiser(fields))
+            entries.append(record(fields))
             first_force += len(touch.ends) + along
             first_place += len(touch.moving)
         return entries
@@ -311,7 +311,7 @@ class Tables:
     def _arrangement_table(self) -> str:
         """The arrangements, then those on richer modes in the same order."""
         entries = [self._entry(level, number) for level in self._levels for number in range(len(level.equations))]
-        return "\n" + _table("arrangement", "ARRANGEMENT", "", entries)
+        return "\n" + record_table("arrangement", "ARRANGEMENT", "", entries)
 
     def _entry(self, level: _Level, number: int) -> str:
         equations = level.equations[number]
@@ -333,15 +333,15 @@ class Tables:
             fields["roots"] = f"ROOTS_{number}"
         for word in level.words:
             fields[word] = f"{self.name}_k_{level.prefix.lower()}{number}_{word}"
-        return _initialiser(fields)
+        return record(fields)
 
     def _start(self) -> str:
         given = self.chosen.given.tolist() or [0.0]
         lines = [
             "\n/* The solution of the scene's own inputs. */",
             f"enum {{ START_ARRANGEMENT = {self.chosen.start} }};",
-            _reals("START_Z", self.chosen.z),
-            _reals("START_INPUTS", np.array(given)),
+            reals("START_Z", self.chosen.z),
+            reals("START_INPUTS", np.array(given)),
         ]
         return "\n".join(lines)
 
@@ -355,16 +355,3 @@ def described(equations: ContactEquations) -> str:
             where = "along a line to its tip" if touch.reaches_tip else "along a line"
         words.append(f"{touch.owner} touches {touch.obstacle} {where}")
     return ", ".join(words) or "no contact"
-
-
-def _reals(name: str, values: FloatArray) -> str:
-    return f"static const real {name}[] = {{{numbers([float(value) for value in values])}}};"
-
-
-def _initialiser(fields: Mapping[str, object]) -> str:
-    return "{" + ", ".join(f".{name} = {value}" for name, value in fields.items()) + "}"
-
-
-def _table(kind: str, name: str, size: str, entries: list[str]) -> str:
-    lines = ",\n".join(f"    {entry}" for entry in entries)
-    return f"static const {kind} {name}[{size}] = {{\n{lines},\n}};"

@@ -135,6 +135,18 @@ def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> 
     return False
 
 
+def admitted_depth(obstacle: scenes.ObstacleRecord, length: float, deepest: float, radius: float) -> float:
+    """Depth inside an obstacle on the way that is not deep, m.
+
+    Args:
+        obstacle: the obstacle.
+        length: what depths are relative to, m.
+        deepest: the depth relative to it; at most :data:`MIDDLE` of the way to the middle is admitted.
+        radius: of a ball, or of the thinnest section of a rod, m.
+    """
+    return min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
+
+
 def ball_is_inside_between(
     obstacle: scenes.ObstacleRecord,
     radius: float,
@@ -153,7 +165,7 @@ def ball_is_inside_between(
         end: another, likewise.
         deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
     """
-    admitted = min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
+    admitted = admitted_depth(obstacle, length, deepest, radius)
     # A stretch without length.
     ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
     sinking = _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
@@ -193,7 +205,7 @@ def ways_inside(
         every: step from one of SECTIONS to the next one of the positions.
     """
     thinnest = float(section_radius(properties, SECTIONS).min())
-    admitted = min(deepest * properties.length, MIDDLE * (obstacle.thickness / 2 + thinnest))
+    admitted = admitted_depth(obstacle, properties.length, deepest, thinnest)
     return _sinking(
         lambda positions, X: section_gaps(obstacle, properties, positions, X),
         start,

@@ -1,0 +1,165 @@
+/* Whether a step leads through something thin: a smooth ball or bar, or another rod, pushes where a rod is in it, so that a
+   step which ends behind it has not felt it. What moves goes in straight lines from one shape to the other.
+
+   cosserat_casadi/equilibrium/smooth_passage.py asks the same of the steps in Python. A distance changes by no more than
+   the way: from a place that is clear by some way the next one that is looked at is as far away, along the motion and
+   along the rod. Uses of the scene: BARRIER, ROD_PAIR, places_at. */
+
+#include "interpolation.c"
+
+/* Width of the stretches between two looks at least, relative to the depth that is admitted: they miss no way through the
+   middle. */
+static const real FINEST = (real)0.25;
+
+/* Longest step along a rod, in which a chord is about as long as the rod. */
+static const real LONGEST_STRETCH = (real)0.125;
+
+/* Bound on how much longer a rod is than its length, where its sections are counted. */
+static const real MOST_STRETCHED = (real)1.5;
+
+/* Sections of rods that touch rods of which one is looked at. */
+enum { EVERY = 2 };
+
+static real least_of(real a, real b) { return a < b ? a : b; }
+
+static real most_of(real a, real b) { return a > b ? a : b; }
+
+static real distance_of(const real *a, const real *b) {
+  real sum = 0;
+  for (int i = 0; i < 3; i++) sum += (b[i] - a[i]) * (b[i] - a[i]);
+  return SQUARE_ROOT(sum);
+}
+
+#if BARRIERS
+/* How much nearer than it is a section may come on its way to what counts as deep, m; negative where it is deep, or where
+   this is no number. */
+static real clear_by(const barrier *own, const real *start, const real *end, real radius, workspace *work) {
+  const real way = distance_of(start, end);
+  real least = -1, before = 0, gone = 0, share = 0;
+  for (;;) {
+    real position[3];
+    for (int i = 0; i < 3; i++) position[i] = start[i] + share * (end[i] - start[i]);
+    const real clear = own->distance(position, work) - radius + own->admitted;
+    if (!(clear >= 0)) return -1;
+    /* Between two looks the way is as clear as from both of its ends. */
+    const real between = most_of((before + clear - gone) / 2, 0);
+    least = share > 0 ? least_of(least, between) : clear;
+    if (share == 1 || way == 0) return least;
+    before = clear;
+    gone = most_of(clear, FINEST * own->admitted);
+    if (gone < (1 - share) * way) {
+      share += gone / way;
+    } else {
+      gone = (1 - share) * way;
+      share = 1;
+    }
+  }
+}
+
+/* Position of the section at an abscissa, or of a ball. */
+static void position_of(const barrier *own, const real *places, real X, real *position) {
+  const rod_nodes *rod = own->rod;
+  const real *first = places + 3 * own->first;
+  int e = 0;
+  if (!rod) {
+    memcpy(position, first, 3 * sizeof *position);
+    return;
+  }
+  while (e + 1 < rod->elements && X > rod->ends[e + 1]) e++;
+  const real local = (X - rod->ends[e]) / (rod->ends[e + 1] - rod->ends[e]);
+  point_of_curve(first + 3 * e * rod->nodes, rod->local_nodes, rod->barycentric, rod->nodes, local, position);
+}
+
+static real radius_of(const barrier *own, real X) {
+  const real place = X * (real)own->parts;
+  const int part = place < (real)own->parts ? (int)place : own->parts - 1;
+  return own->radii[part] + (place - (real)part) * (own->radii[part + 1] - own->radii[part]);
+}
+
+/* Whether a section of a rod, or a ball, is deep inside an obstacle on its way. */
+static int goes_through(const barrier *own, const real *before, const real *after, workspace *work) {
+  real start[3], end[3], next_start[3], next_end[3];
+  real X = 0;
+  position_of(own, before, X, start);
+  position_of(own, after, X, end);
+  for (;;) {
+    const real clear = clear_by(own, start, end, radius_of(own, X), work);
+    if (clear < 0) return 1;
+    if (!own->rod || X == 1) return 0;
+    const real reach = most_of(clear, FINEST * own->admitted);
+    /* A little less, so that rounding does not halve the step. */
+    real step = least_of((real)0.9 * reach / own->length, LONGEST_STRETCH);
+    real next;
+    for (;;) {
+      next = least_of(X + step, 1);
+      position_of(own, before, next, next_start);
+      position_of(own, after, next, next_end);
+      if (!(most_of(distance_of(start, next_start), distance_of(end, next_end)) > reach)) break;
+      step /= 2;
+    }
+    X = next;
+    memcpy(start, next_start, sizeof start);
+    memcpy(end, next_end, sizeof end);
+  }
+}
+#endif
+
+#if ROD_PAIRS
+/* How near one section comes to another while both move. */
+static real nearest_of(const real *first, const real *second, const real *first_end, const real *second_end) {
+  real square = 0, product = 0, apart[3], way[3];
+  for (int i = 0; i < 3; i++) {
+    apart[i] = first[i] - second[i];
+    way[i] = first_end[i] - second_end[i] - apart[i];
+    square += way[i] * way[i];
+    product -= apart[i] * way[i];
+  }
+  const real share = square > 0 ? most_of(least_of(product / square, 1), 0) : 0;
+  real sum = 0;
+  for (int i = 0; i < 3; i++) sum += (apart[i] + share * way[i]) * (apart[i] + share * way[i]);
+  return SQUARE_ROOT(sum);
+}
+
+/* Whether the axes of two rods come nearer each other than half their thickness. */
+static int pass_each_other(const rod_pair *own, const real *before, const real *after) {
+  for (int i = 0; i < own->counts[0]; i += EVERY) {
+    const real X = (i + (real)0.5) / own->counts[0];
+    const int first = 3 * (own->first[0] + i);
+    for (int j = 0; j < own->counts[1];) {
+      const int second = 3 * (own->first[1] + j);
+      const real along = ((j + (real)0.5) / own->counts[1] - X) * own->length;
+      int skipped = 1;
+      if (along >= own->apart) {
+        const real clear = nearest_of(before + first, before + second, after + first, after + second) - own->allowed;
+        if (!(clear >= 0)) return 1;
+        skipped = (int)least_of(clear / (MOST_STRETCHED * own->spacing), (real)own->counts[1]) / EVERY;
+        if (skipped < 1) skipped = 1;
+      }
+      j += EVERY * skipped;
+    }
+  }
+  return 0;
+}
+#endif
+
+/* The places in a shape, at the start of a step, 0, or at its end, 1. */
+static void find_places(const real *x, const real *inputs, int end, workspace *work) {
+  places_at(x, inputs, work->places[end], work);
+}
+
+/* Whether the straight way between the places at both ends leads through something thin. */
+static int leads_through(workspace *work) {
+  const real *before = work->places[0];
+  const real *after = work->places[1];
+#if BARRIERS
+  for (int k = 0; k < BARRIERS; k++) {
+    if (goes_through(BARRIER + k, before, after, work)) return 1;
+  }
+#endif
+#if ROD_PAIRS
+  for (int k = 0; k < ROD_PAIRS; k++) {
+    if (pass_each_other(ROD_PAIR + k, before, after)) return 1;
+  }
+#endif
+  return 0;
+}

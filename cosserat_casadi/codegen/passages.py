@@ -1,0 +1,158 @@
+"""The words of the sources that watch steps for rods that pass through something thin: smooth_passage.py in C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.codegen.block_sources import Words, reals, record, record_table
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from
+from cosserat_casadi.equilibrium.contact.passing_through import admitted_depth
+from cosserat_casadi.equilibrium.smooth_passage import ball_in, depth_allowed, length_of
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_depth import thin_layers
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.thin import first_places, moved_by
+
+PASSAGE_FILES = ("interpolation.c", "passages.c")
+"""Files of the folder ``c`` that a library includes which watches."""
+
+
+RADII = 65
+"""Sections whose radii are listed of a rod that is not linear from base to tip."""
+
+
+def watches_passages(model: Model) -> bool:
+    """Whether there is something thin in the scene that rods, disks or bodies could pass through."""
+    return bool(thin_layers(model.discrete) or model.discrete.pairs)
+
+
+def distance_kernel(obstacle: scenes.ObstacleRecord, name: str) -> ca.Function:
+    """Point ↦ distance from an obstacle."""
+    point = ca.SX.sym("point", 3)
+    return ca.Function(name, [point], [ca.densify(distance_from(obstacle)(point))])
+
+
+def passage_kernels(model: Model, names: Names) -> list[ca.Function]:
+    """The distances from thin obstacles."""
+    if not watches_passages(model):
+        return []
+    return [distance_kernel(own, _kernel(names, i)) for i, own in enumerate(_thin(model.at().discrete))]
+
+
+def passage_words(model: Model, names: Names) -> Words:
+    """Words of a library, with what it watches.
+
+    Args:
+        model: the exported model.
+        names: what things are called.
+    """
+    if not watches_passages(model):
+        return {"place_reals": 0}
+    # Steps are judged by the scene's own sizes, whatever the parameters are.
+    discrete = model.at().discrete
+    count = first_places(discrete)[1][-1]
+    words: Words = {
+        "name": names.name,
+        "barriers": len(thin_layers(discrete)),
+        "rod_pairs": len(discrete.pairs),
+        "barrier_tables": "\n".join([*_barrier_lines(discrete, names), *_pair_lines(discrete)]),
+    }
+    return {"passages": render("passages.c.in", words), "places": count, "place_reals": 6 * count}
+
+
+def _thin(discrete: DiscreteScene) -> list[scenes.ObstacleRecord]:
+    """Thin obstacles that something may pass through."""
+    concerned = {layer.obstacle.name for layer in thin_layers(discrete)}
+    return [obstacle for obstacle in discrete.scene.obstacles if obstacle.name in concerned]
+
+
+def _kernel(names: Names, number: int) -> str:
+    """Name of the kernel of the distance from a thin obstacle."""
+    return names.kernel(f"distance_{number}")
+
+
+def _barrier_lines(discrete: DiscreteScene, names: Names) -> Iterator[str]:
+    """Tables of what may not pass through an obstacle."""
+    layers = thin_layers(discrete)
+    if not layers:
+        return
+    obstacles = [obstacle.name for obstacle in _thin(discrete)]
+    for number in range(len(obstacles)):
+        yield render("distance.c.in", {"number": number, "kernel": _kernel(names, number)})
+    rods = dict.fromkeys(layer.rod for layer in layers if layer.body is None and layer.at is None)
+    for number, rod in enumerate(rods):
+        yield from _node_lines(discrete, str(rod), number)
+    first, _ = first_places(discrete)
+    entries = []
+    for number, layer in enumerate(layers):
+        is_rod = layer.body is None and layer.at is None
+        radii = _radii(discrete, str(layer.rod)) if is_rod else np.full(2, ball_in(layer))
+        yield reals(f"RADII_{number}", radii)
+        length = length_of(discrete, layer)
+        thinnest = float(radii.min())
+        depth = admitted_depth(layer.obstacle, length, depth_allowed(layer.obstacle, length), thinnest)
+        fields = {
+            "rod": f"&NODES_{list(rods).index(layer.rod)}" if is_rod else "0",
+            "first": first[moved_by(discrete, layer)],
+            "radii": f"RADII_{number}",
+            "parts": len(radii) - 1,
+            "length": f"(real){float(length)!r}",
+            "admitted": f"(real){float(depth)!r}",
+            "distance": f"distance_from_{obstacles.index(layer.obstacle.name)}",
+        }
+        entries.append(record(fields))
+    yield record_table("barrier", "BARRIER", "BARRIERS", entries)
+
+
+def _radii(discrete: DiscreteScene, rod: str) -> FloatArray:
+    """Radii of the sections of a rod at places equally far apart, of which two are enough where they are linear."""
+    places = np.linspace(0.0, 1.0, RADII)
+    radii = section_radius(discrete.rods[rod].properties, places)
+    is_linear = np.allclose(radii, radii[0] + places * (radii[-1] - radii[0]), rtol=1e-9, atol=0.0)
+    return radii[[0, -1]] if is_linear else radii
+
+
+def _node_lines(discrete: DiscreteScene, rod: str, number: int) -> Iterator[str]:
+    """The nodes of a rod."""
+    grid = discrete.rods[rod].grid
+    yield reals(f"NODE_ENDS_{number}", np.array(grid.breaks))
+    yield reals(f"LOCAL_NODES_{number}", chebyshev.nodes(grid.intervals))
+    yield reals(f"BARYCENTRIC_{number}", chebyshev.barycentric_weights(grid.intervals))
+    fields = {
+        "elements": grid.elements,
+        "nodes": grid.intervals + 1,
+        "ends": f"NODE_ENDS_{number}",
+        "local_nodes": f"LOCAL_NODES_{number}",
+        "barycentric": f"BARYCENTRIC_{number}",
+    }
+    yield f"static const rod_nodes NODES_{number} = {record(fields)};"
+
+
+def _pair_lines(discrete: DiscreteScene) -> Iterator[str]:
+    """The table of rods that push each other."""
+    if not discrete.pairs:
+        return
+    _, first = first_places(discrete)
+    entries = []
+    for number, pair in enumerate(discrete.pairs):
+        spacing = discrete.rods[pair.rods[1]].properties.length / pair.sections[1]
+        fields = {
+            "first": f"{{{first[2 * number]}, {first[2 * number + 1]}}}",
+            "counts": f"{{{pair.sections[0]}, {pair.sections[1]}}}",
+            # Half of it, as between axes of rods that pass.
+            "allowed": f"(real){float(pair.thickness / 2)!r}",
+            "apart": f"(real){float(max(pair.apart, -1e30))!r}",
+            "length": f"(real){float(pair.length)!r}",
+            "spacing": f"(real){float(spacing)!r}",
+        }
+        entries.append(record(fields))
+    yield record_table("rod_pair", "ROD_PAIR", "ROD_PAIRS", entries)

@@ -1,0 +1,39 @@
+/* passages.c alone, with the places and distances of a scene: for each line of unknowns and inputs at both ends of a step
+   whether it leads through something thin, 1 or 0. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "watched_kernels.h"
+
+typedef double real;
+#define SQUARE_ROOT sqrt
+enum { N = @{size}, INPUTS = @{given} };
+
+typedef struct {
+  real places[2][3 * @{places}];
+  real kernel_reals[@{kernel_reals} + 1];
+  int kernel_integers[@{kernel_integers} + 1];
+} workspace;
+
+@{calls}
+@{passages}
+
+static workspace work;
+
+static int read_numbers(real *numbers, int count) {
+  for (int i = 0; i < count; i++) {
+    if (scanf("%lf", numbers + i) != 1) return 0;
+  }
+  return 1;
+}
+
+int main(void) {
+  real x[N], inputs[INPUTS];
+  for (;;) {
+    for (int end = 0; end < 2; end++) {
+      if (!read_numbers(x, N) || !read_numbers(inputs, INPUTS)) return 0;
+      find_places(x, inputs, end, &work);
+    }
+    printf("%d\n", leads_through(&work));
+  }
+}

@@ -1,0 +1,247 @@
+"""Exported C takes no rod, disk or body through something thin: the criterion against Python's, then every function."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, Outcome, build, parse_scene, solve
+from cosserat_casadi.codegen.compiled_motion import StepOptions, StepState
+from cosserat_casadi.codegen.functions_in_c import functions_in_c
+from cosserat_casadi.codegen.kernel_files import kernel_sources
+from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.codegen.library import FOURS, PROGRAM
+from cosserat_casadi.codegen.memory import largest_room
+from cosserat_casadi.codegen.names import model_names
+from cosserat_casadi.codegen.parameters import given_size
+from cosserat_casadi.codegen.passages import PASSAGE_FILES, passage_kernels, passage_words
+from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.rows import row_library
+from cosserat_casadi.codegen.status import OUTCOMES, MotionStatus
+from cosserat_casadi.codegen.texts import fill, resource
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.maths.typing import FloatArray
+from tests.codegen.libraries import HARNESS, Exported, compile_quickly
+from tests.contact.test_contact_of_assemblies import BALL, HEAD
+from tests.contact.test_contact_of_assemblies import ROD as LONG_ROD
+from tests.contact.test_passage_of_bodies import DISK, SMALL
+from tests.contact.test_smooth_contact import CROSSING, PUSH, ROD, THIN, WIRE
+
+ExportRecipe = Callable[..., Exported]
+
+FEW = ("accuracy.modes=2", "accuracy.nodes=6")
+PUSHED = 'inputs = ["push.force"]\n'
+MOVED = 'inputs = ["rod.base.position"]\n'
+MATERIAL = "\n".join(line for line in CROSSING.splitlines() if line.startswith(("material", "section")))
+SOLID = re.sub("stiffness = .*\nlinear_density = .*", MATERIAL, ROD)
+SPHERE = SMALL.format(height=-0.2) + "width = 0.01\n"
+ON_BALL = """
+[[bodies]]
+name = "rim"
+[[rods]]
+name = "carrier"
+length = 0.3
+strain = "planar"
+stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
+base = { position = [0.6, 0.0, -0.5], tangent = [0, 0, 1] }
+[[joints]]
+body = "rim"
+rod = "carrier"
+kind = "fixed"
+[[obstacles]]
+name = "bump"
+kind = "sphere"
+body = "rim"
+centre = [0, 0, 0.05]
+radius = 0.06
+width = 1e-3
+rods = ["rod"]
+"""
+
+SCENES = {
+    "wire": PUSHED + ROD + PUSH + WIRE,
+    "tapered": PUSHED + SOLID.replace("radius = 4e-3", "radius = { base = 6e-3, tip = 2e-3 }") + PUSH + THIN,
+    "wires": PUSHED + ROD + PUSH + WIRE + WIRE.replace("wire", "other").replace("-0.1]", "0.15]"),
+    "base": MOVED + ROD + PUSH + THIN,
+    "parameter": 'parameters = ["rod.base.position"]\n' + PUSHED + ROD + PUSH + WIRE,
+    "body": MOVED + HEAD + LONG_ROD + BALL + SPHERE,
+    "disk": MOVED + HEAD + LONG_ROD + DISK + SPHERE.replace("bodies", "disks"),
+    "bump": PUSHED + ROD + PUSH + ON_BALL,
+    "rods": PUSHED + SOLID + PUSH + CROSSING,
+}
+"""Everything that may pass through everything thin."""
+
+STEPS = 50
+"""Random steps of each scene."""
+
+
+@dataclass(frozen=True)
+class TextRecipe:
+    """A scene as text, with few elements, modes and nodes: contact is felt less, and seen as before."""
+
+    text: str
+    dynamics: bool = False
+
+    def model(self) -> Model:
+        scene = parse_scene(self.text, list(FEW))
+        coarse = {name: replace(own, breaks=(0.0, 0.5, 1.0)) for name, own in build(scene).discretisation.items()}
+        return build(scene, coarse, moving=self.dynamics)
+
+
+def random_steps(model: Model, count: int, seed: int) -> tuple[FloatArray, FloatArray]:
+    """Unknowns and inputs with parameters at both ends, shapes (count, 2, size) and (count, 2, given)."""
+    rng = np.random.default_rng(seed)
+    first = 1.5 * rng.standard_normal((count, 1, model.size)) / np.arange(1, model.size + 1)
+    x = first + rng.uniform(0.0, 1.0, (count, 2, 1)) * rng.standard_normal((count, 2, model.size))
+    own = np.concatenate([model.inputs.pack(), model.parameters.pack()])
+    return x, own + 0.1 * rng.standard_normal((count, 2, own.size))
+
+
+def barred_in_c(model: Model, folder: Path, rows: FloatArray) -> list[bool]:
+    """Which steps lead through something thin, by the C of the folder: rows of unknowns and inputs at both ends."""
+    names = model_names("watched", model)
+    (places,) = [
+        kernel(model, own.function, own.kernel) for own in functions_in_c(model, names) if own.spec.name == "places"
+    ]
+    files = kernel_sources([places, *passage_kernels(model, names)], names)
+    words = {
+        **passage_words(model, names),
+        "size": model.size,
+        "given": given_size(model),
+        "kernel_reals": largest_room(files, "W"),
+        "kernel_integers": largest_room(files, "IW"),
+        "calls": resource("templates", "calls.c.in"),
+    }
+    files["main.c"] = fill((HARNESS / "passages.c").read_text(), words)
+    files |= {name: resource("c", name) for name in (*PASSAGE_FILES, *FOURS, *PROGRAM)}
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    sources = [folder / "main.c", folder / "watched_kernels.c"]
+    compile_quickly("-std=c99", "-O1", "-w", f"-I{folder}", *sources, "-lm", "-o", folder / "main")
+    text = "\n".join(" ".join(map(repr, row)) for row in rows.tolist())
+    told = subprocess.run([str(folder / "main")], input=text, capture_output=True, text=True, check=True, timeout=60)
+    return [word == "1" for word in told.stdout.split()]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_steps_that_are_barred_vs_python(name: str, tmp_path: Path) -> None:
+    model = build(parse_scene(SCENES[name], list(FEW)))
+    x, given = random_steps(model, STEPS, 3)
+    if name in ("body", "disk"):
+        # The rod hardly bends, and comes down by more than the sphere is thick.
+        x *= 0.1
+        given[:, 1, 2] -= 0.4
+    inputs, p = np.split(given, [model.inputs.size], axis=2)
+    wanted = []
+    for row in range(STEPS):
+        before, after = (SmoothBarriers(model.at(own) if own.size else model) for own in p[row])
+        wanted.append(after.are_between(x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]), before))
+    assert STEPS / 10 < sum(wanted) < STEPS - STEPS / 10
+    found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(STEPS, -1))
+    assert found == wanted
+
+
+ABOVE, BEHIND = np.array([0.0, 0.0, -0.1]), np.array([0.0, 0.0, -0.25])
+"""Pushes under which the tip is above the wire, and under which it would be below without it."""
+
+
+@pytest.fixture(scope="module")
+def barred(export_recipe: ExportRecipe) -> Exported:
+    """A rod above a wire, thinner than the steps of the load are long."""
+    return export_recipe("barred", TextRecipe(PUSHED + ROD + PUSH + THIN), estimates=False)
+
+
+def height(made: Exported, x: FloatArray, inputs: FloatArray) -> float:
+    """Of the tip, m."""
+    return float(made.tips(x, inputs)[0, 2])
+
+
+def test_without_the_wire_the_rod_comes_to_its_other_side() -> None:
+    model = TextRecipe(PUSHED + ROD + PUSH).model()
+    for push, behind in ((ABOVE, False), (BEHIND, True)):
+        found = solve(model, {"push.force": push}, estimate_error=False)
+        assert found.converged
+        assert (found.tip().position[2] < -0.1) == behind
+
+
+def test_no_solve_leads_through_a_wire(barred: Exported) -> None:
+    """From the unloaded rod, from a solution, and along the inputs; Python ends alike."""
+    compiled = barred.compiled
+    near = compiled.solve(ABOVE)
+    assert near.converged
+    assert_allclose(near.x, barred.solve(ABOVE).x, rtol=0, atol=1e-9)
+    wanted = barred.solve(BEHIND)
+    answers = [compiled.solve(BEHIND), compiled.solve(BEHIND, near.x), compiled.follow(ABOVE, BEHIND, near.x)]
+    for found in answers:
+        assert found.outcome is wanted.outcome is Outcome.LOAD_STALLED
+        assert height(barred, found.x, BEHIND) > -0.15
+        assert 0.0 < found.load_factor < 1.0
+
+
+def turn(made: Exported, word: str, inputs: FloatArray, x: FloatArray, memory: Any, *derivatives: None) -> Outcome:
+    """A call of track or of recover, which moves x and memory."""
+    work = ctypes.create_string_buffer(made.handle[f"{made.name}_workspace_size"]())
+    function = made.handle[f"{made.name}_{word}"]
+    status: int = function(pointer(inputs), pointer(x), memory, None, *derivatives, work, None)
+    return OUTCOMES[status]
+
+
+def test_no_turn_leads_through_a_wire(barred: Exported) -> None:
+    """Turns up to the wire are followed; one beyond is lost, and no number of them recovers."""
+    x = barred.compiled.solve(ABOVE).x.copy()
+    # Far more than the memory of so few unknowns takes.
+    memory = ctypes.create_string_buffer(1 << 16)
+    assert turn(barred, "track", ABOVE, x, memory, None, None) is Outcome.CONVERGED
+    before = x.copy()
+    assert turn(barred, "track", BEHIND, x, memory, None, None) is Outcome.LOST_TRACK
+    assert_allclose(x, before, rtol=0, atol=0)
+    ends = [turn(barred, "recover", BEHIND, x, memory) for _ in range(20)]
+    assert ends[-1] is Outcome.LOAD_STALLED
+    assert Outcome.CONVERGED not in ends
+    assert height(barred, x, BEHIND) > -0.15
+
+
+@pytest.mark.parametrize("lanes", [False, True], ids=["one by one", "side by side"])
+def test_no_row_leads_through_a_wire(lanes: bool) -> None:
+    model = TextRecipe(PUSHED + ROD + PUSH + THIN).model()
+    library = row_library(model, lanes=lanes)
+    assert library.in_lanes == lanes
+    found = library.solve(np.array([ABOVE, BEHIND]))
+    assert [OUTCOMES[int(end)] for end in found[:, 0]] == [Outcome.CONVERGED, Outcome.LOAD_STALLED]
+    assert_allclose(found[0, 3:6], solve(model, {"push.force": ABOVE}).tip().position, rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_no_step_of_a_motion_leads_through_a_wire(export_recipe: ExportRecipe) -> None:
+    """A rod that swings past the place of a wire: the step is done where there is none, and not where there is."""
+    ends = {}
+    aside = THIN.replace("[0.9, -1", "[0.9, 5").replace("[0.9, 1", "[0.9, 7")
+    for name, wire in (("swinging", aside), ("stopped", THIN)):
+        made = export_recipe(name, TextRecipe(PUSHED + ROD + PUSH + wire, dynamics=True))
+        model = made.model
+        behind = solve(TextRecipe(PUSHED + ROD + PUSH).model(), {"push.force": BEHIND}).x
+        still = np.zeros(model.size)
+        state = StepState(x=still, v=behind / 0.02, a=still)
+        for parts in (1, 4):
+            options = StepOptions(tolerance=1e-11, iterations=20, parts=parts)
+            ends[name, parts] = made.compiled.step(state, 0.02, np.zeros(3), options=options)
+        if name == "swinging":
+            end = ends[name, 1].state
+            assert height(made, end.x, np.zeros(3)) < -0.15
+        else:
+            assert_allclose(ends[name, 4].state.x, state.x, rtol=0, atol=0)
+    assert [(name, parts, end.status) for (name, parts), end in ends.items()] == [
+        ("swinging", 1, MotionStatus.DONE),
+        ("swinging", 4, MotionStatus.DONE),
+        ("stopped", 1, MotionStatus.NOT_SOLVED),
+        ("stopped", 4, MotionStatus.NOT_SOLVED),
+    ]
