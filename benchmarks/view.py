@@ -83,7 +83,7 @@ def timed_answers(server: RobotServer) -> float:
     began = time.process_time()
     for i in range(MOVES):
         inputs[moved] = start * (1 + 0.1 * (i % 2))
-        desk.answer("move", Question({"inputs": inputs}))
+        desk.answer("move", Question(inputs=inputs))
     return (time.process_time() - began) / MOVES
 
 

@@ -93,7 +93,7 @@ TELLING_SHARE = 0.1
 """Share of a piece of its inputs after which the work so far tells that of a motion."""
 
 TO_BEGIN = 40
-"""Iterations of the first steps, which are short, beyond those of others: they tell nothing of what is to come."""
+"""Iterations of the first steps, which are short, beyond the usual number: they foretell nothing."""
 
 
 @dataclass
@@ -185,7 +185,7 @@ class MotionCompiler:
         """The steps in machine code; None where they are not at hand and do not pay, or where there is no compiler.
 
         Args:
-            foreseen: time that they save of what is to come, s.
+            foreseen: time that they save of the rest of the search, s.
         """
         try:
             if not (self.always or steps_are_at_hand() or self._steps_pay(foreseen)):

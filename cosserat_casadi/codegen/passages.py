@@ -49,7 +49,7 @@ def passage_kernels(model: Model, names: Names) -> list[ca.Function]:
 
 
 def passage_words(model: Model, names: Names) -> Words:
-    """Words of a library, with what it watches.
+    """Words of a library on the obstacles and rods that it watches.
 
     Args:
         model: the exported model.

@@ -51,7 +51,7 @@ class Question(BaseModel):
         return self.inputs
 
     def point(self, names: Mapping[str, Collection[str]]) -> tuple[dict[str, str], list[float]]:
-        """What is led, and where to, of a scene with these names of rods and bodies, by kind.
+        """The rod or body that is led, and where to, of a scene with these names of rods and bodies, by kind.
 
         Raises:
             QuestionError: a part is missing, or names nothing of the scene.
