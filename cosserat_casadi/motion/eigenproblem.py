@@ -77,6 +77,11 @@ def natural_shift(mass: FloatArray) -> float:
     return 1.0 / largest
 
 
+def slowest_told(mass: FloatArray) -> float:
+    """Least |λ| that is told from zero, 1/s; the mass as in :func:`eigenpairs`."""
+    return float(np.sqrt(ZERO * natural_shift(mass)))
+
+
 def eigenpairs(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, *, conservative: bool) -> Eigenpairs:
     """All finite eigenvalues.
 

@@ -30,7 +30,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
+from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs, slowest_told
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
 from cosserat_casadi.motion.small_motions import SmallMotions
@@ -143,6 +143,7 @@ class Modes(Result):
         modes: ordered by |λ|, multiplicities repeated, conjugate pairs once; the creep of branches is not among them.
         spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones are not those of
             the rods, 1/s.
+        slowest: least size of an eigenvalue that is told from zero, 1/s.
     """
 
     solution: Solution
@@ -150,6 +151,7 @@ class Modes(Result):
     stability: str
     modes: tuple[Mode, ...]
     spectrum: ComplexArray
+    slowest: float = 0.0
 
     @property
     def message(self) -> str:
@@ -291,12 +293,14 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
     modes = [Mode(complex(value), shape) for value, shape in zip(values, shapes.T, strict=True)]
     # The larger half of a discretisation's eigenvalues are not those of the rods, whose oscillations they judge.
     believed = np.arange(len(pairs.values)) < ceil(len(pairs.values) / 2)
+    slowest = slowest_told(motions.free_mass)
     return Modes(
         solution,
         ModesOutcome.NOT_ESTIMATED,
-        stability_sentences(pairs.values, believed, solution),
+        stability_sentences(pairs.values, believed, solution, slowest),
         tuple(modes[:count]),
         pairs.values,
+        slowest,
     )
 
 
@@ -439,7 +443,8 @@ def _judged(modes: Modes, witness: Modes) -> Modes:
     # Written so that an estimate which is not a number counts as too large.
     if np.all(errors <= tolerance):
         outcome = ModesOutcome.RESOLVED
-    stability = stability_sentences(modes.spectrum, _confirmed(modes.spectrum, witness.spectrum), modes.solution)
+    believed = _confirmed(modes.spectrum, witness.spectrum)
+    stability = stability_sentences(modes.spectrum, believed, modes.solution, modes.slowest)
     return replace(modes, outcome=outcome, stability=stability, modes=estimated)
 
 
@@ -484,13 +489,16 @@ def _without_modes(solution: Solution, outcome: ModesOutcome, why: str) -> Modes
     return Modes(solution, outcome, why, (), np.zeros(0, dtype=complex))
 
 
-def stability_sentences(values: ComplexArray, believed: npt.NDArray[np.bool_], solution: Solution) -> str:
+def stability_sentences(
+    values: ComplexArray, believed: npt.NDArray[np.bool_], solution: Solution, slowest: float
+) -> str:
     """Sentences on how small motions about an equilibrium grow, swing or decay.
 
     Args:
         values: all eigenvalues of the model.
         believed: whether an eigenvalue that swings is taken for a motion of the rods, not of the discretisation.
         solution: the equilibrium.
+        slowest: least size of an eigenvalue that is told from zero, 1/s.
     """
     growing = values.real > REAL * np.abs(values)
     swinging = values.imag > 0.0
@@ -512,7 +520,8 @@ def stability_sentences(values: ComplexArray, believed: npt.NDArray[np.bool_], s
     neutral = int(np.sum(values == 0.0))
     if neutral:
         count = _motions(neutral, "meets", "meet")
-        sentences.append(f"{count} no resistance: rigid, or neutral.".capitalize())
+        told = f"{count} no resistance: rigid, neutral, or slower than {slowest:.2g} 1/s, which counts as zero."
+        sentences.append(told.capitalize())
     if not sentences:
         sentences.append(_settled(values))
     if solution.contacts and solution.model.scene.touches_exactly:

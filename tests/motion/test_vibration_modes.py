@@ -154,6 +154,16 @@ def test_near_the_buckling_load():
     assert "small motions stay small" in modes.message
 
 
+def test_frequency_too_low_to_be_told_from_zero_is_bounded():
+    """At 1 − 1e-8 of the load Rayleigh's quotient of the buckled shape, exact there, gives 3.7e-4 1/s."""
+    modes = modes_of(scene(rod(), thrust((1 - 1e-8) * np.pi**2 / 4)), count=1)
+    exact = np.sqrt(1e-8 * np.pi**4 / 32 / (1.5 - 4 / np.pi))
+    assert modes.solution.stable
+    assert modes.modes[0].eigenvalue == 0.0
+    assert exact < modes.slowest < 5 * exact
+    assert f"slower than {modes.slowest:.2g} 1/s" in modes.message
+
+
 def test_at_and_beyond_the_buckling_load():
     critical = modes_of(scene(rod(), thrust(np.pi**2 / 4)), count=2)
     assert critical.modes[0].eigenvalue == 0.0
