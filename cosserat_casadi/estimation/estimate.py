@@ -49,8 +49,9 @@ from cosserat_casadi.estimation.posterior import Sampled, sampled
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact
 from cosserat_casadi.estimation.shared import Searched, SharedNumbers, SharedSearch
 from cosserat_casadi.estimation.stacking import row_library, sections_of, sensor_names, stacked
+from cosserat_casadi.identification.fit_problem import far_positions
 from cosserat_casadi.identification.fit_unknowns import UnknownEntry, UnknownLayout, unknown_layout
-from cosserat_casadi.identification.measured_cases import Data, read_cases
+from cosserat_casadi.identification.measured_cases import Case, Data, read_cases
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
@@ -136,11 +137,23 @@ def estimate_model(
     )
     report("Judging stability", 0, 0)
     result = replace(result, stable=tuple(_stability(result)))
-    remarks = list(_remarks(result, known, drawn))
+    remarks = [*far_positions(model.scene, _measured(cases)), *_remarks(result, known, drawn)]
     if isinstance(solver, RowsInContact) and drawn is None:
         report("Looking for contacts that change", 0, 0)
         remarks += _on_contacts(result.cases, solver.contact_changes(table, inputs[:, indices], covariance, known))
     return replace(result, warnings=tuple(remarks))
+
+
+def _measured(cases: Sequence[Case]) -> list[tuple[int, int, float]]:
+    """Number of the measurement, number of its entry, and the measured number, of all cases."""
+    return [
+        (measurement, entry, float(value))
+        for case in cases
+        for measurement, data in case.data.items()
+        for datum in data
+        for entry, value in enumerate(datum.values)
+        if np.isfinite(value)
+    ]
 
 
 def _beyond_obstacles(model: Model, found: Estimates, inputs: FloatArray) -> list[str]:

@@ -336,7 +336,8 @@ FAR = 3.0
 
 def plausibility(model: AnyModel, layout: UnknownLayout, rows: Sequence[Row]) -> list[str]:
     """Sentences on numbers that can hardly be in SI units."""
-    return [*_thick_rods(model), *_wide_bounds(model, layout), *_far_positions(model, rows)]
+    entries = [(row.measurement, row.entry, row.measured) for row in rows]
+    return [*_thick_rods(model), *_wide_bounds(model, layout), *far_positions(model.scene, entries)]
 
 
 def _thick_rods(model: AnyModel) -> Iterator[str]:
@@ -362,13 +363,19 @@ def _wide_bounds(model: AnyModel, layout: UnknownLayout) -> Iterator[str]:
             yield f"{entry.record.name} is sought from {lower.max():g} m on in a rod of {rod.length:g} m: metres?"
 
 
-def _far_positions(model: AnyModel, rows: Sequence[Row]) -> Iterator[str]:
-    length = sum(rod.length for rod in model.scene.rods) + sum(tube.length for tube in model.scene.tubes)
-    bases = [np.abs(rod.base.position).max() for rod in model.scene.rods]
+def far_positions(scene: scenes.Scene, entries: Sequence[tuple[int, int, float]]) -> Iterator[str]:
+    """Sentences on measured positions that no rod reaches.
+
+    Args:
+        scene: whose measurements they are.
+        entries: number of the measurement, number of its entry, and the measured number.
+    """
+    length = sum(rod.length for rod in scene.rods) + sum(tube.length for tube in scene.tubes)
+    bases = [np.abs(rod.base.position).max() for rod in scene.rods]
     reach = FAR * (length + max(bases, default=0.0))
-    for number, measurement in enumerate(model.scene.measurements):
+    for number, measurement in enumerate(scene.measurements):
         coordinates = QUANTITIES[measurement.quantity].coordinates
-        distances = [abs(row.measured) for row in rows if row.measurement == number and row.entry < coordinates]
+        distances = [abs(value) for own, entry, value in entries if own == number and entry < coordinates]
         if distances and max(distances) > reach:
             farthest = max(distances)
             yield (

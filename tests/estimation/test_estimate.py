@@ -134,6 +134,14 @@ def test_measured_sections_share_the_variations_of_the_rod() -> None:
     assert operations(difference(model, record, 4)) < 16_000
 
 
+def test_positions_in_millimetres_are_told() -> None:
+    model = build(felt().with_unknowns())
+    data = measured(model, pushes([[0.1, 0.0, 0.0]]), 5)
+    assert not any("mm" in warning for warning in estimate(model, data).warnings)
+    in_millimetres = {"shapes": {name: 1e3 * column for name, column in data["shapes"].items()}}
+    assert any("are the columns in mm?" in warning for warning in estimate(model, in_millimetres).warnings)
+
+
 def test_what_nothing_determines_is_told() -> None:
     model = build(felt(prior=False).with_unknowns())
     found = estimate(model, measured(model, pushes([[0.5, 0.0, 0.0], [0.2, 0.0, 0.1]]), 2))
