@@ -19,9 +19,13 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.scene import Scene
 
 UNKNOWN_ORDER = 1.7
-"""Power of the modes with which errors fall, before two distances tell; waves of a sudden load have 2.3."""
+"""Power of the modes with which errors fall, before two distances tell."""
+
+ORDER_OF_WAVES = 2.3
+"""Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
 SAFETY = 1.5
 """Factor on the error that is extrapolated from it."""
@@ -80,13 +84,37 @@ def felt(history: History, duration: float) -> ByStrain:
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
-    """Largest entries of all elements, of numbers for each unknown, shape (model.size,)."""
+    """Largest entries of all elements, of displacements by each unknown over its rod's length, shape (model.size,).
+
+    They are over the length of the shortest rod that goes along: its path is watched over its own length. A twist
+    moves none that goes on straight.
+    """
     by_strain = {}
     for name, rod in model.discrete.rods.items():
         of_rod = sizes[model.discrete.unknowns.strain(name)]
         by_element = [of_rod[columns].reshape(rod.grid.elements, -1) for columns in rod.columns.values()]
-        by_strain[name] = [of_strain.max(axis=0) for of_strain in by_element]
+        shortest = min(model.discrete.rods[other].properties.length for other in moved_along(model.scene, name))
+        longer = rod.properties.length / shortest
+        by_strain[name] = [
+            of_strain.max(axis=0) * (1.0 if strain == TWIST else longer)
+            for strain, of_strain in zip(rod.admitted, by_element, strict=True)
+        ]
     return by_strain
+
+
+def moved_along(scene: Scene, rod: str) -> set[str]:
+    """Names of the rods that a strain of a rod moves: itself, those that start on it, and what joints tie to these."""
+    moved: set[tuple[str, str]] = {("rod", rod)}
+    ties = []
+    for joint in scene.joints:
+        rods = [joint.rod, *(end.rod for end in joint.between or ())]
+        ties.append({("rod", name) for name in rods if name} | {("body", place.body) for place in joint.places})
+    before = 0
+    while len(moved) > before:
+        before = len(moved)
+        moved |= {("rod", one.name) for one in scene.rods if ("rod", one.base.rod) in moved}
+        moved = moved.union(*(tie for tie in ties if tie & moved))
+    return {name for kind, name in moved if kind == "rod"}
 
 
 def last_of(moved: FloatArray) -> float:
@@ -114,19 +142,24 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
     A sudden load sends fronts along a rod by its twist, its stretch and its shear. Where one arrives at the tip, turn
     or place has a kink, which any polynomials meet with the first power of their number: what two motions differ by
-    there says little, for their kinks err at different times.
+    there says little, for their kinks err at different times. What a front lacks from all rods that it comes through
+    adds up, as errors at different times do: in squares.
     """
     moved_by = felt(history, duration)
-    fronts = [
-        AT_FRONT
-        * len(moved)
-        * float(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :].max())
-        * front_over_seen(history.model, name, strain)
-        for name, rod in history.model.discrete.rods.items()
-        for strain, moved in zip(rod.admitted, moved_by[name], strict=True)
-        if strain not in BENDING
-    ]
-    return max(fronts, default=0.0)
+    model = history.model
+    squares = dict.fromkeys(moved_by, 0.0)
+    for name, rod in model.discrete.rods.items():
+        fronts = [
+            AT_FRONT
+            * len(moved)
+            * float(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :].max())
+            * front_over_seen(model, name, strain)
+            for strain, moved in zip(rod.admitted, moved_by[name], strict=True)
+            if strain not in BENDING
+        ]
+        for other in moved_along(model.scene, name):
+            squares[other] += max(fronts, default=0.0) ** 2
+    return float(np.sqrt(max(squares.values())))
 
 
 def front_over_seen(model: Model, name: str, strain: int) -> float:
@@ -139,7 +172,7 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
     the size of Legendre's polynomials there: near a thin tip they see little of it.
 
     Where the watched sections are thicker than others, the root of the change is believed: on few modes fronts are
-    blurred, and grow less on their way to thin sections.
+    blurred, and grow less on their way to thin sections. Rods that the rod moves along are watched too.
 
     Args:
         model: the model.
@@ -158,6 +191,11 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
         # Such a rod carries no waves.
         return 1.0
     velocity = (stiffness * inertia) ** -0.25
+    for other in moved_along(model.scene, name) - {name}:
+        properties = model.discrete.rods[other].properties
+        ahead = _along(properties, strain, watched_sections(model.scene, other))
+        if strain in model.discrete.rods[other].admitted and min(ahead[0].min(), ahead[1].min()) > 0.0:
+            velocity = np.append(velocity, (ahead[0] * ahead[1]) ** -0.25)
     late = np.repeat(widths, len(ANGLES)) * np.sqrt(inertia / stiffness)[: len(inside)]
     seen = velocity[: len(inside)] * late * np.tile(np.sqrt(np.sin(ANGLES)), len(widths))
     at_watched = np.sqrt(velocity[len(inside) :].max() * velocity.max())

@@ -22,6 +22,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.felt_modes import (
+    ORDER_OF_WAVES,
     REST,
     SAFETY,
     UNKNOWN_ORDER,
@@ -111,9 +112,6 @@ FEW_MODES = 4
 
 MOST_RUNGS = 3
 """Most rungs of the ladder of modes that are climbed at once."""
-
-ORDER_OF_WAVES = 2.3
-"""Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
 ORDER_OF_FRONTS = 1.0
 """The same where a front arrives, on any elements."""

@@ -137,6 +137,66 @@ def test_given_modes_are_told_what_their_fronts_lack() -> None:
     assert motion.error_estimate > lacking_at_fronts(history, PASSES)
 
 
+def chain(lengths: list[float], stiffnesses: list[float], duration: float) -> Scene:
+    """Rods one after the other that only stretch, with waves of speed one, clamped and pulled at the last tip."""
+    rods: list[dict[str, Any]] = []
+    for number, (length, stiffness) in enumerate(zip(lengths, stiffnesses, strict=True)):
+        rod = {"name": f"rod{number}", "length": length, "strain": ["extension"], "linear_density": stiffness}
+        base = {"rod": rods[-1]["name"], "at": 1.0} if rods else {"tangent": [1, 0, 0]}
+        rods.append(rod | {"stiffness": {"extension": stiffness}, "base": base})
+    pull = transients.at_tip(rods[-1]["name"], force=[FORCE * min(stiffnesses), 0, 0])
+    tables = {"schema": 1, "rods": rods, "loads": [pull], "simulation": asked(duration, 1e-3)}
+    return scene_from_dict(tables).with_motion_inputs()
+
+
+def of_chain(scene: Scene, modes: list[int], duration: float, moved: FloatArray) -> tuple[float, float]:
+    """Error of its last tip's path on so many modes of each rod, and what is told of it by fronts, over its length."""
+    names = [rod.name for rod in scene.rods]
+    chosen = {name: discretise(scene, n, n + 2)[name] for name, n in zip(names, modes, strict=True)}
+    model = build(scene, chosen, moving=True)
+    assert scene.simulation is not None
+    history = Simulator(model, scene.simulation, started(model, scene.simulation, None)).controlled(1e-5)
+    times = np.linspace(0.0, duration, len(moved))
+    # The base of the last rod is watched, too, and stands last.
+    place = paths(model, *history.rough_positions(times)).points[:, -2, 0]
+    error = float(np.abs(place - place[0] - moved / scene.rods[-1].length).max())
+    return error, lacking_at_fronts(history, duration)
+
+
+def test_what_a_long_rod_lacks_counts_over_the_length_of_a_short_one_at_its_tip() -> None:
+    """Over that of the long rod a twentieth was told, and searches ended with three times the error that they told."""
+    lengths = [2.0, 0.1]
+    period = RISE[: ROWS // 2 + 1]
+    duration = PASSES / 2.0 * sum(lengths)
+    scene = chain(lengths, [1.0, 1.0], duration)
+    error, told = of_chain(scene, [4, 4], duration, FORCE * sum(lengths) * period)
+    assert error < told < CARELESS * error
+
+
+def moved_beyond_a_step(thin: float, duration: int, rows: int) -> FloatArray:
+    """Displacement of the tip of two rods of one length, impedances 1 and `thin`, with as many rows in a unit of time.
+
+    Velocities are constant while waves pass a rod: v − N/Z runs to the tip, v + N/Z to the base.
+    """
+    to_joint, to_base, to_tip, back = 0.0, 0.0, 0.0, 0.0
+    velocities = []
+    for _ in range(duration):
+        joint = (to_joint + thin * back) / (1.0 + thin)
+        # The force is FORCE · thin.
+        tip = to_tip + FORCE
+        to_joint, to_base, to_tip, back = -to_base, 2.0 * joint - to_joint, 2.0 * joint - back, 2.0 * tip - to_tip
+        velocities.append(tip)
+    return np.concatenate([[0.0], np.cumsum(np.repeat(velocities, rows)) / rows])
+
+
+def test_fronts_from_a_thick_rod_into_a_thin_one_are_told_from_above() -> None:
+    """They grow at the step, and err by both rods: by the own law of each 0.7 of the error would be told."""
+    duration = 12
+    scene = chain([1.0, 1.0], [1.0, 1.0 / 3.0], float(duration))
+    error, told = of_chain(scene, [9, 16], float(duration), moved_beyond_a_step(1.0 / 3.0, duration, 200))
+    assert error < told < CARELESS * error
+
+
 def cone(tip: float) -> Scene:
     """A steel cone of 1 m that only stretches, pulled at its tip, whose radius is so many times that of the base."""
     stretched: dict[str, Any] = wire("pull", 1e-3)
