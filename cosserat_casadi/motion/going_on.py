@@ -17,7 +17,14 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
-from cosserat_casadi.motion.felt_modes import UNKNOWN_ORDER, lacking, most_modes, told_by_modes
+from cosserat_casadi.motion.felt_modes import (
+    ORDER_OF_WAVES,
+    UNKNOWN_ORDER,
+    lacking,
+    lacking_at_fronts,
+    most_modes,
+    told_by_modes,
+)
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_event import MotionEvent
@@ -111,6 +118,11 @@ def go_on(
         return ended_early(simulator, history)
     paths = simulator.paths(history)
     error = 0.0 if len(checkpoint.strands) > 1 else float("nan")
+    is_damped = all(rod.damping is not None for rod in scene.rods)
+    # The factors of a first part tell of waves that it had: jumps that were to come were not known then.
+    has_jumps = not is_damped and bool(simulator.moving.jumps(asked.duration))
+    # Fronts of earlier loads are still on their way.
+    by_other_modes = 0.0 if is_damped or given is not None else lacking_at_fronts(history, asked.duration)
     companions = []
     for strand in checkpoint.strands[1:]:
         other = model
@@ -123,8 +135,16 @@ def go_on(
         factor = strand.factor
         if is_struck(history) or is_struck(told):
             factor = max(factor, _factor_after_impacts(first, strand, history, told))
-        error += factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
+        elif has_jumps and strand.discretisation != first.discretisation:
+            modes, others = (most_modes(one.discretisation) for one in (first, strand))
+            factor = max(factor, told_by_modes(modes, others, ORDER_OF_WAVES))
+        left = factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
+        if strand.discretisation != first.discretisation:
+            by_other_modes = max(by_other_modes, left)
+        else:
+            error += left
         companions.append(Companion(told, factor, strand.impacts))
+    error += by_other_modes
     by_modes = any(strand.discretisation != first.discretisation for strand in checkpoint.strands)
     if given is None and not scene.accuracy.fixed and not by_modes:
         # The modes were enough so far, as their last coefficients told.
