@@ -13,14 +13,15 @@ from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
 from cosserat_casadi.codegen.motion_sources import initialiser, method_words, pairs
 from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.kernel_residual import KernelResidual
-from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
+from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidual
+from cosserat_casadi.motion.repeated_call import MachineCode, Program, RepeatedCall
 from cosserat_casadi.numerics import stage_newton, step_control, step_matrices, step_run, time_steps
 from cosserat_casadi.numerics.collocation import STAGES, radau
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -66,7 +67,9 @@ class _Record(ctypes.Structure):
         *((name, POINTER) for name in ("differential", "weights", "kinks", "x", "v", "a")),
         *((name, POINTER) for name in ("input_values", "input_rates", "input_accelerations", "residual")),
         *((name, POINTER) for name in ("kernel", "kernel_arguments", "kernel_results")),
-        *((name, POINTER) for name in ("kernel_integers", "kernel_scratch", "program", "slots")),
+        *((name, POINTER) for name in ("kernel_integers", "kernel_scratch")),
+        *((name, POINTER) for name in ("derivatives", "derivatives_arguments", "derivatives_results")),
+        *((name, POINTER) for name in ("derivatives_integers", "derivatives_scratch", "cubics", "program", "slots")),
         *((name, ctypes.c_int) for name in ("program_lines", "program_arguments")),
         *((name, CALL) for name in ("residual_at", "residual_of_stages", "inputs_at", "jacobians_at")),
         *((name, POINTER) for name in ("stage_times", "stage_x", "stage_v", "stage_a", "stage_results")),
@@ -74,7 +77,7 @@ class _Record(ctypes.Structure):
         *((name, POINTER) for name in ("facts", "ends", "stages", "tried_at")),
         *(
             (name, ctypes.c_double)
-            for name in ("stop", "newton", "lasting", "drifting", "longest_allowed", "shortest", "time")
+            for name in ("cubics_begin", "stop", "newton", "lasting", "drifting", "longest_allowed", "shortest", "time")
         ),
         *((name, ctypes.c_double) for name in ("linearised_time", "kept_time", "before_size", "longest", "wanted")),
         *((name, ctypes.c_double) for name in ("size", "last_size", "last_error", "factorised")),
@@ -277,17 +280,32 @@ class CompiledSteps:
 
         inputs_at(self._run.start.time)
         record.inputs_at = self._called(inputs_at)
+        if residual.cubics is not None:
+            record.cubics_begin, cubics = residual.cubics
+            self._share("cubics", np.ascontiguousarray(cubics))
         if call.code is None:
             record.residual_at = self._called(lambda _: call.evaluate())
             self._without_program = None if call.program_after is None else call
             self._share_program(call.program)
             return
-        kernel = call.code
-        record.kernel = kernel.address
-        self._share("kernel_arguments", kernel.arguments)
-        self._share("kernel_results", kernel.results)
-        self._share("kernel_integers", kernel.integers)
-        self._share("kernel_scratch", kernel.scratch)
+        self._share_code("kernel", call.code, call.code.arguments, call.code.results)
+        jacobians = self._run.equations.jacobians
+        if isinstance(jacobians, KernelJacobians) and jacobians.call.code is not None:
+            code = jacobians.call.code
+            read, written = code.arguments.copy(), code.results.copy()
+            read[: len(names)] = [array.ctypes.data for array in (*self._linearised_at, *inputs)]
+            written[: len(self._matrices)] = [matrix.ctypes.data for matrix in self._matrices]
+            self._share_code("derivatives", code, read, written)
+
+    def _share_code(
+        self, name: str, code: MachineCode, arguments: npt.NDArray[np.uintp], results: npt.NDArray[np.uintp]
+    ) -> None:
+        """Have C call a function in machine code with these addresses of arguments and results."""
+        setattr(self._record, name, code.address)
+        self._share(f"{name}_arguments", arguments)
+        self._share(f"{name}_results", results)
+        self._share(f"{name}_integers", code.integers)
+        self._share(f"{name}_scratch", code.scratch)
 
     def _share_program(self, program: Program | None) -> None:
         """Have C run a program in place of CasADi's virtual machine, from the next step on."""

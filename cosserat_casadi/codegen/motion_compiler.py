@@ -157,8 +157,7 @@ class MotionCompiler:
                 residual.program = _program_of(model, write=stepper is not None and self._pays(model, PROGRAM))
                 residual.program_after = partial(_program_after, model)
         of_jacobians = interpreted_jacobians(model) if jacobians is None else jacobians.matrices
-        library = None if jacobians is None else jacobians.library
-        return StepKernels(residual, of_jacobians, stepper, library, self._stepper_after)
+        return StepKernels(residual, of_jacobians, stepper, jacobians, self._stepper_after)
 
     def library(self, model: Model) -> str | None:
         """The shared object with the residual and all that is written beside it; None where it is not at hand."""

@@ -22,7 +22,7 @@ from cosserat_casadi.motion.contact_forces import Follower
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Settling, Switching
-from cosserat_casadi.motion.kernel_residual import KernelResidual
+from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidual
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free, functions_of_momentum
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
@@ -35,7 +35,7 @@ from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
-from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
 from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
 
@@ -89,12 +89,18 @@ def equations_of(
 
     residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray] = residual_with_parameters
     if isinstance(kernels.residual, RepeatedCall) and p is None:
-        residual = KernelResidual(kernels.residual, inputs_at, piece.moves)
+        residual = KernelResidual(kernels.residual, inputs_at, piece.moves, piece.cubics)
 
-    def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def jacobians_with_parameters(
+        t: float, x: FloatArray, v: FloatArray, a: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         value, rate, acceleration = inputs_at(t)
         stiffness, damping, mass = kernels.jacobians(x, v, a, value, *parameters, rate, acceleration)
         return stiffness, damping, mass
+
+    jacobians: Jacobians = jacobians_with_parameters
+    if kernels.derivatives is not None and p is None:
+        jacobians = KernelJacobians(kernels.derivatives, inputs_at)
 
     unknowns = model.discrete.unknowns
     eliminated = np.arange(model.size - unknowns.count(BlockKind.FLOW), model.size)

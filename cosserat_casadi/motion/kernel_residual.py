@@ -1,4 +1,4 @@
-"""The equations of motion of a model as one function of time and state, with the call behind it."""
+"""The equations of motion of a model as functions of time and state, with the calls behind them."""
 
 from __future__ import annotations
 
@@ -19,12 +19,35 @@ class KernelResidual:
         call: inverse dynamics of (x, v, a, inputs, inputs_rate, inputs_acceleration).
         inputs_at: t ↦ inputs, their rates and accelerations.
         moves: whether the inputs change.
+        cubics: a time, s, and the coefficients of inputs, rates and accelerations in powers of the time since then,
+            shape (4, 3 inputs); None where inputs are no such polynomials.
     """
 
     call: RepeatedCall
     inputs_at: Callable[[float], Sequence[FloatArray]]
     moves: bool
+    cubics: tuple[float, FloatArray] | None = None
 
     def __call__(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         """F, shape (n,)."""
         return self.call(x, v, a, *self.inputs_at(t))
+
+
+@dataclass(frozen=True)
+class KernelJacobians:
+    """Its derivatives in machine code, likewise: (t, x, v, a) ↦ stiffness, damping, mass, shape (n, n) each.
+
+    Attributes:
+        call: the derivatives in the arguments of inverse dynamics.
+        inputs_at: t ↦ inputs, their rates and accelerations.
+    """
+
+    call: RepeatedCall
+    inputs_at: Callable[[float], Sequence[FloatArray]]
+
+    def __call__(
+        self, t: float, x: FloatArray, v: FloatArray, a: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The matrices."""
+        stiffness, damping, mass = self.call.matrices(x, v, a, *self.inputs_at(t))
+        return stiffness, damping, mass

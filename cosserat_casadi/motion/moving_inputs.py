@@ -99,6 +99,11 @@ class Piece:
             orders[:, span] += path.at(t)
         return InputState(*orders)
 
+    @property
+    def cubics(self) -> tuple[float, FloatArray] | None:
+        """The start, s, and coefficients as of ``_polynomial``; None where these are None."""
+        return None if self._polynomial is None else (self.start, self._polynomial)
+
     @cached_property
     def _polynomial(self) -> FloatArray | None:
         """Coefficients of values, rates and accelerations of all inputs, shape (4, 3 inputs), in powers of t − start.

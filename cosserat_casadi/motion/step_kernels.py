@@ -30,14 +30,14 @@ class StepKernels:
         residual: ↦ residual of the equations of motion, shape (size,).
         jacobians: ↦ its derivatives with x, v and a, each of shape (size, size).
         stepper: takes the steps in machine code; None where Python takes them.
-        derivatives: the shared object that has the derivatives; None where CasADi's virtual machine runs them.
+        derivatives: the call behind the derivatives in machine code; None where CasADi's virtual machine runs them.
         stepper_after: asked in steps of Python for a stepper that takes the rest; None where none is to come.
     """
 
     residual: Callable[..., FloatArray]
     jacobians: Callable[..., list[FloatArray]]
     stepper: Stepper | None = None
-    derivatives: str | None = None
+    derivatives: RepeatedCall | None = None
     stepper_after: StepperAfter | None = None
 
     @property
@@ -48,7 +48,7 @@ class StepKernels:
     @property
     def libraries(self) -> Libraries:
         """The shared objects that have the residual, the derivatives, and all that is written beside them."""
-        return Libraries(self.library, self.derivatives)
+        return Libraries(self.library, None if self.derivatives is None else self.derivatives.library)
 
 
 class KernelSource(Protocol):

@@ -56,6 +56,10 @@ class Linearisation:
         return all(bool(np.all(np.isfinite(matrix))) for matrix in matrices)
 
 
+Jacobians = Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+"""(t, x, v, a) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a, each of shape (n, n)."""
+
+
 @dataclass(frozen=True)
 class MotionEquations:
     """Square equations F(t, x, v, a) = 0 of n unknowns.
@@ -75,7 +79,7 @@ class MotionEquations:
 
     differential: npt.NDArray[np.bool_]
     residual: Residual
-    jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+    jacobians: Jacobians
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
     rates_of_last: Callable[[float, FloatArray, FloatArray], tuple[FloatArray, FloatArray]] | None = None
     kinks: tuple[float, ...] = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -347,6 +348,38 @@ def test_a_program_is_written_within_a_motion_that_takes_long_and_changes_no_dig
     assert len(taken) == 1
     assert_array_equal(ends[1], ends[0])
     assert_allclose(ends[2], ends[0], rtol=1e-12, atol=1e-14)
+
+
+def test_steps_in_c_ask_python_for_neither_inputs_nor_derivatives(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inputs that are cubics and derivatives in machine code; a wave is no cubic, and Python tells it."""
+
+    def not_asked(steps: CompiledSteps, time: float) -> None:
+        raise AssertionError("Python is asked for derivatives that machine code has")
+
+    monkeypatch.setattr(CompiledSteps, "_linearise", not_asked)
+    waving = arm()
+    wave = {"input": "flexor.tension", "amplitude": 2.0, "frequency": 5.0, "wave": "one_minus_cosine"}
+    waving["motions"] = [wave]
+    for tables, told_by_python in ((arm(), False), (waving, True)):
+        model = moving(tables)
+        kernels = MotionCompiler(always=True).kernels(model)
+        assert model.scene.simulation is not None
+        start = started(model, model.scene.simulation, None)
+        settings = StepSettings(tolerance=1e-5 / displacements(model))
+        ends = []
+        for stepper in (None, kernels.stepper):
+            pieces = moving_inputs(model).pieces(0.2)
+            asked = replace(kernels, stepper=stepper, stepper_after=None)
+            at_rest = np.zeros(model.size)
+            history = integrated(model, pieces, start.x, at_rest, radau(3), settings, kernels=asked)
+            assert history.completed
+            steps = sum(step.start.time < 0.1 for _, step in history.steps)
+            times_told = pieces[0].remembered.cache_info().misses  # type: ignore[attr-defined]
+            # Of both ends at least, of the start of a leg and of nothing else.
+            assert (times_told > steps) == (stepper is None or told_by_python)
+            ends.append(history.end)
+        assert_allclose(ends[1].x, ends[0].x, rtol=0, atol=1e-10)
+        assert_allclose(ends[1].v, ends[0].v, rtol=0, atol=1e-8)
 
 
 def nothing_written(*arguments: Any) -> dict[str, str]:

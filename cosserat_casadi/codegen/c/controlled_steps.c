@@ -72,6 +72,13 @@ typedef struct {
   real **kernel_results;
   long long *kernel_integers;
   real *kernel_scratch;
+  /* Its derivatives likewise: they read linearised_at and the inputs, and write the matrices. */
+  casadi_kernel derivatives; /* null where Python evaluates */
+  const real **derivatives_arguments;
+  real **derivatives_results;
+  long long *derivatives_integers;
+  real *derivatives_scratch;
+  const real *cubics; /* coefficients of inputs, rates and accelerations, power after power; null where Python evaluates */
   /* The same as a program on slots, each of which has four lanes: x, v, a, inputs, rates and accelerations, residual,
      and what is computed on the way. Null where there is none. */
   const int *program;
@@ -98,6 +105,7 @@ typedef struct {
   real *ends;     /* x, v, a of each */
   real *stages;   /* unknowns of the stages of each */
   real *tried_at; /* time before each try */
+  real cubics_begin; /* time that their powers are counted from */
   real stop;
   real newton; /* weighted error that Newton's method may leave */
   real lasting;  /* time over which the error of a shorter step acts */
@@ -181,7 +189,22 @@ static void call(python_call function, real time, workspace *work) {
 }
 
 static void evaluate_inputs(real time, workspace *work) {
-  if (work->moving) call(work->inputs_at, time, work);
+  if (!work->moving) return;
+  if (!work->cubics) {
+    call(work->inputs_at, time, work);
+    return;
+  }
+  real *orders[] = {work->input_values, work->input_rates, work->input_accelerations};
+  const real since = time - work->cubics_begin;
+  const int stride = 3 * work->inputs;
+  for (int order = 0; order < 3; order++) {
+    for (int i = 0; i < work->inputs; i++) {
+      const real *of_input = work->cubics + order * work->inputs + i;
+      real value = 0;
+      for (int power = 3; power >= 0; power--) value = value * since + of_input[power * stride];
+      orders[order][i] = value;
+    }
+  }
 }
 
 /* F at the state and the inputs of the record. After an interrupt no value counts. */
@@ -597,7 +620,13 @@ static void renew_jacobian(const real *unknowns, workspace *work) {
   work->linearised_time = work->time + work->size / 2;
   motion_in(work->size, 0.5, MIDDLE_VALUES, MIDDLE_INTEGRALS, MIDDLE_DOUBLE_INTEGRALS, unknowns, at, at + N, at + 2 * N,
             work);
-  call(work->jacobians_at, work->linearised_time, work);
+  if (work->derivatives) {
+    evaluate_inputs(work->linearised_time, work);
+    work->derivatives(work->derivatives_arguments, work->derivatives_results, work->derivatives_integers,
+                      work->derivatives_scratch, 0);
+  } else {
+    call(work->jacobians_at, work->linearised_time, work);
+  }
   work->jacobians++;
   work->linearised = 1;
   work->fresh = 1;
