@@ -74,7 +74,6 @@ class Closing:
         answer = None
         is_here = False
         for _ in range(MOST_CORRECTIONS):
-            instant = replace(instant, x=x)
             gaps = self._gaps(x, inputs)
             largest = np.abs(gaps).max()
             if largest <= CLOSED:
@@ -84,14 +83,13 @@ class Closing:
             if leads_away and is_here:
                 return best
             if leads_away:
-                instant = replace(instant, x=best)
                 gaps = self._gaps(best, inputs)
             else:
                 best = x
             if answer is None:
                 answer = self._answer_near(near, equations)
             elif leads_away or largest > CONTRACTED * before:
-                answer = self._answer(equations.linearised(instant).stiffness)
+                answer = self._answer(equations.linearised(replace(instant, x=best)).stiffness)
                 is_here = True
             before = np.abs(gaps).max()
             x = best - answer @ gaps

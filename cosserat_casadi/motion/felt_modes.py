@@ -13,6 +13,7 @@ import numpy as np
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
@@ -153,13 +154,22 @@ def lacking_at_fronts(history: History, duration: float) -> float:
             AT_FRONT
             * len(moved)
             * float(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :].max())
-            * front_over_seen(model, name, strain)
+            * _fronts_over_seen(model, name)[strain]
             for strain, moved in zip(rod.admitted, moved_by[name], strict=True)
             if strain not in BENDING
         ]
         for other in moved_along(model.scene, name):
             squares[other] += max(fronts, default=0.0) ** 2
     return float(np.sqrt(max(squares.values())))
+
+
+def _fronts_over_seen(model: Model, name: str) -> dict[int, float]:
+    """As :func:`front_over_seen`, of the strains whose fronts make kinks; every level of a search asks."""
+    fronts: dict[str, dict[int, float]] = kept_with(model, "_fronts_over_seen", dict)
+    if name not in fronts:
+        strains = [strain for strain in model.discrete.rods[name].admitted if strain not in BENDING]
+        fronts[name] = {strain: front_over_seen(model, name, strain) for strain in strains}
+    return fronts[name]
 
 
 def front_over_seen(model: Model, name: str, strain: int) -> float:

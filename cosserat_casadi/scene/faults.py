@@ -13,6 +13,9 @@ from pydantic import BaseModel
 Path = tuple[str | int, ...]
 Table = Mapping[str, Any]
 
+PLAIN = (str, int, float)
+"""Classes of values without values inside; to ask for these is faster than to ask for a mapping."""
+
 LONGEST_TEXT = 60
 """Characters of a text or a key of the file that a message quotes."""
 
@@ -99,16 +102,17 @@ def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
     Whole numbers that no number of double precision comes near, and lengths whose powers overflow. Infinity and NaN
     are left to the types.
     """
-    if isinstance(value, Mapping):
+    if isinstance(value, PLAIN):
+        if isinstance(value, int) and abs(value) > sys.float_info.max:
+            yield Fault(path, f"must be finite, got {shown(value)}")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            yield from _length_faults(float(value), path)
+    elif isinstance(value, Mapping):
         for key, entry in value.items():
             yield from faults_of_range(entry, (*path, key))
     elif isinstance(value, list | tuple):
         for i, entry in enumerate(value):
             yield from faults_of_range(entry, (*path, i))
-    elif isinstance(value, int) and abs(value) > sys.float_info.max:
-        yield Fault(path, f"must be finite, got {shown(value)}")
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield from _length_faults(float(value), path)
 
 
 def _length_faults(value: float, path: Path) -> Iterator[Fault]:

@@ -15,8 +15,8 @@ from pydantic import ValidationError
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.scene.disk_record import lead_through_disks
 from cosserat_casadi.scene.disks_in_contact import seat_disks
+from cosserat_casadi.scene.faults import PLAIN, SceneTables, faults_of_range, shown
 from cosserat_casadi.scene.faults import Path as FaultPath
-from cosserat_casadi.scene.faults import SceneTables, faults_of_range, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import owners_of
 from cosserat_casadi.scene.joint_ends import place_joints_by_their_ends
@@ -180,6 +180,8 @@ def _entries_with_files(tables: Mapping[str, Any]) -> list[dict[str, Any]]:
 def _copy(value: Any) -> Any:
     """A copy down to the values, with lists for tuples."""
     # Overrides change the tables in place; the caller's must stay as they are.
+    if isinstance(value, PLAIN):
+        return value
     if isinstance(value, Mapping):
         return {key: _copy(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, Validatio
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table
+from cosserat_casadi.scene.faults import PLAIN, Fault, Path, SceneTables, Table
 from cosserat_casadi.scene.input_fields import InputField
 
 RecordType = TypeVar("RecordType", bound="Record")
@@ -61,6 +61,8 @@ def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
 
 def _as_given(value: Any) -> Any:
     """Turn records back into the tables that they were read from; keys that were left out stay out."""
+    if isinstance(value, PLAIN):
+        return value
     # A scene may be built from records in Python as well as from tables; the rules see tables in both cases.
     if isinstance(value, BaseModel):
         value = value.model_dump(by_alias=True, exclude_unset=True)
