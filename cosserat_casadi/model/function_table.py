@@ -345,45 +345,18 @@ class NamedFunction:
         return built
 
 
-def scene_function(
-    *outputs: Output,
-    arguments: Sequence[str] = ("x", "inputs"),
-    kernel: str = "",
-    header: str = "",
-    differentiable: bool = False,
-    judges_answers: bool = False,
-) -> Callable[[Write], NamedFunction]:
+def scene_function(*outputs: Output, **options: Any) -> Callable[[Write], NamedFunction]:
     """Make a method one named function of the scene.
 
     Args:
         outputs: names of its results.
-        arguments: names of its arguments.
-        kernel: name of its kernel in C; empty where it stays in Python.
-        header: sentence of the header in C; empty where the kernel is the solver's alone.
-        differentiable: whether a loaded folder gives it with derivatives.
-        judges_answers: whether its kernel serves the estimate of an answer's error alone.
+        options: as of :func:`owned_functions`.
     """
-    options = {
-        "owner": Owner.SCENE,
-        "arguments": tuple(arguments),
-        "outputs": outputs,
-        "kernel": kernel,
-        "header": header,
-        "differentiable": differentiable,
-        "judges_answers": judges_answers,
-    }
-    return lambda write: NamedFunction(options, write)
+    return owned_functions(Owner.SCENE, outputs, **options)
 
 
 def owned_functions(
-    owner: Owner,
-    outputs: Outputs,
-    *,
-    arguments: Sequence[str] = ("x", "inputs"),
-    kernel: str = "",
-    kernel_outputs: int | None = None,
-    header: str = "",
-    differentiable: bool = False,
+    owner: Owner, outputs: Outputs, *, arguments: tuple[str, ...] = ("x", "inputs"), **options: Any
 ) -> Callable[[Write], NamedFunction]:
     """Make a method one named function for each rod, actuator, body or joint.
 
@@ -391,21 +364,10 @@ def owned_functions(
         owner: family of its owners; each member has one function.
         outputs: what each gives, or a rule that says so for one owner.
         arguments: names of its arguments.
-        kernel: name of its kernel in C; empty where it stays in Python.
-        kernel_outputs: number of the outputs that the kernel has; None for all.
-        header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
-        differentiable: whether a loaded folder gives it with derivatives.
+        options: further attributes of :class:`FunctionSpec`.
     """
-    options = {
-        "owner": owner,
-        "arguments": tuple(arguments),
-        "outputs": outputs,
-        "kernel": kernel,
-        "kernel_outputs": kernel_outputs,
-        "header": header,
-        "differentiable": differentiable,
-    }
-    return lambda write: NamedFunction(options, write)
+    of_entry = {"owner": owner, "arguments": arguments, "outputs": outputs, **options}
+    return lambda write: NamedFunction(of_entry, write)
 
 
 def table(model_class: type) -> list[FunctionSpec]:
