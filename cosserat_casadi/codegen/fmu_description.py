@@ -59,7 +59,7 @@ def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> lis
     listed.append(Variable(STEP_NAME, "s", described, "parameter", step))
     for parameter, span in model.parameters:
         described = f"Number of {parameter.name}, held from the start on."
-        for cell, value in zip(parameter.numbers.cell_names, model.parameters.pack()[span].tolist(), strict=True):
+        for cell, value in zip(parameter.cell_names, model.parameters.pack()[span].tolist(), strict=True):
             listed.append(Variable(cell, parameter.unit, described, "parameter", value))
     return listed
 

@@ -25,10 +25,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.inputs import Input
-from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.properties import STRAINS
-from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene import NamedNumbers, Scene
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 
 MANIFEST = "manifest.json"
@@ -192,7 +191,7 @@ def parameter_entries(model: Model | TubeFunctions) -> list[dict[str, Any]]:
     return [_stacked_entry(entry, indices) for entry, indices in model.parameters]
 
 
-def _stacked_entry(entry: Input | Parameter, indices: slice, **further: Any) -> dict[str, Any]:
+def _stacked_entry(entry: Input | NamedNumbers, indices: slice, **further: Any) -> dict[str, Any]:
     """Where an input or a parameter is in its vector, and its value in the scene."""
     return {
         "name": entry.name,

@@ -17,10 +17,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
-from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.scene.input_fields import AXES
-from cosserat_casadi.scene.profiles import ENDS
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 TURN = 1e-4
@@ -299,7 +297,7 @@ def _entry(
     model: AnyModel,
     record: scenes.Unknown,
     places: list[int],
-    parameter: Parameter | None,
+    parameter: scenes.NamedNumbers | None,
     typical: Mapping[str, float],
 ) -> UnknownEntry:
     """One unknown.
@@ -312,10 +310,10 @@ def _entry(
         typical: sizes of what may have any sign, by unit.
     """
     if parameter is not None:
-        labels = _labels(parameter)
+        labels = parameter.cell_names
         unit = parameter.unit
         start = parameter.default.ravel(order="F")
-        turns = parameter.numbers.keys[-1] == "quaternion"
+        turns = parameter.keys[-1] == "quaternion"
         positive = _is_positive(model, parameter)
     else:
         names = {index: name for name, index in column_indices(model.inputs).items()}
@@ -339,22 +337,7 @@ def _entry(
     return UnknownEntry(record, labels, unit, np.array(places), start, turns, sizes, positive)
 
 
-def _labels(parameter: Parameter) -> tuple[str, ...]:
-    """Names of the numbers of a parameter, column after column, as a scene would name each by itself."""
-    rows, columns = parameter.shape
-    axes = AXES.get(rows, tuple(str(row) for row in range(rows)))
-    labels = []
-    for column in range(columns):
-        for row in range(rows):
-            label = parameter.name + (f".{axes[row]}" if rows > 1 else "")
-            if columns > 1:
-                ends = columns == 2 and parameter.numbers.form.name == "ENDS"
-                label += f".{ENDS[column]}" if ends else f"[{column}]"
-            labels.append(label)
-    return tuple(labels)
-
-
-def _is_positive(model: AnyModel, parameter: Parameter) -> bool:
+def _is_positive(model: AnyModel, parameter: scenes.NamedNumbers) -> bool:
     """Whether the scene refuses the parameter with the other sign."""
     if not np.all(parameter.default > 0):
         return False

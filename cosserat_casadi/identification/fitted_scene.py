@@ -30,7 +30,7 @@ def with_identified(scene: scenes.Scene, model: AnyModel, layout: UnknownLayout,
     Raises:
         SceneError: the scene refuses a number.
     """
-    numbers = {entry.name: entry.numbers for entry in model.parameters.entries}
+    numbers = {entry.name: entry for entry in model.parameters.entries}
     inputs = model.pack()
     fields = []
     for entry, found in parts(layout.shared, shared):

@@ -51,7 +51,7 @@ class CaseLayout:
         """Index of each column in a case."""
         indices = column_indices(self.inputs)
         for entry, span in self.parameters:
-            for k, name in enumerate(entry.numbers.cell_names):
+            for k, name in enumerate(entry.cell_names):
                 indices[name] = self.inputs.size + span.start + k
         return indices
 

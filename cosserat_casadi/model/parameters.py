@@ -26,44 +26,7 @@ from cosserat_casadi.scene.writing import scene_tables
 
 
 @dataclass(frozen=True)
-class Parameter:
-    """One parameter of a model.
-
-    Attributes:
-        numbers: the numbers of the scene that it stands for.
-    """
-
-    numbers: scenes.NamedNumbers
-
-    @property
-    def name(self) -> str:
-        """As the scene spells it, such as ``finger.material.youngs_modulus``."""
-        return self.numbers.name
-
-    @property
-    def unit(self) -> str:
-        """SI unit of each number, "1" without unit."""
-        return self.numbers.unit
-
-    @property
-    def default(self) -> FloatArray:
-        """The scene's value, shape (components, places along the rod)."""
-        return self.numbers.default
-
-    @property
-    def size(self) -> int:
-        """Number of entries."""
-        return self.default.size
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Components, and values along the rod: of base and tip, or coefficients."""
-        components, places = self.default.shape
-        return components, places
-
-
-@dataclass(frozen=True)
-class ParameterLayout(StackedLayout[Parameter]):
+class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
     """The parameters of a model, stacked into one vector p.
 
     Attributes:
@@ -95,7 +58,7 @@ class ParameterLayout(StackedLayout[Parameter]):
         """Parameters that turn the axis of a joint, by name, with the joint's place in the scene's list."""
         turning = []
         for entry in self.entries:
-            for numbers in entry.numbers.all_numbers:
+            for numbers in entry.all_numbers:
                 holder = numbers.holder
                 turns = numbers.keys[-1] in ("axis", "quaternion") and hasattr(holder.record, "axis")
                 if holder.table == "joints" and turns:
@@ -106,7 +69,7 @@ class ParameterLayout(StackedLayout[Parameter]):
         """The scene whose numbers are entries of p: expressions, or numbers, which are not judged."""
         for entry, span in self:
             values = [p[i] for i in range(span.start, span.stop)]
-            scene = scene.with_numbers(entry.numbers, values)
+            scene = scene.with_numbers(entry, values)
         return scene
 
     def set_in(self, scene: scenes.Scene, values: Mapping[str, npt.ArrayLike] | None = None) -> scenes.Scene:
@@ -131,12 +94,12 @@ def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
     Raises:
         SceneError: one of them would move a place that elements cannot follow.
     """
-    layout = ParameterLayout(tuple(Parameter(numbers) for numbers in scene.named_parameters()))
+    layout = ParameterLayout(tuple(scene.named_parameters()))
     problems: list[Problem] = []
     movers: dict[str, tuple[str, ...]] = {}
     for entry, span in layout:
         values = [layout.symbol[i] for i in range(span.start, span.stop)]
-        written = scene.with_numbers(entry.numbers, values)
+        written = scene.with_numbers(entry, values)
         problems += unmovable(entry.name, scene, written)
         for rod in scene.rods:
             if any_symbolic(places_on(written, rod.name)):

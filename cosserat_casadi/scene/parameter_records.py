@@ -102,6 +102,17 @@ class NamedNumbers:
     tied: tuple[tuple[NamedNumbers, tuple[float, ...]], ...] = ()
 
     @property
+    def size(self) -> int:
+        """Number of entries."""
+        return self.default.size
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Components, and values along the rod: of base and tip, or coefficients."""
+        components, places = self.default.shape
+        return components, places
+
+    @property
     def all_numbers(self) -> tuple[NamedNumbers, ...]:
         """These numbers, and numbers that follow them."""
         return (self, *(numbers for numbers, _ in self.tied))
@@ -316,7 +327,7 @@ def _component_words(form: Form, rows: int) -> Sequence[str]:
     """Names of the components of a key."""
     if form is Form.VECTOR and rows == len(SPAN):
         return SPAN
-    return AXES.get(rows, AXES[3][:rows])
+    return AXES.get(rows, AXES[3][:rows] if rows < 3 else tuple(map(str, range(rows))))
 
 
 def _part(word: str, words: Sequence[str], count: int, what: str) -> int:

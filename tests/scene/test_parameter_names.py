@@ -152,3 +152,15 @@ def test_faults_of_an_entry_are_told_beside_those_of_its_parameters() -> None:
 def test_overrides_change_the_defaults() -> None:
     scene = scene_from_dict({**SCENE, "parameters": ["wire.length"]}, ["wire.length=0.4"])
     assert scene.named_parameters()[0].default.tolist() == [[0.4]]
+
+
+def test_numbers_of_a_long_list_have_names_that_stand_for_them_alone() -> None:
+    growth = [0.1, 0.2, 0.3, 0.4, 0.5]
+    chamber = {"name": "own", "kind": "chamber", "rod": "wire", "pressure": 0.0, "offset": [1e-3, 0]}
+    grown = {**chamber, "area": 1e-6, "area_growth": growth, "reference_pressure": 1e4}
+    scene = scene_from_dict({**SCENE, "actuators": [grown]})
+    for name, values in (("own.area_growth", growth), ("own.offset", [1e-3, 0.0])):
+        (whole,) = scene.model_copy(update={"parameters": (name,)}).named_parameters()
+        for cell, value in zip(whole.cell_names, values, strict=True):
+            (alone,) = scene.model_copy(update={"parameters": (cell,)}).named_parameters()
+            assert_array_equal(alone.default, [[value]])
