@@ -8,6 +8,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.felt_modes import TWIST
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.trajectory import MotionOutcome
@@ -95,7 +96,8 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
     if outcome is MotionOutcome.SNAPPED:
         return f"{outcome.value} Reached: {reached}; the cable or joint is {', '.join(snapping(history))}."
-    return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+    violent = f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+    return violent + whirled(history)
 
 
 def unsettled(history: History) -> str:
@@ -108,6 +110,22 @@ def unsettled(history: History) -> str:
         f"At t = {history.end.time:.6g} s {last.owner!r} touches {last.obstacle!r} and lifts off over and over about "
         f"X = {last.place:.4g}."
     )
+
+
+def whirled(history: History) -> str:
+    """A sentence on rods without rotary inertia where a motion ends in a blow on them; else nothing.
+
+    Only the mass beside its chord resists there that a rod turns about itself: a nearly straight one has next to none.
+    """
+    leg = history.legs[-1]
+    if leg.integration.steps:
+        return ""
+    struck = {event.owner for event in leg.restart.events if event.kind == "impact"}
+    rods = [(name, rod.properties) for name, rod in history.model.discrete.rods.items() if name in struck]
+    light = [repr(name) for name, own in rods if own.rotary_inertia is None and TWIST in own.admitted]
+    if not light:
+        return ""
+    return f" A blow turns {', '.join(light)} about itself, and nothing resists: give it a rotary_inertia, kg m."
 
 
 def most_violent(history: History) -> str:

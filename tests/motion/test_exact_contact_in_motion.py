@@ -381,3 +381,17 @@ def test_energy_of_impacts_is_told_with_its_change_by_modes() -> None:
     longer = simulate(parse_scene(coarse.replace("duration = 0.08", "duration = 0.081")), start=few)
     assert not longer.events
     assert longer.impacts_spread == few.impacts_spread
+
+
+def test_a_blow_on_a_rod_that_turns_about_itself_without_inertia_is_told() -> None:
+    """A rod in space whose tip strikes the floor: behind its push it is nearly straight."""
+    push = '{ name = "push", kind = "point_wrench", rod = "rod", at = 0.8, force = [0, 0.02, -0.1] }'
+    text = rod(FLOOR.format(height=-0.05), modes=2, duration=0.085).replace('"planar"', '"kirchhoff"')
+    text = text.replace("{ bending_y = 0.016 }", "{ bending_x = 0.016, bending_y = 0.016, torsion = 0.016 }")
+    text = text.replace("-9.81] }]", f"-9.81] }}, {push}]")
+    (inertia,) = [line for line in text.splitlines() if line.startswith("rotary_inertia")]
+    light = simulate(moving(text.replace(inertia, "")))
+    assert light.outcome is MotionOutcome.STEP_TOO_SMALL
+    assert light.message.endswith(
+        "A blow turns 'rod' about itself, and nothing resists: give it a rotary_inertia, kg m."
+    )
