@@ -68,7 +68,6 @@ class RowLibrary:
         inputs: numbers in a row of inputs.
         parameters: numbers in a row of parameters.
         results: numbers in a row of results.
-        unknowns: the last of them, which are the unknowns of its equilibrium; none unless they are asked for.
         in_lanes: whether rows are solved side by side.
     """
 
@@ -76,7 +75,6 @@ class RowLibrary:
     inputs: int
     parameters: int
     results: int
-    unknowns: int = 0
     in_lanes: bool = False
 
     def solve(self, rows: FloatArray) -> FloatArray:
@@ -115,7 +113,6 @@ def row_library(
     *,
     estimate_errors: bool = False,
     stability: bool = False,
-    tells_unknowns: bool = False,
     lanes: bool = False,
 ) -> RowLibrary:
     """Sources of the solver of a model with a function for rows.
@@ -124,7 +121,6 @@ def row_library(
         model: the solved model.
         estimate_errors: whether rows have :data:`ERRORS`.
         stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
-        tells_unknowns: whether the unknowns of their equilibria follow, NaN in rows that did not converge.
         lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
             about twice as long. The results are the same.
 
@@ -132,16 +128,13 @@ def row_library(
         ExportError: two things of the scene would have one name in C.
     """
     columns = row_results(model.scene, estimate_errors=estimate_errors, stability=stability)
-    unknowns = model.size if tells_unknowns else 0
-    made_from = (row_library.__name__, model, estimate_errors, stability, unknowns, lanes)
-    texts = kept_texts(NAME, made_from, lambda: _row_texts(model, columns, unknowns, stability=stability, lanes=lanes))
-    sizes = (model.inputs.size, model.parameters.size, len(columns) + unknowns, unknowns)
+    made_from = (row_library.__name__, model, estimate_errors, stability, lanes)
+    texts = kept_texts(NAME, made_from, lambda: _row_texts(model, columns, stability=stability, lanes=lanes))
+    sizes = (model.inputs.size, model.parameters.size, len(columns))
     return RowLibrary(tuple(texts.items()), *sizes, in_lanes=lanes_files(NAME)[0] in texts)
 
 
-def _row_texts(
-    model: Model, columns: tuple[str, ...], unknowns: int, *, stability: bool, lanes: bool
-) -> dict[str, str]:
+def _row_texts(model: Model, columns: tuple[str, ...], *, stability: bool, lanes: bool) -> dict[str, str]:
     """Sources and headers of the solver of a model with a function for rows."""
     names = model_names(NAME, model, estimate_errors=ERRORS[0] in columns)
     parts = assembled(model, names)
@@ -151,7 +144,7 @@ def _row_texts(
         **library_sources(model, names, FolderContents(generated, parts, rows=side_by_side)),
         **(stability_sources(model, names) if stability else {}),
         **generated,
-        f"{NAME}_rows.c": _rows_source(model, columns, unknowns, lanes=side_by_side is not None),
+        f"{NAME}_rows.c": _rows_source(model, columns, lanes=side_by_side is not None),
     }
     return dict(to_compile(files))
 
@@ -187,13 +180,12 @@ def row_results(scene: Scene, *, estimate_errors: bool = False, stability: bool 
     return (*JUDGED, *poses, *states, *contacts, *errors, *(verdict if stability else ()))
 
 
-def _rows_source(model: Model, columns: tuple[str, ...], unknowns: int, *, lanes: bool) -> str:
+def _rows_source(model: Model, columns: tuple[str, ...], *, lanes: bool) -> str:
     """The function for rows."""
     words = {
         "name": NAME,
         "MACRO": NAME.upper(),
-        "results": len(columns) + unknowns,
-        "tells_unknowns": unknowns > 0,
+        "results": len(columns),
         "passed": ", parameters" if model.parameters.size else "",
         "with_parameters": model.parameters.size > 0,
         "batch_workspace": f"{NAME}_batch_workspace" if lanes else f"{NAME}_workspace",

@@ -12,7 +12,6 @@ from functools import cached_property, lru_cache
 from math import isfinite
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.passing_through import (
@@ -22,7 +21,6 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
     ball_is_inside_between,
     is_inside_between,
     seen_from,
-    ways_inside,
 )
 from cosserat_casadi.equilibrium.load_path import between
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
@@ -133,54 +131,6 @@ class SmoothBarriers:
         for row in range(len(x) - 1):
             if self.are_between(x[row], x[row + 1], (inputs[row], inputs[row + 1])):
                 yield row
-
-    def barred(self, x: FloatArray, arguments: FloatArray) -> npt.NDArray[np.bool_]:
-        """States to which the straight way from the unloaded shape is barred, shape (k,).
-
-        Args:
-            x: unknowns, shape (k, model.size).
-            arguments: stacked inputs, with parameters behind them where the model has some, shape (k, arguments).
-        """
-        inputs, p = np.split(arguments, [self.model.inputs.size], axis=1)
-        if p.shape[1] and not self._barriers_are_fixed:
-            bound = [SmoothBarriers(self.model.at(row)) for row in p]
-            found = [other.barred(x[[row]], inputs[[row]])[0] for row, other in enumerate(bound)]
-            return np.array(found, dtype=bool)
-        barred = np.zeros(len(x), dtype=bool)
-        unloaded = np.broadcast_to(self.model.unloaded(), x.shape)
-        # Loads do not move the unloaded shape.
-        differs = slice(None) if p.shape[1] or self.model.inputs.geometry else slice(1)
-        for rod, obstacle in self.watched:
-            properties = self.model.at().discrete.rods[rod].properties
-            allowed = depth_allowed(obstacle, properties.length)
-            looked_at = self._looked_at[rod]
-            suspected = np.flatnonzero(~barred)
-            # Few sections leave few states in doubt: of these all sections decide.
-            for every in (ROUGHLY, 1):
-                if not suspected.size:
-                    break
-                given = [part[suspected] for part in (inputs, *([p] if p.shape[1] else []))]
-                end = looked_at.paths(obstacle, x[suspected], *given, every=every)
-                given = [part[differs] for part in given]
-                start = looked_at.paths(obstacle, unloaded[suspected][differs], *given, every=every)
-                start = np.broadcast_to(start, end.shape)
-                suspected = suspected[ways_inside(obstacle, properties, start, end, allowed, every)]
-            barred[suspected] = True
-        for layer in self.watched_bodies:
-            for row in np.flatnonzero(~barred):
-                way = (self._place(layer, unloaded[row], inputs[row]), self._place(layer, x[row], inputs[row]))
-                barred[row] = self._is_inside_between(layer, *way)
-        if self.model.discrete.pairs:
-            for row in np.flatnonzero(~barred):
-                barred[row] = self.rods_pass(unloaded[row], x[row], (inputs[row], inputs[row]))
-        return barred
-
-    @property
-    def _barriers_are_fixed(self) -> bool:
-        """Whether parameters move rods alone, and elements of none, and only obstacles that stand still are watched."""
-        ride = any(obstacle.body is not None for _, obstacle in self.watched)
-        others = self.watched_bodies or self.model.discrete.pairs
-        return not (self.model.parameters.moving or others or ride)
 
     def _somewhere_inside(self, x: FloatArray, inputs: FloatArray) -> bool:
         """Whether a rod or body is deep inside an obstacle on the straight ways from state to state."""

@@ -32,13 +32,11 @@ class DeviceRows:
         batch: the compiled source.
         inputs: numbers in a row of inputs, which parameters follow.
         results: numbers in a row of results.
-        unknowns: the last of them, which are the unknowns of its equilibrium; none unless they are asked for.
     """
 
     batch: DeviceBatch
     inputs: int
     results: int
-    unknowns: int = 0
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results for rows of inputs with parameters behind them.
@@ -54,23 +52,19 @@ class DeviceRows:
         rows[:, :judged] = np.array([found["status"], found["iterations"], found["residual_norm"]]).T
         behind = judged + len(found["results"])
         rows[:, judged:behind] = found["results"].T
-        unknowns = self.results - self.unknowns
-        if self.unknowns:
-            rows[:, unknowns:] = found["x"].T
-        if behind < unknowns:
+        if behind < self.results:
             # What was not solved has no error.
             rows[:, behind] = np.where(found["status"] == 0, found["error_estimate"], np.nan)
         return rows
 
 
-def device_rows(model: Model, device: str, *, estimate_errors: bool, tells_unknowns: bool = False) -> DeviceRows:
+def device_rows(model: Model, device: str, *, estimate_errors: bool) -> DeviceRows:
     """The solver of rows of a model on a device.
 
     Args:
         model: of rods.
         device: ``cuda`` or ``host``.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
-        tells_unknowns: whether the unknowns of their equilibria follow.
 
     Raises:
         ExportError: it cannot be compiled for the device.
@@ -78,9 +72,8 @@ def device_rows(model: Model, device: str, *, estimate_errors: bool, tells_unkno
     files = folder_files(model, NAME, cuda=True, estimate_errors=estimate_errors)
     texts = {name: text for name, text in files.items() if name.endswith((".c", ".h", ".cu"))}
     batch = batch_of(json.loads(files[MANIFEST]), texts, device)
-    unknowns = model.size if tells_unknowns else 0
     columns = len(row_results(model.scene, estimate_errors=estimate_errors))
-    return DeviceRows(batch, model.inputs.size, columns + unknowns, unknowns)
+    return DeviceRows(batch, model.inputs.size, columns)
 
 
 def device_problems(scene: Scene, device: str, *, stability: bool) -> list[Problem]:

@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.codegen.rows import JUDGED, row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
@@ -17,7 +16,6 @@ from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_state import with_contacts
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.equilibrium.judge import correct
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import SceneError
@@ -62,15 +60,6 @@ class RowModel:
             judged = self._counted_in_measure(solution) if self.stability else None
             rows.append(result_row(solution, width, judged, estimate_errors=self.estimate_errors))
         return np.array(rows).reshape(len(inputs), width)
-
-    def barred(self, x: FloatArray, inputs: FloatArray) -> npt.NDArray[np.bool_]:
-        """Rows whose equilibrium lies behind a smooth obstacle or a rod on the straight way, shape (count,).
-
-        Args:
-            x: unknowns of equilibria of rods, shape (count, unknowns).
-            inputs: as in :meth:`solve`.
-        """
-        return SmoothBarriers(_model(self.scene)).barred(x, inputs)
 
     def _of_rods(self, inputs: FloatArray) -> Iterator[Solution]:
         """Solutions of rows, on the discretisation of the scene."""

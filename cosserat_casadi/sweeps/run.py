@@ -505,22 +505,20 @@ def _tasks(
 
 
 def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
-    """The library of a variant, watched where it could lead through an obstacle or a rod."""
+    """The library of a variant, beside Python where rows may stall before an obstacle or a rod."""
     entry = plan.variants.entries[variant]
     model = build(choice.scene(entry.scene))
-    watched = has_barriers(entry.scene)
     library: RowLibrary | DeviceRows
     if plan.device is not None:
-        library = device_rows(model, plan.device, estimate_errors=plan.estimate_errors, tells_unknowns=watched)
+        library = device_rows(model, plan.device, estimate_errors=plan.estimate_errors)
     else:
         library = row_library(
             model,
             estimate_errors=plan.estimate_errors,
             stability=plan.stability,
-            tells_unknowns=watched,
             lanes=len(entry.rows) >= IN_LANES_FROM,
         )
-    if not watched:
+    if not has_barriers(entry.scene):
         return library
     if isinstance(library, RowLibrary):
         # Once, before many processes look for it.

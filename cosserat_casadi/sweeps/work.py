@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.rows import RowLibrary
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium.smooth_passage import has_barriers
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM, touches_in_c
 from cosserat_casadi.sweeps.device_rows import DeviceRows
 from cosserat_casadi.sweeps.row_model import RowModel
@@ -50,11 +52,11 @@ class InContact:
 
 @dataclass(frozen=True)
 class WatchedRows:
-    """A library whose steps may lead through smooth obstacles or rods; Python for rows that may be behind one.
+    """A library none of whose steps leads through an obstacle or a rod; Python for rows that stall, which may settle.
 
     Attributes:
-        library: tells the unknowns of rows too.
-        model: the same scene in Python, no step of which leads through one.
+        library: solves rows.
+        model: the same scene in Python.
     """
 
     library: RowLibrary | DeviceRows
@@ -62,11 +64,10 @@ class WatchedRows:
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results for rows of inputs and parameters."""
-        results, x = np.split(self.library.solve(inputs), [self.library.results - self.library.unknowns], axis=1)
-        solved = np.flatnonzero(results[:, 0] == 0)
-        doubtful = solved[self.model.barred(x[solved], inputs[solved])]
-        if doubtful.size:
-            results[doubtful] = self.model.solve(inputs[doubtful])
+        results = self.library.solve(inputs)
+        stalled = np.flatnonzero(results[:, 0] == OUTCOMES.index(Outcome.LOAD_STALLED))
+        if stalled.size:
+            results[stalled] = self.model.solve(inputs[stalled])
         return results
 
 

@@ -797,36 +797,6 @@ width = 1e-3
 """
 
 
-@pytest.mark.parametrize(
-    ("head", "barriers"),
-    [
-        ("", WIRE),
-        ('parameters = ["rod.stiffness.bending_y"]', WIRE),
-        ('parameters = ["wire.width", "rod.base.position"]', WIRE),
-        ('parameters = ["other.base.position"]', CROSSING),
-    ],
-    ids=["wire", "stiffness", "width and place", "rods"],
-)
-def test_rows_behind_are_those_whose_straight_way_is_barred(head: str, barriers: str) -> None:
-    """Many states at once, against one after the other."""
-    few = ["accuracy.modes=2", "accuracy.nodes=6"]
-    rod, material = ROD, [line for line in CROSSING.splitlines() if line.startswith(("material", "section"))]
-    if barriers == CROSSING:
-        rod = re.sub("stiffness = .*\nlinear_density = .*", "\n".join(material), ROD)
-    model = build(parse_scene(head + rod + PUSH + barriers, few))
-    rng = np.random.default_rng(1)
-    x = rng.uniform(-2.0, 2.0, (8, 1)) + 0.2 * rng.standard_normal((8, model.size))
-    inputs = np.tile(model.pack(), (len(x), 1))
-    p = model.parameters.pack() * rng.uniform(0.9, 1.1, (len(x), model.parameters.size))
-    found = SmoothBarriers(model).barred(x, np.hstack([inputs, p]))
-    one_by_one = [
-        SmoothBarriers(model.at(p[row])).are_between(model.unloaded(), x[row], (inputs[row], inputs[row]))
-        for row in range(len(x))
-    ]
-    assert found.tolist() == one_by_one
-    assert 0 < found.sum() < len(x)
-
-
 THICK = """
 schema = 1
 accuracy = { modes = 4, nodes = 10 }
@@ -877,7 +847,6 @@ def test_a_wire_between_the_few_sections_that_are_looked_at_bars_the_way(beyond:
     )
     inputs = model.pack()
     assert barriers.are_between(model.unloaded(), x, (inputs, inputs)) == passes
-    assert barriers.barred(x[None], inputs[None]).tolist() == [passes]
 
 
 @pytest.mark.slow

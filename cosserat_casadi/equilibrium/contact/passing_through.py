@@ -78,7 +78,6 @@ class LookedAt:
         obstacle: scenes.ObstacleRecord,
         x: FloatArray,
         inputs: FloatArray,
-        p: FloatArray | None = None,
         *,
         every: int,
     ) -> FloatArray:
@@ -88,10 +87,9 @@ class LookedAt:
             obstacle: what sees them.
             x: unknowns, shape (T, model.size).
             inputs: stacked inputs, shape (T, model.inputs.size).
-            p: parameters, shape (T, model.parameters.size), of a model that has some, whose obstacle stands still.
             every: number of SECTIONS of which positions have one.
         """
-        at_nodes = evaluated(self.model.fields[self.rod], x, inputs, *([] if p is None else [p]))[0]
+        at_nodes = evaluated(self.model.fields[self.rod], x, inputs)[0]
         positions = np.asarray(self._interpolation[::every] @ np.swapaxes(at_nodes, 1, 2))
         if obstacle.body is None:
             return positions
@@ -180,19 +178,7 @@ def is_inside_between(
     deepest: float = DEEP,
     every: int = 1,
 ) -> bool:
-    """Whether a section of a rod is inside an obstacle on a straight way, as :func:`ways_inside` tells."""
-    return bool(ways_inside(obstacle, properties, start, end, deepest, every).any())
-
-
-def ways_inside(
-    obstacle: scenes.ObstacleRecord,
-    properties: RodProperties,
-    start: FloatArray,
-    end: FloatArray,
-    deepest: float = DEEP,
-    every: int = 1,
-) -> npt.NDArray[np.bool_]:
-    """Straight ways of sections of a rod to others on which one is inside an obstacle, shape (ways,).
+    """Whether a section of a rod is inside an obstacle on a straight way to another.
 
     Args:
         obstacle: the obstacle.
@@ -206,7 +192,7 @@ def ways_inside(
     """
     thinnest = float(section_radius(properties, SECTIONS).min())
     admitted = admitted_depth(obstacle, properties.length, deepest, thinnest)
-    return _sinking(
+    sinking = _sinking(
         lambda positions, X: section_gaps(obstacle, properties, positions, X),
         start,
         end,
@@ -214,6 +200,7 @@ def ways_inside(
         admitted,
         np.maximum(_off_chords(start), _off_chords(end)),
     )
+    return bool(sinking.any())
 
 
 def _off_chords(positions: FloatArray) -> FloatArray:
