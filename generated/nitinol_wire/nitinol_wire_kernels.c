@@ -117,7 +117,8 @@ static const double nitinol_wire_kernels_numbers[243] = {
    Older processors compute lane after lane, since vectors of two take compilers twice as long. */
 #define FOURS_PLAINLY
 #pragma GCC push_options
-#pragma GCC optimize("O1", "no-tree-dse", "no-dse")
+#pragma GCC optimize("O1", "no-tree-dse", "no-dse", "no-tree-dominator-opts", "no-tree-pta", \
+    "no-tree-sink", "no-tree-sra", "no-tree-slsr", "no-tree-bit-ccp", "no-tree-ch")
 #endif
 #define MADE(function) function##_plain
 #include "nitinol_wire_kernels_in_fours.h"
@@ -181,9 +182,10 @@ static void MADE(nitinol_wire_k_tip_jacobian_columns)(const casadi_real *w, cons
 
 #if defined(__GNUC__) && !defined(__clang__)
 /* Straight-line code is as fast with this. Parts stay apart: compilers take longer with longer functions. No store is
-   overwritten unread, and none is searched for. */
+   overwritten unread, and what else is left out finds nothing there. */
 #pragma GCC push_options
-#pragma GCC optimize("O1", "no-inline-functions-called-once", "no-tree-dse", "no-dse")
+#pragma GCC optimize("O1", "no-inline-functions-called-once", "no-tree-dse", "no-dse", "no-tree-dominator-opts", "no-tree-pta", \
+    "no-tree-sink", "no-tree-sra", "no-tree-slsr", "no-tree-bit-ccp", "no-tree-ch")
 #endif
 static void MADE(nitinol_wire_k_shared_0_0_part_0)(const casadi_real **arg, casadi_real **res, casadi_real *w) {
   casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15;
