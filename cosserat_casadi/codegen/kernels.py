@@ -28,7 +28,7 @@ from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, with_calls_in_fours
-from cosserat_casadi.codegen.shared_values import COMMON, with_shared_kernels
+from cosserat_casadi.codegen.shared_values import with_shared_kernels
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
@@ -117,13 +117,17 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
     Functions in straight-line code call kernels of the values that they share (shared_values.py).
     """
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
+    # All unknowns of a scene of one clamped rod are its strains.
+    clamped = [rod.size for rod in model.discrete.rods.values()] == [model.size]
     straight: dict[tuple[int, bool], list[ca.Function | ColumnedFunction]] = defaultdict(list)
     finished: dict[str, Kernel] = {}
     for one in written.values():
         function = one.form.function if isinstance(one, ColumnedFunction) else one
-        if function.is_a("SXFunction") and function.name_in()[:COMMON] == ["x", "inputs"]:
+        first = function.name_in()[:2]
+        if function.is_a("SXFunction") and (first == ["x", "inputs"] or (clamped and first[0] == "q")):
             # To the solver parameters are further inputs.
-            straight[function.size1_in(1), function.n_instructions() <= SHORT].append(one)
+            inputs_size = function.size1_in(function.index_in("inputs"))
+            straight[inputs_size, function.n_instructions() <= SHORT].append(one)
     for number, functions in enumerate(straight.values()):
         # CasADi prints an operation that is not known here: then these functions share nothing.
         with suppress(UnknownOperationError):

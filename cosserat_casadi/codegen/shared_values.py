@@ -21,16 +21,13 @@ from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, columns_in_fo
 FEWEST_SHARED = 100
 """Number of shared values from which on they become a kernel; of fewer a call saves little code."""
 
-COMMON = 2
-"""Number of arguments that all functions begin with: unknowns and inputs."""
-
 
 def with_shared_kernels(written: Sequence[ca.Function | ColumnedFunction], name: str) -> list[PrintedKernel]:
     """Functions in C, which call kernels of the values that they share.
 
     Args:
-        written: functions of scalars, with dense results, and with the same first two arguments. Further arguments of
-            one name are the same up to the first whose names differ.
+        written: functions of scalars, with dense results, and with the same first argument. Further arguments of one
+            name are the same up to the first whose names differ.
         name: of the kernels, before their numbers.
 
     Raises:
@@ -54,7 +51,8 @@ def _arguments_of(function: ca.Function, known: dict[tuple[str, ...], ca.SX]) ->
         function: the function.
         known: symbols of other functions by the names of the arguments up to theirs; new ones are added.
     """
-    names = function.name_in()
+    # The first one is the same, whatever it is called.
+    names = ["x", *function.name_in()[1:]]
     symbols = []
     for i, name in enumerate(names):
         symbols.append(known.setdefault(tuple(names[: i + 1]), ca.SX.sym(name, function.sparsity_in(i))))

@@ -11,7 +11,7 @@ int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, cas
 #define follower_reissner_k_residual_SZ_ARG 3
 #define follower_reissner_k_residual_SZ_RES 1
 #define follower_reissner_k_residual_SZ_IW 0
-#define follower_reissner_k_residual_SZ_W 464
+#define follower_reissner_k_residual_SZ_W 466
 int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_jacobian_SZ_ARG 3
 #define follower_reissner_k_jacobian_SZ_RES 1
@@ -21,7 +21,7 @@ int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_
 #define follower_reissner_k_rate_SZ_ARG 5
 #define follower_reissner_k_rate_SZ_RES 1
 #define follower_reissner_k_rate_SZ_IW 0
-#define follower_reissner_k_rate_SZ_W 656
+#define follower_reissner_k_rate_SZ_W 658
 int follower_reissner_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tangent_SZ_ARG 1
 #define follower_reissner_k_tangent_SZ_RES 1
@@ -41,17 +41,17 @@ int follower_reissner_k_watched(const casadi_real** arg, casadi_real** res, casa
 #define follower_reissner_k_watched_SZ_ARG 2
 #define follower_reissner_k_watched_SZ_RES 1
 #define follower_reissner_k_watched_SZ_IW 0
-#define follower_reissner_k_watched_SZ_W 199
+#define follower_reissner_k_watched_SZ_W 201
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3
 #define follower_reissner_k_igm_SZ_IW 0
-#define follower_reissner_k_igm_SZ_W 429
+#define follower_reissner_k_igm_SZ_W 460
 int follower_reissner_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_SZ_ARG 2
 #define follower_reissner_k_tip_SZ_RES 2
 #define follower_reissner_k_tip_SZ_IW 0
-#define follower_reissner_k_tip_SZ_W 199
+#define follower_reissner_k_tip_SZ_W 201
 int follower_reissner_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_jacobian_SZ_ARG 2
 #define follower_reissner_k_tip_jacobian_SZ_RES 2
@@ -61,7 +61,7 @@ int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi
 #define follower_reissner_k_shape_SZ_ARG 3
 #define follower_reissner_k_shape_SZ_RES 2
 #define follower_reissner_k_shape_SZ_IW 0
-#define follower_reissner_k_shape_SZ_W 199
+#define follower_reissner_k_shape_SZ_W 201
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

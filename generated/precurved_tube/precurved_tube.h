@@ -160,7 +160,7 @@ typedef struct {
   precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9 + 7];
   precurved_tube_real watched[7];
   precurved_tube_real watched_after[7];
-  precurved_tube_real kernel_reals[1712];
+  precurved_tube_real kernel_reals[1697];
   int kernel_integers[1];
 } precurved_tube_workspace;
 

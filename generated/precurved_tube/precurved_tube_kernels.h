@@ -11,17 +11,17 @@ int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_residual_SZ_ARG 3
 #define precurved_tube_k_residual_SZ_RES 1
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 542
+#define precurved_tube_k_residual_SZ_W 521
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_jacobian_SZ_ARG 3
 #define precurved_tube_k_jacobian_SZ_RES 1
 #define precurved_tube_k_jacobian_SZ_IW 0
-#define precurved_tube_k_jacobian_SZ_W 1711
+#define precurved_tube_k_jacobian_SZ_W 1696
 int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_rate_SZ_ARG 5
 #define precurved_tube_k_rate_SZ_RES 1
 #define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 743
+#define precurved_tube_k_rate_SZ_W 725
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tangent_SZ_ARG 1
 #define precurved_tube_k_tangent_SZ_RES 1
@@ -46,7 +46,7 @@ int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int*
 #define precurved_tube_k_igm_SZ_ARG 4
 #define precurved_tube_k_igm_SZ_RES 3
 #define precurved_tube_k_igm_SZ_IW 0
-#define precurved_tube_k_igm_SZ_W 431
+#define precurved_tube_k_igm_SZ_W 529
 int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_SZ_ARG 2
 #define precurved_tube_k_tip_SZ_RES 2

@@ -11,17 +11,17 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 700
+#define tendon_robot_k_residual_SZ_W 715
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
 #define tendon_robot_k_jacobian_SZ_IW 0
-#define tendon_robot_k_jacobian_SZ_W 2212
+#define tendon_robot_k_jacobian_SZ_W 2227
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 901
+#define tendon_robot_k_rate_SZ_W 916
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -51,7 +51,7 @@ int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
 #define tendon_robot_k_igm_SZ_IW 0
-#define tendon_robot_k_igm_SZ_W 581
+#define tendon_robot_k_igm_SZ_W 756
 int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_SZ_ARG 2
 #define tendon_robot_k_tip_SZ_RES 2

@@ -240,7 +240,7 @@ def test_lanes_that_are_left_over_are_not_read(wire: Path) -> None:
 
 
 def test_kernels_share_what_they_call(wire: Path) -> None:
-    """Residual and IGM call the same functions of an interval, which are in the code once."""
+    """Residual and IGM call the same functions of an interval, and the same kinematics, which are in the code once."""
     written = (wire / "wire_kernels_in_fours.h").read_text()
     bodies = re.findall(r"^static void MADE\((\w+)\)(.*?^\})", written, flags=re.M | re.S)
     assert len({body for _, body in bodies}) == len(bodies)
@@ -249,6 +249,7 @@ def test_kernels_share_what_they_call(wire: Path) -> None:
     for kernel in ("residual", "igm"):
         own = re.findall(rf"^static (?:int|void) MADE\(wire_k_{kernel}(?:_part_\d+)?\).*?^\}}", once, flags=re.M | re.S)
         assert any("MADE(wire_kernels_pulls)(w" in text for text in own)
+        assert any("MADE(wire_k_shared_0_0)(arg, res, w);" in text for text in own)
 
 
 def test_only_columns_and_calls_are_compiled_for_each_width(wire: Path) -> None:
