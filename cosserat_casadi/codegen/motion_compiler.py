@@ -236,12 +236,11 @@ class MotionCompiler:
 def _saves(model: Model, name: str, foreseen: float) -> bool:
     """Whether compiling a function takes less than it saves of the time foreseen for the virtual machine, s."""
     at_least, each = TO_COMPILE[name]
-    instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
     saved = SAVED[name]
     if name == RESIDUAL and can_be_centred(model):
         # No program runs in its place: the steps have a residual of their own.
         saved += (1.0 - saved) * SAVED[PROGRAM]
-    return saved * foreseen > at_least + each * instructions
+    return saved * foreseen > at_least + each * _instructions(model)
 
 
 def _program_of(model: Model, *, write: bool) -> ScalarProgram | None:
@@ -273,8 +272,13 @@ def _interpreted_time(model: Model, name: str, work: StepStatistics) -> float:
     calls = STAGES * work.iterations
     if name == JACOBIANS:
         calls = AS_MANY_RESIDUALS * work.jacobians
-    instructions: int = model.inverse_dynamics_in_scalars.n_instructions()
-    return calls * instructions * INSTRUCTION
+    return calls * _instructions(model) * INSTRUCTION
+
+
+def _instructions(model: Model) -> int:
+    """Number of instructions of inverse dynamics in scalars; steps in Python ask over and over."""
+    count: int = kept_with(model, "_instructions", lambda: model.inverse_dynamics_in_scalars.n_instructions())
+    return count
 
 
 def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> RepeatedCall | None:
