@@ -190,13 +190,7 @@ def check_file(file: Path | None, option: str, suffix: str) -> None:
 def check_inputs_stay(
     outputs: Mapping[str, Path | None], scene: Path, settings: list[str] | None, *others: Path | None
 ) -> None:
-    """Refuse to write over a file that the command reads, or two results into one file.
-
-    Args:
-        outputs: files to be written, by the option that asks for each; None where none is asked for.
-        scene: file of the scene, whose tables are read too.
-        settings: changes of the scene, which may name other tables.
-        others: files that the command reads beside the scene.
+    """Refuse to write over a file that the command reads, or two results into one; arguments as of :func:`check_files`.
 
     Raises:
         SceneError: with a problem for each such file.
