@@ -104,7 +104,7 @@ def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
 
 
 def moved_along(scene: Scene, rod: str) -> set[str]:
-    """Names of the rods that a strain of a rod moves: itself, those that start on it, and what joints tie to these."""
+    """Names of the rods that a strain of a rod moves: this rod, rods that start on it, rods that joints tie to them."""
     moved: set[tuple[str, str]] = {("rod", rod)}
     ties = []
     for joint in scene.joints:

@@ -1,7 +1,7 @@
 """Exact contact beside cables that may go slack and stops of joints: one kind of event at a time, all of them kept.
 
 A cable that becomes taut, or a joint that meets its stop, takes its impact as if nothing touched; what touches then
-takes another one, in which taut cables and held joints stay so: obstacles push, and jerks lift bodies off them.
+takes another one, in which taut cables and held joints stay so: obstacles push, and a section jerked off leaves.
 Where both are plastic that is the impact of all at once, as a projection of velocities on a part of a plane follows
 one on the plane. A stop that a blow of an obstacle would make pull is left.
 """
