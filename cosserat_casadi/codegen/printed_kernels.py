@@ -87,7 +87,7 @@ LEFT_OUT = (
     '"no-tree-dse", "no-dse", "no-tree-dominator-opts", "no-tree-pta", \\\n'
     '    "no-tree-sink", "no-tree-sra", "no-tree-slsr", "no-tree-bit-ccp", "no-tree-ch"'
 )
-"""What GCC need not look for in straight-line code: it finds nothing there, and takes a tenth of its time for it."""
+"""Passes of GCC that find nothing in straight-line code, and take a tenth of its time."""
 
 
 @dataclass(frozen=True)
