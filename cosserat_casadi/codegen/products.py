@@ -2,8 +2,7 @@
 
 Some rows of a column stay in registers until all their products are summed, four in each register where the processor
 can. On x86 a routine is made twice, as functions in fours are (templates/fours.c.in): the wider one is taken where the
-processor has it. GCC takes longer for the other one, and makes it plainly. The wider one begins at a line of the cache:
-a solve took an eighth longer at one of four places of its loops.
+processor has it. It begins at a line of the cache: a solve took an eighth longer at one of four places of its loops.
 """
 
 from __future__ import annotations
@@ -22,14 +21,9 @@ TOGETHER_IN_REGISTER = 4
 
 TWICE = """#if defined(__GNUC__) && defined(__x86_64__) && !defined(__AVX2__) && !defined(FOURS_ONCE) && \\
     !defined(FOURS_ONE_BY_ONE)
-#if defined(__clang__)
-#define PLAINLY
-#else
-#define PLAINLY __attribute__((optimize("O1")))
-#endif
 #define PRODUCT(name, given, passed)                                                                    \\
   __attribute__((target("avx2"), aligned(64))) static void name##_wide given { name##_sums passed; }                 \\
-  PLAINLY static void name given {                                                                      \\
+  static void name given {                                                                              \\
     if (__builtin_cpu_supports("avx2")) name##_wide passed;                                             \\
     else name##_sums passed;                                                                            \\
   }
