@@ -18,12 +18,12 @@ from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sources
 from cosserat_casadi.codegen.kernels import differentiable, kernels
-from cosserat_casadi.codegen.lanes import InLanes, in_lanes
+from cosserat_casadi.codegen.lanes import in_lanes
 from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.manifest import manifest, with_manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
-from cosserat_casadi.codegen.names import Names, library_names, model_names, scene_names
+from cosserat_casadi.codegen.names import library_names, model_names, scene_names
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
 from cosserat_casadi.codegen.tubes.sources import check_tubes, tube_files
 from cosserat_casadi.codegen.turn_budget import ALWAYS, costs_of, fitting
@@ -69,9 +69,9 @@ def export(
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
             and their linearisation.
         stability: whether it holds the function that says whether an equilibrium is stable.
-        batches: whether its function for many load cases solves them four at a time in the vectors of the processor; a
-            compiler takes about twice as long. In exact contact: whether there is that function, which solves one
-            after the other.
+        batches: whether its function for many load cases solves them four at a time in the vectors of the processor,
+            where the equations have a form for that; a compiler takes about twice as long. Others are solved one after
+            the other; in exact contact there is that function with it alone.
         cuda: whether the folder holds the source of batches on a GPU too. Experimental: it was never run on one.
         load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
             arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
@@ -104,7 +104,7 @@ def export(
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
     if isinstance(model, TubeFunctions):
-        files = tube_files(model, chosen, error_estimate)
+        files = tube_files(model, chosen, error_estimate, batches=batches)
     elif model.scene.touches_exactly:
         names = scene_names(chosen, without_contacts(model.scene))
         arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, stability=stability)
@@ -177,7 +177,7 @@ def folder_files(
     """Text of every file that :func:`export` writes of a model; the manifest, which lists the others, is last.
 
     Raises:
-        ExportError: the scene has no motion, or its load cases cannot be solved side by side, and that is asked for.
+        ExportError: the scene has no motion, and that is asked for.
     """
     refuse_obstacles(model.scene, "exported C")
     model = model.in_motion if dynamics else model
@@ -186,13 +186,13 @@ def folder_files(
     motion = motion_in_c(model, names) if dynamics else None
     functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names, on_device=cuda)
-    rows = _side_by_side(model, names) if batches else None
+    rows = in_lanes(model, names) if batches else None
     beside = {"scene.toml": scene_text(with_discretisation(model.scene, model.discretisation))}
     if stability:
         beside |= stability_sources(model, names)
     if derivatives:
         beside |= derivative_source(differentiable(model, names), names)
-    contents = FolderContents(generated, parts, motion, rows, beside, on_device=cuda)
+    contents = FolderContents(generated, parts, motion, rows, beside, on_device=cuda, batches=batches)
     by_hand = library_sources(model, names, contents, error_estimate, verified)
     budget = ALWAYS
     if period is not None:
@@ -201,6 +201,8 @@ def folder_files(
     described = manifest(model, names, functions, error_estimate, verified)
     if motion is not None:
         described["motion"] = motion_entry(model)
+    if batches:
+        described["batches"] = contents.batch_order
     described["turn"] = budget.entry
     return with_manifest({**by_hand, **generated, **beside}, described)
 
@@ -220,29 +222,3 @@ def check_period(scene: Scene, period: float | None) -> None:
         problem = "is not known for a scene in exact contact, whose turns try arrangements of contacts"
         problems.append(Problem("--period", problem, "leave it out, and give NAME_track a budget"))
     refuse(problems, ExportError)
-
-
-def check_batches(model: Model) -> None:
-    """Refuse batches side by side of a scene whose equations have no form for that, whatever its discretisation.
-
-    Args:
-        model: the scene on any discretisation, a small one for a quick answer.
-
-    Raises:
-        ExportError: it is an assembly, or a load has no such form.
-    """
-    _side_by_side(model, model_names("any", model))
-
-
-def _side_by_side(model: Model, names: Names) -> InLanes:
-    """Sources that solve load cases side by side.
-
-    Raises:
-        ExportError: the equations have no form for that, those of an assembly or of one rod with too many modes.
-    """
-    found = in_lanes(model, names)
-    if found is None:
-        problem = "the equations of this scene have no form for several load cases at once"
-        remedy = "leave it out: NAME_solve_batch solves them one after the other; one rod with fewer modes may have one"
-        raise ExportError(Problem("--batches", problem, remedy))
-    return found

@@ -71,6 +71,10 @@ COMMENT_WIDTH = 120
 PLAIN_BUILD = dict.fromkeys(("more_sources", "more_compiled", "more_headers"), "")
 """Words of the build file and the README of a folder that knows neither float nor OpenMP, and has no more sources."""
 
+SIDE_BY_SIDE = "four load cases at a time, in vectors of the processor"
+ONE_BY_ONE = "one load case after the other: these equations have no form for several at once"
+"""How a function solves many load cases, for header, README and manifest."""
+
 RANGES_OF_RODS = (
     "a tension not below zero and a length above, and by the bounds of the scene. The\n"
     "   solver looks at none: a tension below zero pushes along its path, as no cable does, and the solution is one "
@@ -139,6 +143,7 @@ class FolderContents:
         rows: the solver of batches side by side, where the folder has it.
         beside: further files by name, such as those of stability or of derivatives.
         on_device: whether it holds batches on a GPU.
+        batches: whether its function for many load cases was asked for.
     """
 
     generated: Mapping[str, str]
@@ -147,6 +152,14 @@ class FolderContents:
     rows: InLanes | None = None
     beside: Mapping[str, str] = field(default_factory=dict)
     on_device: bool = False
+    batches: bool = False
+
+    @property
+    def batch_order(self) -> str:
+        """The order in which it solves many load cases; empty where that was not asked for."""
+        if self.rows is not None:
+            return SIDE_BY_SIDE
+        return ONE_BY_ONE if self.batches else ""
 
     def verbatim(self, model: Model, names: Names) -> tuple[str, ...]:
         """Files of the folder ``c`` that the library includes."""
@@ -265,19 +278,21 @@ ROWS_OF_UNKNOWNS = {
 """Words of a batch whose solutions are unknowns."""
 
 
-def _batch_words(name: str, rows: InLanes | None) -> dict[str, Any]:
-    """Words of the function for many load cases, which are solved side by side or one after the other."""
+def batch_words(name: str, order: str) -> dict[str, Any]:
+    """Words on the order in which the function for many load cases solves them, which may be empty."""
+    if not order:
+        return {"batch_workspace": f"{name}_workspace", "batch_note": "", "batches": order}
+    note = f"\n   It solves {order}."
+    return {"batch_workspace": f"{name}_batch_workspace", "batch_note": note, "batches": order, "on_cores": True}
+
+
+def _words_of_rows(name: str, rows: InLanes | None) -> dict[str, Any]:
+    """Words of the source of the function for many load cases."""
     if rows is None:
-        return {
-            **ROWS_OF_UNKNOWNS,
-            "batch_solve": "solver_solve",
-            "batch_workspace": f"{name}_workspace",
-            "batch_stack": "",
-        }
+        return {**ROWS_OF_UNKNOWNS, "batch_solve": "solver_solve", "batch_stack": ""}
     return {
         **rows.words,
         "in_lanes": True,
-        "batch_workspace": f"{name}_batch_workspace",
         "batch_stack": f", {name}_solve_batch {rows.words['lanes_stack_kb']} kB",
     }
 
@@ -290,7 +305,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     linear = dense_words(sizes) if parts is None else block_words(sizes, parts)
     in_motion = {} if motion is None else motion_words(sizes, model, names, motion)
     sizes |= error_words(model, names) | passage_words(model, names)
-    sizes |= _batch_words(names.name, contents.rows)
+    sizes |= batch_words(names.name, contents.batch_order) | _words_of_rows(names.name, contents.rows)
     functions = public_functions(model, names)
     margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import Compiled, ExportError, Model, Outcome, Scene, build, export, load
+from cosserat_casadi import Compiled, Model, Outcome, Scene, build, export, load, read_scene
 from cosserat_casadi.codegen import compiler, lanes, rows
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.names import model_names
@@ -26,8 +26,8 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.codegen.texts import resource
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS
-from tests.commands import cosserat
 from tests.conftest import ROOT
+from tests.contact.test_verbs_in_contact import touching
 from tests.equilibrium.test_strain_limits import on_grid, pulled
 from tests.scenes import push, rod, scene
 
@@ -181,26 +181,17 @@ def test_a_compiler_without_vectors_solves_row_after_row(planar: Libraries, monk
     rows._library.cache_clear()
 
 
+def strip() -> Scene:
+    return scene(push(), strain="planar", accuracy=SMALL)
+
+
+def hand() -> Scene:
+    return scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2})
+
+
 def test_assemblies_have_no_form_for_lanes() -> None:
-    model = build(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}))
+    model = build(hand())
     assert lanes.in_lanes(model, model_names("sweep", model)) is None
-
-
-@pytest.mark.slow
-def test_an_assembly_with_batches_is_refused(tmp_path: Path) -> None:
-    model = build(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}))
-    with pytest.raises(ExportError, match="have no form for several load cases at once"):
-        export(model, tmp_path / "hand", batches=True)
-    assert not (tmp_path / "hand").exists()
-
-
-@pytest.mark.slow
-def test_the_command_refuses_batches_of_an_assembly(tmp_path: Path) -> None:
-    example = ROOT / "examples" / "branching_rod.toml"
-    done = cosserat("export", str(example), "--batches", "--output", "rod", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "have no form for several load cases" in " ".join(done.stderr.split())
-    assert not (tmp_path / "rod").exists()
 
 
 def exported(asked: Scene, folder: Path) -> Compiled:
@@ -228,7 +219,39 @@ def test_exported_batches_are_single_solves(tmp_path: Path) -> None:
     assert library.solve_batch(np.zeros((0, 3))) == []
     # What is the library's own is seen by no linker.
     assert hasattr(library._handle, "strip_batch_workspace_size")
+    assert library.manifest["batches"].startswith("four load cases at a time")
     assert not any(hasattr(library._handle, f"{prefix}gather_lanes") for prefix in ("", "strip_"))
+
+
+def branching() -> Scene:
+    example = read_scene(ROOT / "examples" / "branching_rod.toml")
+    return on_grid(example.model_copy(update={"inputs": ("weight.acceleration",)}), modes=1, nodes=2)
+
+
+@pytest.mark.parametrize(
+    ("asked", "size"),
+    [
+        pytest.param(hand(), 0.3, id="hand"),
+        pytest.param(branching(), 10.0, id="branching", marks=pytest.mark.slow),
+        pytest.param(touching("rods on rods"), 0.1, id="touching", marks=pytest.mark.slow),
+        pytest.param(touching("these with friction"), 0.1, id="rubbing", marks=pytest.mark.slow),
+    ],
+)
+def test_batches_without_a_form_for_lanes_are_single_solves(asked: Scene, size: float, tmp_path: Path) -> None:
+    """Cases that fail leave others alone; header, README and manifest say that cases are solved one by one."""
+    library = exported(asked, tmp_path / "robot")
+    inputs = library.defaults + np.random.default_rng(3).uniform(-size, size, (12, library.defaults.size))
+    inputs[4] = np.nan
+    inputs[7] = 1e200
+    assert_batch_is_single_solves(library, inputs)
+    outcomes = [one.outcome for one in library.solve_batch(inputs)]
+    assert outcomes[4] is Outcome.NOT_FINITE
+    assert outcomes[7] is not Outcome.CONVERGED
+    assert outcomes.count(Outcome.CONVERGED) == 10
+    told = library.manifest["batches"]
+    assert told.startswith("one load case after the other")
+    assert library._handle.robot_batch_workspace_size() == library._handle.robot_workspace_size()
+    assert all(told in (tmp_path / "robot" / file).read_text() for file in ("robot.h", "README.md"))
 
 
 def test_exported_batches_take_parameters(tmp_path: Path) -> None:
@@ -239,24 +262,28 @@ def test_exported_batches_take_parameters(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "flags",
-    [pytest.param(("-fopenmp",), marks=pytest.mark.slow), ("-DLANES=0",), ("-DSTRIP_SINGLE",)],
-    ids=["threads", "none", "float"],
+    ("asked", "size", "flags"),
+    [
+        pytest.param(strip(), 2.0, ("-fopenmp",), id="threads", marks=pytest.mark.slow),
+        pytest.param(strip(), 2.0, ("-DLANES=0",), id="none"),
+        pytest.param(strip(), 2.0, ("-DSTRIP_SINGLE",), id="float"),
+        pytest.param(hand(), 0.3, ("-fopenmp",), id="threads, one by one", marks=pytest.mark.slow),
+        pytest.param(hand(), 0.3, ("-DSTRIP_SINGLE",), id="float, one by one", marks=pytest.mark.slow),
+    ],
 )
-def test_batches_of_other_builds_are_those(flags: tuple[str, ...], tmp_path: Path) -> None:
+def test_batches_of_other_builds_are_those(asked: Scene, size: float, flags: tuple[str, ...], tmp_path: Path) -> None:
     """On four threads, without vectors, and in float, without a word from the compiler."""
-    asked = scene(push(), strain="planar", accuracy=SMALL)
     library = exported(asked, tmp_path / "strip")
     harness = (HARNESS / "batch.c").read_text().replace("@{name}_workspace", "@{name}_batch_workspace")
     (tmp_path / "batch.c").write_text(harness.replace("@{name}", "strip").replace("@{MACRO}", "STRIP"))
     folder = tmp_path / "strip"
-    sources = [tmp_path / "batch.c", *(folder / f"strip{part}.c" for part in ("", "_kernels", "_lanes"))]
+    sources = [tmp_path / "batch.c", *(file for file in folder.glob("strip*.c") if "demo" not in file.name)]
     program = tmp_path / "batch"
     options = ["-O0", "-std=c99", "-Wall", "-Wextra", "-Wno-unused", "-Wno-unused-parameter", *flags]
     command = [compiler.find_compiler(), *options, f"-I{folder}", *map(str, sources), "-o", str(program), "-lm"]
     made = subprocess.run(command, capture_output=True, text=True, check=False)
     assert made.returncode == 0, made.stderr
-    inputs = pushes(600, 2.0)
+    inputs = pushes(600, size)
     text = f"{len(inputs)}\n" + "\n".join(" ".join(map(repr, row)) for row in inputs.tolist())
     told = subprocess.run([str(program)], input=text, capture_output=True, text=True, check=True, timeout=100)
     found = np.array([line.split() for line in told.stdout.splitlines()], dtype=float)
@@ -269,7 +296,8 @@ def test_batches_of_other_builds_are_those(flags: tuple[str, ...], tmp_path: Pat
 def test_a_folder_without_batches_holds_nothing_of_them(tmp_path: Path) -> None:
     folder = export(build(scene(push(), strain="planar", accuracy=SMALL)), tmp_path / "strip", estimate_errors=False)
     assert not [file for file in folder.iterdir() if "lanes" in file.name]
-    assert "lanes" not in "".join(file.read_text() for file in folder.iterdir())
+    text = "".join(file.read_text() for file in folder.iterdir())
+    assert "lanes" not in text and "batch_workspace" not in text and '"batches"' not in text
 
 
 @pytest.mark.parametrize(

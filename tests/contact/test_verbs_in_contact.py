@@ -244,9 +244,6 @@ VERBS: dict[str, Verb] = {
 QUICK = ("`solve`", "stability", "`export --mjcf`", "`embedded`", "`relaxed_contact`, `embedded`")
 """Rows that are tried with the quick tests where they work."""
 
-REFUSED_LATE = ("`export --batches`",)
-"""Rows in which a refusal comes after the work; others refuse at once."""
-
 
 def table() -> tuple[list[str], dict[str, list[str]]]:
     """Headings of the columns of the table, and its rows by verb."""
@@ -261,7 +258,7 @@ def cells() -> Iterator[Any]:
     contacts, rows = table()
     for verb, row in rows.items():
         for contact, said in zip(contacts, row, strict=True):
-            quick = verb in QUICK or (said.startswith("no: ") and verb not in REFUSED_LATE)
+            quick = verb in QUICK or said.startswith("no: ")
             name = f"{verb} {contact}".replace("`", "")
             yield pytest.param(verb, contact, said, marks=() if quick else pytest.mark.slow, id=name)
 

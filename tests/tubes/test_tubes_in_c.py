@@ -59,7 +59,8 @@ class Robot:
     def __init__(self, scene: Scene, folder: Path) -> None:
         self.scene = scene
         self.solution = solve(scene)
-        self.folder = export(self.solution.model, folder, "robot", error_estimate=self.solution.error_estimate)
+        error = self.solution.error_estimate
+        self.folder = export(self.solution.model, folder, "robot", error_estimate=error, batches=True)
         compiled = load(folder)
         assert isinstance(compiled, CompiledTubes)
         self.compiled = compiled
@@ -162,6 +163,8 @@ def test_batch_vs_single_solves(robot: Robot) -> None:
     singles = [compiled.solve(inputs) for inputs in rows]
     batch = compiled.solve_batch(rows)
     assert sum(one.converged for one in batch) == 5
+    assert batch[2].outcome is Outcome.OUT_OF_RANGE
+    assert compiled.manifest["batches"] in (robot.folder / "robot.h").read_text()
     for one, single in zip(batch, singles, strict=True):
         assert one.outcome is single.outcome
         assert one.determinant == single.determinant
@@ -418,8 +421,8 @@ def test_the_demo_prints_what_python_finds(robot: Robot, tmp_path: Path) -> None
 def test_refusals(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no name for a C library"):
         export(robot.solution.model, tmp_path / "folder", "a b")
-    with pytest.raises(ExportError, match=r"--batches: is for rods(?s:.*)--period: is for rods"):
-        export(robot.solution.model, tmp_path / "folder", batches=True, period=1e-3)
+    with pytest.raises(ExportError, match=r"--derivatives: is for rods(?s:.*)--period: is for rods"):
+        export(robot.solution.model, tmp_path / "folder", derivatives=True, batches=True, period=1e-3)
     (tmp_path / "manifest.json").write_text('{"name": "robot", "inputs": [], "files": [], "tubes": [3], "unknowns": 2}')
     with pytest.raises(ExportError, match="is not the manifest of an exported folder"):
         load(tmp_path)
@@ -437,7 +440,7 @@ def test_on_the_command_line(tmp_path: Path) -> None:
     assert "--dynamics: is for rods" in refused.stderr
     assert "--stability: is for rods" in refused.stderr
     assert not folder.exists()
-    written = cosserat("export", "robot.toml", "--output", "robot", cwd=tmp_path)
+    written = cosserat("export", "robot.toml", "--output", "robot", "--batches", cwd=tmp_path)
     assert written.returncode == 0, written.stderr
     assert "4 steps a piece" in written.stdout
     described = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))

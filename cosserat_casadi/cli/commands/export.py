@@ -23,7 +23,7 @@ from cosserat_casadi.cli.reports.model import print_choice, print_export, print_
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
-from cosserat_casadi.codegen.export import check_batches, check_export, check_period
+from cosserat_casadi.codegen.export import check_export, check_period
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
@@ -160,7 +160,7 @@ def export(
         bool,
         typer.Option(
             "--batches",
-            help="With many load cases, solved four at a time, in vectors of the processor; in contact one by one.",
+            help="With many load cases, solved four at a time in vectors of the processor where that is possible.",
         ),
     ] = False,
     cuda: Annotated[
@@ -219,7 +219,7 @@ def export(
     if read.tubes:
         check_tubes({**asked.source_options, "--range": bool(ranges), **dict.fromkeys(asked.files, True)})
         assert output is not None
-        _export_tubes(read, output, name)
+        _export_tubes(read, output, name, batches=batches)
         return
     if mjcf is not None:
         _export_mjcf(read, mjcf, links)
@@ -272,8 +272,6 @@ def _checked_scene(scene: Scene, asked: Asked) -> Scene:
     scene_names(asked.name, scene)
     if asked.parts["stability"]:
         check_stability(build(scene, discretise(scene, 1, 2)))
-    if asked.parts["batches"] and not scene.touches_exactly:
-        check_batches(build(scene, discretise(scene, 1, 2)))
     if asked.page is not None:
         check_contact(scene, {})
         # Last: a scene that has no page has none with a compiler either.
@@ -336,10 +334,11 @@ def _check_solved(solution: Solution | TubeSolution) -> None:
         raise typer.Exit(NOT_FOUND)
 
 
-def _export_tubes(scene: Scene, output: Path, name: str) -> None:
+def _export_tubes(scene: Scene, output: Path, name: str, *, batches: bool) -> None:
     """Write concentric tubes with the steps that the scene's own inputs need."""
     scene_names(name, scene)
     solution = solve_tubes(scene)
     _check_solved(solution)
-    export_model(build(scene, solution.model.steps), output, name, error_estimate=solution.error_estimate)
+    model = build(scene, solution.model.steps)
+    export_model(model, output, name, error_estimate=solution.error_estimate, batches=batches)
     print_tubes_export(Console(), solution, output)

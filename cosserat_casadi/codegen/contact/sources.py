@@ -19,9 +19,11 @@ from cosserat_casadi.codegen.contact.kernels import (
 from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sources
 from cosserat_casadi.codegen.library import (
+    ONE_BY_ONE,
     PLAIN_BUILD,
     SECOND_VARIATION,
     accuracy_words,
+    batch_words,
     comment,
     input_words,
     rendered,
@@ -120,11 +122,13 @@ def contact_files(
         kernels += ArrangementKernels(own, names.kernel(f"richer_{number}"), RICHER_WORDS).all()
     generated = kernel_sources(kernels, names)
     tables = Tables(chosen, names.name)
+    described = {**_manifest(model, chosen, names), **accuracy_entries(chosen.scene, error_estimate, verified)}
     words = _words(chosen, names, tables, generated) | contact_parameter_words(model, names)
     if chosen.judges_stability:
         words |= _stability_words(model, tables)
     if batches:
         words |= _batch_words(model, names)
+        described["batches"] = ONE_BY_ONE
     words["derivatives"] = derivatives
     words |= accuracy_words(chosen.scene, error_estimate, verified)
     further = (*(ERROR_FILES if chosen.richer else ()), *(STABILITY_FILES if chosen.judges_stability else ()))
@@ -140,8 +144,7 @@ def contact_files(
             for function in ArrangementKernels(own, names.differentiable(str(number))).differentiable()
         ]
         files |= derivative_source(functions, names)
-    accuracy = accuracy_entries(chosen.scene, error_estimate, verified)
-    return with_manifest(files, {**_manifest(model, chosen, names), **accuracy})
+    return with_manifest(files, described)
 
 
 def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, str]) -> dict[str, Any]:
@@ -206,7 +209,7 @@ def _batch_words(model: Model, names: Names) -> dict[str, Any]:
     if model.parameters.size:
         given = "inputs + (size_t)i * OWN_INPUTS, parameters + (size_t)i * PARAMETERS"
     return {
-        **dict.fromkeys(("batches", "on_cores"), True),
+        **batch_words(names.name, ONE_BY_ONE),
         "parameters_in_source": ", const real *parameters" if model.parameters.size else "",
         "solutions": "contact_state *states",
         "solution_info": "contact_info",

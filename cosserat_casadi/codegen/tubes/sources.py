@@ -11,9 +11,11 @@ import numpy as np
 from cosserat_casadi.codegen.block_sources import dense_words, numbers
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import (
+    ONE_BY_ONE,
     PLAIN_BUILD,
     ROWS_OF_UNKNOWNS,
     SHARED,
+    batch_words,
     input_words,
     rendered,
     solver_constants,
@@ -68,22 +70,26 @@ def check_tubes(asked: Mapping[str, bool]) -> None:
     """Refuse what C does not have of concentric tubes.
 
     Args:
-        asked: whether what an option stands for is asked for, by the option.
+        asked: whether what an option stands for is asked for, by the option; batches are not refused.
 
     Raises:
         ExportError: with every option.
     """
     problem = "is for rods, and the scene has concentric tubes"
-    refuse([Problem(option, problem, "leave it out") for option, wanted in asked.items() if wanted], ExportError)
+    lost = [option for option, wanted in asked.items() if wanted and option != "--batches"]
+    refuse([Problem(option, problem, "leave it out") for option in lost], ExportError)
 
 
-def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) -> dict[str, str]:
+def tube_files(
+    model: TubeFunctions, name: str, error_estimate: float | None, *, batches: bool = False
+) -> dict[str, str]:
     """Text of every file of a folder by name; the manifest, which lists the others, is last.
 
     Args:
         model: the robot with its steps.
         name: the library.
         error_estimate: of the tips at the scene's own inputs, for manifest and README; None where it is not known.
+        batches: whether its function for many load cases was asked for.
 
     Raises:
         ExportError: the name is none for a library, or two inputs would have one name in C.
@@ -91,13 +97,14 @@ def tube_files(model: TubeFunctions, name: str, error_estimate: float | None) ->
     names = scene_names(name, model.scene)
     kernels = TubeKernels(model, f"{name}_k").all()
     generated = kernel_sources(kernels, names)
-    words = _words(model, names, generated, error_estimate)
+    order = ONE_BY_ONE if batches else ""
+    words = _words(model, names, generated, error_estimate) | batch_words(name, order)
     files = {
         **rendered(words, VERBATIM),
         **generated,
         "scene.toml": scene_text(model.robot.scene),
     }
-    return with_manifest(files, _manifest(model, names, error_estimate))
+    return with_manifest(files, _manifest(model, names, error_estimate) | ({"batches": order} if order else {}))
 
 
 def _words(
@@ -131,7 +138,6 @@ def _words(
         "tells_errors": True,
         "solves_tangent": True,
         "first": 1.0,
-        "batch_workspace": f"{names.name}_workspace",
         "pose_owners": "the tip of each tube",
         "one_sided": ONE_SIDED,
         "turn_jacobians": 3,
