@@ -105,12 +105,14 @@ class MotionCompiler:
         last: the work of the motion before; None before the first.
         asked: for each function the model that it was looked for, and its machine code, None where there was none.
         saved_by_steps: time that steps in C would have saved of the first motion, s.
+        steps_fail: whether a compiler has failed on the steps, which every step of Python may ask for.
     """
 
     always: bool = False
     last: StepStatistics | None = None
     asked: dict[str, tuple[Model, RepeatedCall | None]] = field(default_factory=dict)
     saved_by_steps: float = 0.0
+    steps_fail: bool = False
 
     @cached_property
     def _compiler(self) -> str:
@@ -181,11 +183,13 @@ class MotionCompiler:
         return self._stepper(foreseen) if foreseen > TO_COMPILE_STEPS else None
 
     def _stepper(self, foreseen: float) -> Stepper | None:
-        """The steps in machine code; None where they are not at hand and do not pay, or where there is no compiler.
+        """The steps in machine code; None where they are not at hand and do not pay, or where no compiler makes them.
 
         Args:
             foreseen: time that they save of the rest of the search, s.
         """
+        if self.steps_fail:
+            return None
         try:
             if not (self.always or steps_are_at_hand() or self._steps_pay(foreseen)):
                 return None
@@ -193,6 +197,7 @@ class MotionCompiler:
         except ExportError:
             if self.always:
                 raise
+            self.steps_fail = True
             return None
         return CompiledSteps
 

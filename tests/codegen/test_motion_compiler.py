@@ -290,6 +290,19 @@ def test_functions_are_compiled_where_the_last_motion_tells_that_it_pays() -> No
         assert (is_compiled(compiler, RESIDUAL), is_compiled(compiler, JACOBIANS)) == expected
 
 
+def test_a_compiler_that_fails_is_run_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Every step of Python asks for steps in C: a compiler that fails would be run in each of them."""
+    compiler, runs = tmp_path / "compiler", tmp_path / "runs"
+    compiler.write_text(f"#!/bin/sh\necho run >> {runs}\nexit 1\n")
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
+    steps_library.cache_clear()
+    kernels = MotionCompiler().kernels(moving(arm()))
+    assert kernels.stepper_after is not None
+    assert [kernels.stepper_after(50000, share) for share in (0.2, 0.3, 0.4)] == [None, None, None]
+    assert runs.read_text().split() == ["run"]
+
+
 @pytest.mark.parametrize("in_one_process", [True, False])
 def test_functions_are_compiled_where_motions_of_a_model_have_taken_long(in_one_process: bool) -> None:
     model = moving(arm())
