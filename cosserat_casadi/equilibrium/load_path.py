@@ -6,6 +6,7 @@ See docs/theory.md, section 9; section 8 for how constraints yield on the way.
 from __future__ import annotations
 
 from dataclasses import replace
+from math import sqrt
 
 import casadi as ca
 import numpy as np
@@ -13,7 +14,6 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_layers import thinnest
-from cosserat_casadi.model.contact_pairs import thinnest_pair
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import without_noise
 from cosserat_casadi.numerics.broyden import Jacobian, solved
@@ -23,21 +23,14 @@ FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
-def continuation_limits(model: SystemFunctions, *, watched: bool = False) -> ContinuationSettings:
-    """Limits of a continuation: in no step does a rod bend so much that it may pass through a smooth obstacle.
+def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
+    """Limits of a continuation: beside smooth obstacles its steps are so short that sections go nearly straight.
 
-    A step as long as one radian of bending moves a section by half the length of the rod at most.
-
-    Args:
-        model: what to solve.
-        watched: whether steps that would take a rod through a rod are refused.
+    Steps are watched as if sections went straight from start to end. Where a rod turns by θ rad in a step, a section
+    is off its chord by θ²/8 of the length at most: that is to be half the thickness of the thinnest obstacle.
     """
     limits = ContinuationSettings()
-    pairs = model.discrete.pairs if isinstance(model, Model) and not watched else ()
-    through = 2 * thinnest(model.scene)
-    if pairs:
-        through = min(through, 2 * thinnest_pair(pairs, model.scene))
-    return replace(limits, longest=min(limits.longest, through))
+    return replace(limits, longest=min(limits.longest, 2 * sqrt(thinnest(model.scene))))
 
 
 def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> Path:

@@ -127,7 +127,7 @@ def solve(
         SceneError, SolveError, ValueError: likewise.
     """
     parametric, model = model, model.at(parameters)
-    limits = settings or continuation_limits(model, watched=True)
+    limits = settings or continuation_limits(model)
     if model.scene.touches_exactly:
         values = _values_in_contact(model, values)
         solution = _in_contact(model, values, start, method, limits, progress)
@@ -287,7 +287,7 @@ def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool | None:
     if not barriers.any or not barriers.are_between(unloaded, x, (inputs, inputs)):
         return False
     path = past_no_obstacle(backwards(load_path(model, inputs), x), model, (inputs, inputs))
-    released = follow(path, continuation_limits(model, watched=True))
+    released = follow(path, continuation_limits(model))
     if released.outcome is Outcome.CONVERGED:
         return not are_one(released.x, unloaded)
     led = solve(model, inputs, estimate_error=False)

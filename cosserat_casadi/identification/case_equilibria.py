@@ -188,7 +188,7 @@ class Equilibria:
         given = p if model.parameters.size else None
         path = load_path(model, inputs, given)
         path = past_no_obstacle(path, model, (inputs, inputs), None if given is None else (given, given))
-        end = follow(path, continuation_limits(model, watched=True))
+        end = follow(path, continuation_limits(model))
         return end.x, end.outcome
 
     def _inverses(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
@@ -269,7 +269,7 @@ class Equilibria:
         reached &= ~self._barred(near, x, inputs, p, reached)
         astray = np.flatnonzero(~reached & far)
         for case in astray:
-            end = follow(self._path(near, int(case), inputs[case], p), continuation_limits(self.model, watched=True))
+            end = follow(self._path(near, int(case), inputs[case], p), continuation_limits(self.model))
             if end.outcome is Outcome.CONVERGED:
                 x[case] = end.x
                 reached[case] = True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import ceil, inf, sqrt
+from math import ceil, sqrt
 from typing import Any
 
 import casadi as ca
@@ -192,8 +192,3 @@ def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
         raise SceneError(Problem("rod_contacts", problem, "give it more width, or leave thin and long rods out"))
     intervals = len(rod.grid.left_ends)
     return ceil(wanted + intervals)
-
-
-def thinnest_pair(pairs: tuple[ContactPair, ...], scene: scenes.Scene) -> float:
-    """Distance of centres that touch, of the thinnest pair, over the length of the shortest rod; else infinite."""
-    return min((pair.thickness for pair in pairs), default=inf) / min((rod.length for rod in scene.rods), default=1.0)

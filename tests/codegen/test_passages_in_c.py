@@ -187,6 +187,15 @@ def test_no_solve_leads_through_a_wire(barred: Exported) -> None:
         assert 0.0 < found.load_factor < 1.0
 
 
+def test_a_rod_that_leaves_a_thin_wire_takes_few_steps(barred: Exported) -> None:
+    """Steps are a hundred times as long as the wire is thick: C, which takes 400 at most, reaches large loads too."""
+    away = np.array([0.0, 0.0, 2.0])
+    found = barred.compiled.solve(away)
+    assert found.converged
+    assert found.iterations < 60
+    assert_allclose(found.x, barred.solve(away).x, rtol=0, atol=1e-9)
+
+
 def turn(made: Exported, word: str, inputs: FloatArray, x: FloatArray, memory: Any, *derivatives: None) -> Outcome:
     """A call of track or of recover, which moves x and memory."""
     work = ctypes.create_string_buffer(made.handle[f"{made.name}_workspace_size"]())
@@ -205,7 +214,8 @@ def test_no_turn_leads_through_a_wire(barred: Exported) -> None:
     assert turn(barred, "track", BEHIND, x, memory, None, None) is Outcome.LOST_TRACK
     assert_allclose(x, before, rtol=0, atol=0)
     ends = [turn(barred, "recover", BEHIND, x, memory) for _ in range(20)]
-    assert ends[-1] is Outcome.LOAD_STALLED
+    # Every other turn begins with a long step, whose halvings take up its budget.
+    assert set(ends[-2:]) == {Outcome.LOAD_STALLED, Outcome.LOST_TRACK}
     assert Outcome.CONVERGED not in ends
     assert height(barred, x, BEHIND) > -0.15
 

@@ -36,7 +36,7 @@ from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.control import embedded, motion_stage
 from cosserat_casadi.equilibrium.contact.passing_through import LookedAt
-from cosserat_casadi.equilibrium.load_path import input_path
+from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
 from cosserat_casadi.equilibrium.solve import is_behind
 from cosserat_casadi.errors import SceneError
@@ -795,6 +795,12 @@ base = { position = [0.6, -0.5, -0.1], tangent = [0, 1, 0] }
 rods = ["rod", "other"]
 width = 1e-3
 """
+
+
+def test_sections_go_straight_in_a_step_but_for_half_a_thickness() -> None:
+    """The sagitta of the arc of a rod of length 1 m that turns about its base by the angle of the longest step."""
+    angle = continuation_limits(build(parse_scene(ROD + PUSH + THIN))).longest
+    assert_allclose(1.0 - np.cos(angle / 2), 1e-3, rtol=1e-3, atol=0)
 
 
 THICK = """
