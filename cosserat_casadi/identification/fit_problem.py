@@ -371,8 +371,10 @@ def far_positions(scene: scenes.Scene, entries: Sequence[tuple[int, int, float]]
         entries: number of the measurement, number of its entry, and the measured number.
     """
     length = sum(rod.length for rod in scene.rods) + sum(tube.length for tube in scene.tubes)
-    bases = [np.abs(rod.base.position).max() for rod in scene.rods]
-    reach = FAR * (length + max(bases, default=0.0))
+    places = [rod.base.position for rod in scene.rods]
+    for joint in scene.joints:
+        places += [joint.position, *(place.position for place in joint.places)]
+    reach = FAR * (length + max((np.abs(place).max() for place in places), default=0.0))
     for number, measurement in enumerate(scene.measurements):
         coordinates = QUANTITIES[measurement.quantity].coordinates
         distances = [abs(value) for own, entry, value in entries if own == number and entry < coordinates]

@@ -12,8 +12,9 @@ from numpy.testing import assert_allclose
 from scipy.optimize import least_squares
 from scipy.stats import chi2
 
-from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi import Model, SceneError, build, parse_scene, scene_from_dict, solve
 from cosserat_casadi.estimation import Estimate, estimate, stacking
+from cosserat_casadi.identification.fit_problem import far_positions
 from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.model.operations import operations
 from cosserat_casadi.results.presentation import csv_of
@@ -140,6 +141,41 @@ def test_positions_in_millimetres_are_told() -> None:
     assert not any("mm" in warning for warning in estimate(model, data).warnings)
     in_millimetres = {"shapes": {name: 1e3 * column for name, column in data["shapes"].items()}}
     assert any("are the columns in mm?" in warning for warning in estimate(model, in_millimetres).warnings)
+
+
+ON_A_FAR_ARM = """
+schema = 1
+bodies = [{ name = "arm" }]
+[[rods]]
+name = "rod"
+length = 0.1
+strain = "kirchhoff"
+stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
+[[joints]]
+body = "arm"
+rod = "rod"
+at = 0
+kind = "fixed"
+[[joints]]
+carries = { body = "arm" }
+kind = "revolute"
+axis = [0, 1, 0]
+position = [5, 0, 0]
+[[measurements]]
+quantity = "position"
+file = "shapes.csv"
+rod = "rod"
+at = 1.0
+columns = ["x", "y", "z"]
+sigma = 1e-3
+"""
+
+
+def test_positions_of_a_rod_on_a_far_body_are_no_millimetres() -> None:
+    """The rod has no base in the world: where its body is, a joint says."""
+    scene = parse_scene(ON_A_FAR_ARM)
+    assert not list(far_positions(scene, [(0, 0, 5.1)]))
+    assert len(list(far_positions(scene, [(0, 0, 5.1e3)]))) == 1
 
 
 def test_what_nothing_determines_is_told() -> None:
