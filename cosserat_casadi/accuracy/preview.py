@@ -252,9 +252,9 @@ class Preview:
         """Sections all along the rods of the reference, as its solution tells them."""
         positions = []
         quaternions = []
-        for name, discrete_rod in self.model.discrete.rods.items():
+        for name in self.model.discrete.rods:
             pose = self.reference.pose(SAMPLES, name)
-            positions.append(pose.position / discrete_rod.properties.length)
+            positions.append(pose.position / self.model.length(name, self.reference.inputs))
             quaternions.append(pose.quaternion)
         return WatchedNumbers(np.concatenate(positions), np.concatenate(quaternions), np.zeros(0))
 
@@ -263,9 +263,9 @@ def _shapes_of(system: System) -> WatchedNumbers:
     """Sections all along the rods of a system that has numbers for its arguments."""
     positions = []
     quaternions = []
-    for name, discrete_rod in system.discrete.rods.items():
+    for name in system.discrete.rods:
         rod_positions, rod_quaternions = section_poses(system, name, SAMPLES)
-        positions.append(rod_positions / discrete_rod.properties.length)
+        positions.append(rod_positions / system.length(name))
         quaternions.append(rod_quaternions)
     return WatchedNumbers(_numbers(ca.horzcat(*positions)).T, _numbers(ca.horzcat(*quaternions)).T, np.zeros(0))
 

@@ -370,10 +370,11 @@ def _richer_answer(solution: Solution, correction: Correction) -> Solution:
 def _shape_change(solution: Solution, corrected: Solution) -> float:
     """Largest displacement over the length, or rotation angle (rad), of all sections of all rods."""
     changes = [0.0]
-    for name, rod in solution.model.discrete.rods.items():
+    for name in solution.model.discrete.rods:
         before = solution.pose(SAMPLES, name)
         after = corrected.pose(SAMPLES, name)
-        distances = np.linalg.norm(after.position - before.position, axis=1) / rod.length
+        length = solution.model.length(name, solution.inputs)
+        distances = np.linalg.norm(after.position - before.position, axis=1) / length
         angles = rotation_angles(before.quaternion, after.quaternion)
         changes += [float(distances.max()), float(angles.max())]
     return max(changes)

@@ -61,14 +61,14 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
         X: abscissae to compare, shape (k,); by default the sections that the tolerance binds.
     """
     distances = [0.0]
-    for name, discrete_rod in first.model.discrete.rods.items():
+    for name in first.model.discrete.rods:
         sections = watched_sections(first.model.scene, name) if X is None else X
         first_pose = first.pose(sections, name)
         second_pose = second.pose(sections, name)
-        length = discrete_rod.properties.length
+        length = first.model.length(name, first.inputs)
         distances.append(_distance(first_pose, second_pose, length))
     for name in first.model.discrete.bodies:
-        length = first.model.discrete.body_frame(name).length
+        length = first.model.body_length(name, first.inputs)
         distances.append(_distance(first.body(name), second.body(name), length))
     return max(distances)
 
@@ -76,10 +76,10 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
 def cable_distance(first: Solution, second: Solution) -> float:
     """Largest difference of the lengths of cables, relative to those of their rods."""
     changes = [0.0]
-    for name, rod_length in watched_cables(first.model.discrete).items():
+    for name, rod in watched_cables(first.model.discrete).items():
         _, first_length, _ = first.model.actuator[name](first.x, first.inputs)
         _, second_length, _ = second.model.actuator[name](second.x, second.inputs)
-        changes.append(abs(float(first_length) - float(second_length)) / rod_length)
+        changes.append(abs(float(first_length) - float(second_length)) / first.model.length(rod, first.inputs))
     return max(changes)
 
 

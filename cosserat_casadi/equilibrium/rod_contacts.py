@@ -50,7 +50,7 @@ def _contacts(solution: Solution, pair: ContactPair) -> Iterator[Contact]:
     reach = touching + pair.width
     inside = np.where(pair.meets, np.maximum(reach**2 - np.sum(apart**2, axis=2), 0.0), 0.0)
     pressed = inside.max(axis=1) > 0.0
-    lengths = [model.lengths[rod] * model.length_ratio(rod, solution.inputs) for rod in pair.rods]
+    lengths = [model.length(rod, solution.inputs) for rod in pair.rods]
     weights = lengths[0] * lengths[1] / np.prod(pair.sections)
     slopes = 6 * weights * np.vectorize(coefficient)(pair.width, pair.stiffness, touching) * inside**2
     forces = np.sum(slopes[..., None] * apart, axis=1)

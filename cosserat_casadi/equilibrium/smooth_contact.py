@@ -69,7 +69,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
     if layer.at is not None:
         yield from _disk_contact(solution, layer)
         return
-    length = _length(solution, layer.rod)
+    length = solution.model.length(layer.rod, solution.inputs)
     gaps = _gaps(solution, layer, DENSE)
     width = layer.obstacle.width
     for part in runs(gaps < width):
@@ -115,12 +115,6 @@ def _gaps(solution: Solution, layer: ContactLayer, X: FloatArray) -> FloatArray:
     relative = gap_along(solution, layer.rod, layer.obstacle, X)
     # They are told relative to the length that the rod has in the scene.
     return relative * solution.model.discrete.rods[layer.rod].properties.length
-
-
-def _length(solution: Solution, rod: str) -> float:
-    """Length of a rod for the inputs of a solution, m."""
-    model = solution.model
-    return model.discrete.rods[rod].properties.length * model.length_ratio(rod, solution.inputs)
 
 
 def _crossing(values: FloatArray, before: int, after: int) -> float:

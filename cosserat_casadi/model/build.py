@@ -191,6 +191,14 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
             raise KeyError(f"{rod!r} is not a rod of this scene; its rods are {', '.join(names)}")
         return rod
 
+    def length(self, rod: str, inputs: FloatArray) -> float:
+        """Length of a rod for these inputs, m."""
+        return self.discrete.rods[rod].length * self.length_ratio(rod, inputs)
+
+    def body_length(self, body: str, inputs: FloatArray) -> float:
+        """Length of the longest rod that holds a body, for these inputs, m."""
+        return max(self.length(rod, inputs) for rod in self.discrete.unloaded.rods_of(body))
+
     def length_ratio(self, rod: str, inputs: FloatArray) -> float:
         """Length of a rod for these inputs, relative to the scene's."""
         discrete = self.at().discrete

@@ -252,8 +252,8 @@ class UnloadedScene:
         return self._bodies[name]
 
     def _new_body_frame(self, body: scenes.Body) -> FloatingFrame:
-        joints = [joint for joint in self.scene.joints if body.name in [place.body for place in joint.places]]
-        unit, length = self.units([joint.rod for joint in joints if joint.rod])
+        joints = self._joints_of(body.name)
+        unit, length = self.units(self.rods_of(body.name))
         placing = self._placing_joints(body.name) or [joint for joint in joints if joint.carries is None]
         seats = [self._seat(joint, body.name) for joint in placing]
         start = self._closed(seats, length)
@@ -263,8 +263,15 @@ class UnloadedScene:
             start = self._closed(rigid, length) or self._mean_pose(rigid, length)
         return FloatingFrame(body, unit, length, start)
 
+    def rods_of(self, body: str) -> list[str]:
+        """The rods that joints tie a body to; all rods where there is none."""
+        return [joint.rod for joint in self._joints_of(body) if joint.rod] or list(self.rods)
+
+    def _joints_of(self, body: str) -> list[scenes.Joint]:
+        return [joint for joint in self.scene.joints if body in [place.body for place in joint.places]]
+
     def units(self, rods: Sequence[str]) -> tuple[float, float]:
-        """The largest EI/ℓ, J, and length, m, of the rods of a body; of all rods where it has none."""
+        """The largest EI/ℓ, J, and length, m, of some rods; of all rods where none is named."""
         discrete = [self.rods[name] for name in rods or self.rods]
         unit = max(rod.energy_unit for rod in discrete)
         return unit, max(rod.properties.length for rod in discrete)

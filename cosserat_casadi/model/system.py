@@ -550,6 +550,17 @@ class System:
         motion = self.motions.get(rod)
         return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
 
+    def length(self, rod: str) -> Matrix | float:
+        """Length of a rod, m: the scene's, or that which an input or a parameter sets."""
+        nominal = self.discrete.rods[rod].properties.length
+        ratio = ratio_of(self.discrete, rod, self.arguments)
+        return nominal if ratio is None else nominal * ratio
+
+    def body_length(self, body: str) -> Matrix | float:
+        """Length of the longest rod that holds a body, m."""
+        lengths = [self.length(rod) for rod in self.discrete.unloaded.rods_of(body)]
+        return ca.mmax(ca.vertcat(*lengths))
+
     def _constraint_wrench(self, placed: PlacedConstraint) -> WrenchAt:
         """Wrench of a constraint on its section, in the axes of the rod's base."""
         constraint = placed.constraint

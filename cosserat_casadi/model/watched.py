@@ -104,18 +104,17 @@ def watched_owners(discrete: DiscreteScene) -> list[str]:
     """The rod, or the body, of each entry of :attr:`Watched.column`; of a cable the rod that it runs along."""
     posed = [name for name in discrete.rods for _ in watched_sections(discrete.scene, name)]
     posed += list(discrete.bodies)
-    rods = {actuator.name: actuator.rod for actuator in discrete.scene.actuators}
     of_positions = [name for name in posed for _ in range(3)]
     of_quaternions = [name for name in posed for _ in range(4)]
-    return [*of_positions, *of_quaternions, *(rods[cable] for cable in watched_cables(discrete))]
+    return [*of_positions, *of_quaternions, *watched_cables(discrete).values()]
 
 
-def watched_cables(discrete: DiscreteScene) -> dict[str, float]:
-    """Cables whose lengths must be right to the tolerance, with the lengths of their rods, m."""
+def watched_cables(discrete: DiscreteScene) -> dict[str, str]:
+    """Cables whose lengths must be right to the tolerance, with the rods that they run along."""
     cables = {}
     for actuator in discrete.scene.actuators:
         if EFFECTS[actuator.kind].drawn_as == "cable":
-            cables[actuator.name] = discrete.rods[actuator.rod].length
+            cables[actuator.name] = actuator.rod
     return cables
 
 
@@ -127,16 +126,16 @@ def watched(system: System) -> Watched:
     for name in discrete.rods:
         sections = watched_sections(discrete.scene, name)
         rod_positions, rod_quaternions = section_poses(system, name, sections)
-        positions.append(rod_positions / discrete.rods[name].length)
+        positions.append(rod_positions / system.length(name))
         quaternions.append(rod_quaternions)
     for body in discrete.bodies:
         pose = system.body(body)
-        positions.append(pose.position / discrete.body_frame(body).length)
+        positions.append(pose.position / system.body_length(body))
         quaternions.append(pose.quaternion)
     cables: list[Matrix] = [ca.MX(0, 1)]
-    for name, rod_length in watched_cables(discrete).items():
+    for name, rod in watched_cables(discrete).items():
         _, cable_length, _ = system.actuators.state(name)
-        cables.append(cable_length / rod_length)
+        cables.append(cable_length / system.length(rod))
     return Watched(ca.horzcat(*positions), ca.horzcat(*quaternions), ca.vertcat(*cables).T)
 
 

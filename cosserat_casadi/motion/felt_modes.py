@@ -90,12 +90,13 @@ def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
     They are over the length of the shortest rod that goes along: its path is watched over its own length. A twist
     moves none that goes on straight.
     """
+    inputs = model.pack()
     by_strain = {}
     for name, rod in model.discrete.rods.items():
         of_rod = sizes[model.discrete.unknowns.strain(name)]
         by_element = [of_rod[columns].reshape(rod.grid.elements, -1) for columns in rod.columns.values()]
-        shortest = min(model.discrete.rods[other].properties.length for other in moved_along(model.scene, name))
-        longer = rod.properties.length / shortest
+        shortest = min(model.length(other, inputs) for other in moved_along(model.scene, name))
+        longer = model.length(name, inputs) / shortest
         by_strain[name] = [
             of_strain.max(axis=0) * (1.0 if strain == TWIST else longer)
             for strain, of_strain in zip(rod.admitted, by_element, strict=True)

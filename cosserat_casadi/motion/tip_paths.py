@@ -97,26 +97,39 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
     tips, between = (model.tip, _between(model)) if library is None else _external(model, library)
     points = []
     section_axes = []
-    for name, rod in model.discrete.rods.items():
+    lengths = _lengths(model, inputs)
+    for name in model.discrete.rods:
+        length = lengths[name]
         tip = frames_of(tips[name], x, inputs)
-        points.append(tip.position / rod.properties.length)
+        points.append(tip.position / length)
         section_axes.append(tip.rotation[:, :, :2])
         if name in between:
             positions, quaternions = evaluated(between[name], x, inputs)
-            points += list(np.moveaxis(positions / rod.properties.length, 2, 0))
+            points += list(np.moveaxis(positions / length[..., None], 2, 0))
             section_axes += [rotations(one)[:, :, :2] for one in np.moveaxis(quaternions, 2, 0)]
         base = model.discrete.unloaded.floating_base(name)
         if base is not None:
             frame = model.discrete.frames[base]
             start = np.asarray(frame.start.position, dtype=float).ravel()
-            points.append(x[:, model.discrete.deviation(base)][:, :3] + start / frame.length)
-    longest = longest_rod(model)
+            moved = frame.length * x[:, model.discrete.deviation(base)][:, :3]
+            points.append((moved + start) / length)
+    longest = np.maximum.reduce(list(lengths.values()))
     # As scalars they take less than half of the time.
     bodies = kept_with(model, "_bodies_in_scalars", lambda: {name: body.expand() for name, body in model.body.items()})
     for body in model.scene.bodies:
         frames = frames_of(bodies[body.name], x, inputs)
-        points += [_moved_with(frames, arm) / longest for arm in _watched_arms(body, longest)]
+        points += [_moved_with(frames, arm) / longest for arm in _watched_arms(body, longest.max())]
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
+
+
+def _lengths(model: Model, inputs: FloatArray) -> dict[str, FloatArray]:
+    """Length of each rod, m: at every time where it is an input, shape (T, 1), else shape (1, 1)."""
+    lengths = {}
+    for name in model.discrete.rods:
+        entries = model.inputs.of_rod(name, "length")
+        length = inputs[:, entries] if entries is not None else model.length(name, model.pack())
+        lengths[name] = np.atleast_2d(length)
+    return lengths
 
 
 def _external(model: Model, library: str) -> tuple[dict[str, ca.Function], dict[str, ca.Function]]:
@@ -161,11 +174,6 @@ def path_distance(first: Paths, second: Paths) -> float:
     distances = np.linalg.norm(first.points[:rows] - second.points[:rows], axis=2)
     rolls = _rolls(first.section_axes[:rows], second.section_axes[:rows])
     return float(np.maximum(distances.max(initial=0.0), LEVER * np.abs(rolls).max(initial=0.0)))
-
-
-def longest_rod(model: Model) -> float:
-    """Length of the longest rod, m."""
-    return max(rod.properties.length for rod in model.discrete.rods.values())
 
 
 def _watched_arms(body: Body, longest: float) -> list[FloatArray]:

@@ -125,7 +125,7 @@ def _hide_rounding(axes: Any) -> None:
 
 def _scale(solution: Solution, name: str, quantity: str) -> float:
     """Scale of a quantity of a rod: a radian along it, 1/m; or force times length, N m; or moment over length, N."""
-    length = solution.model.lengths[name]
+    length = solution.model.length(name, solution.inputs)
     if quantity == "strain":
         return float(1 / length)
     wrench = solution.internal_wrench(SAMPLES, name)

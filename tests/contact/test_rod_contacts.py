@@ -162,6 +162,16 @@ def test_crossed_cantilevers_bend_as_beams_do() -> None:
     assert_allclose(borne, [0, 0, push], rtol=0, atol=1e-9)
 
 
+def test_forces_on_a_rod_whose_length_is_a_parameter() -> None:
+    text = CROSSED.format(push=-1.0, more="")
+    model = build(parse_scene('parameters = ["lower.length"]\n' + text))
+    longer = solve(model, parameters={"lower.length": 0.4})
+    expected = solve(build(parse_scene(text, ["lower.length=0.4"])))
+    assert longer.converged
+    # Their sections lie otherwise along it.
+    assert_allclose(longer.contacts[0].force, expected.contacts[0].force, rtol=0, atol=0.02)
+
+
 def test_the_error_of_the_layer_is_that_of_beams_that_touch() -> None:
     """Without a width the gap is zero: the pushed middle of a cantilever moves by g, its tip turns by 3/2 g/L."""
     found = [solve(crossed(-1.0, more), estimate_error=False) for more in ("", "stiffness = 1e6")]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, discretise, read_scene, solve
+from cosserat_casadi import Solution, build, discretise, read_scene, scene_from_dict, solve
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
@@ -206,3 +206,41 @@ def test_answers_in_exact_contact_know_their_error() -> None:
     reference = solve(read)
     assert coarse.error_estimate is not None
     assert coarse.error_estimate > LEAST * pose_distance(coarse, reference)
+
+
+def gripper(length: float) -> dict[str, Any]:
+    """Tables of two upright rods that hold a body at their tips, one of them with a tendon."""
+    other = {**TAPERED, "name": "other", "base": {"position": [0.1, 0, 0]}}
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 3.0, "offset": [4e-3, 0]}
+    ties: list[dict[str, Any]] = [
+        {"rod": "rod", "body": "hand", "kind": "fixed"},
+        {"rod": "other", "body": "hand", "kind": "spherical", "position": [0.1, 0, 0]},
+    ]
+    return {
+        "schema": 1,
+        "rods": [{**TAPERED, "length": length}, {**other, "length": length}],
+        "bodies": [{"name": "hand", "mass": 0.01}],
+        "joints": ties,
+        "actuators": [cable],
+        "loads": [{"name": "pull", "kind": "body_wrench", "body": "hand", "force": [1.0, 0.6, 0]}],
+    }
+
+
+@pytest.mark.parametrize("kind", ["parameters", "inputs"])
+def test_errors_are_over_the_length_that_a_rod_has(kind: str) -> None:
+    lengths = ["rod.length", "other.length"]
+    named = lengths if kind == "parameters" else [*lengths, "cable.tension"]
+    moved = scene_from_dict({**gripper(0.4), "inputs": ["cable.tension"], kind: named})
+    values = dict.fromkeys(lengths, 0.15)
+    model = build(moved, discretise(moved, 3, 10))
+    solution = solve(model, parameters=values) if kind == "parameters" else solve(model, values)
+    short = scene_from_dict(gripper(0.15))
+    same = solve(build(short, discretise(short, 3, 10)))
+    # Tips, the body and the cable over the length that the rods have, and a distance between two answers likewise.
+    assert_allclose(*(one.model.watched(one.x, one.inputs).full() for one in (solution, same)), rtol=0, atol=1e-6)
+    bent = solve(solution.model, {**values, "cable.tension": 6.0} if kind == "inputs" else {"cable.tension": 6.0})
+    bent_same = solve(same.model, {"cable.tension": 6.0})
+    assert_allclose(pose_distance(solution, bent), pose_distance(same, bent_same), rtol=1e-4, atol=0)
+    assert_allclose(cable_distance(solution, bent), cable_distance(same, bent_same), rtol=1e-4, atol=0)
+    assert_allclose(solution.shape_error_estimate, same.shape_error_estimate, rtol=1e-2, atol=0)
+    assert_estimated(solution)

@@ -41,6 +41,10 @@ def hinged_on_body(orientation: list[float]) -> dict[str, Any]:
     return with_base(orientation) | {"joints": [clamp, hinged({"body": "plate"})], "bodies": [PLATE]}
 
 
+def alone(length: float) -> dict[str, Any]:
+    return scene(rod(strain="planar", length=length), loads=[WEIGHT])
+
+
 def carried(length: float) -> dict[str, Any]:
     return scene(rod(length=length), rod("b", base={"rod": "a", "tangent": [1, 0, 0]}), loads=[WEIGHT])
 
@@ -75,3 +79,14 @@ def test_a_motion_begins_where_values_of_parameters_put_its_rods(
     assert motion.start == expected.start
     for own in model.discrete.rods:
         assert_allclose(motion.tip(own).position, expected.tip(own).position, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("kind", ["parameters", "inputs"])
+def test_errors_of_motions_are_over_the_length_that_a_rod_has(kind: str) -> None:
+    simulation = {"duration": 0.05, "frames": 3, "tolerance": 1e-3, "start": "unloaded"}
+    motions = [{"input": "a.length", "times": [0.0], "values": [0.1]}] if kind == "inputs" else []
+    moved = alone(0.8) | {kind: ["a.length"], "motions": motions, "simulation": simulation}
+    model = build(scene_from_dict(moved), moving=True)
+    motion = simulate(model if kind == "inputs" else model.at([0.1]))
+    expected = simulate(build(scene_from_dict(alone(0.1) | {"simulation": simulation}), moving=True))
+    assert motion.error_estimate == pytest.approx(expected.error_estimate, rel=0.1)
