@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
+from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.system import Arguments, System
@@ -79,7 +80,9 @@ def _plane_margins(system: System) -> dict[StrainMargin, Matrix]:
     for placed in system.discrete.constraints:
         if placed.held_by_plane is not None:
             beside = replace(placed.constraint, held=placed.held_by_plane)
-            gaps[placed.what] = beside.residual(system.poses(placed))
+            gap = beside.residual(system.poses(placed))
+            is_hinge = placed.constraint.held.rotations.shape[1] == 0
+            gaps[placed.what] = _with_tilts_of_a_line(gap, placed.held_by_plane) if is_hinge else gap
     if not gaps:
         return {}
     # Floating frames follow what constraints hold them to: one that is moved may move them all.
@@ -88,6 +91,18 @@ def _plane_margins(system: System) -> dict[StrainMargin, Matrix]:
     if not ca.depends_on(ca.veccat(*gaps.values(), *held), ca.veccat(*given)):
         return {}
     return {StrainMargin("plane", what): 1 - ca.sumsqr(gap) / BESIDE**2 for what, gap in gaps.items()}
+
+
+def _with_tilts_of_a_line(gap: Matrix, held: HeldDirections) -> Matrix:
+    """A gap whose rotations out of the plane are those of a hinge's axis: turned by half a turn it is the same line.
+
+    The gap has 2 sin(θ/2) of the angle θ by which the axis is tilted: times cos(θ/2) it is sin θ.
+    """
+    if held.rotations.shape[1] == 0:
+        return gap
+    displacements = held.positions.shape[1]
+    tilts = gap[displacements:]
+    return ca.vertcat(gap[:displacements], tilts * ca.sqrt(1 - ca.fmin(ca.sumsqr(tilts) / 4, 1)))
 
 
 def margins_of(discrete: DiscreteScene) -> list[StrainMargin]:

@@ -20,7 +20,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.libraries import ARCH, ARMS, HAND, LOAD, QUICK, WRISTS, Exported, Recipe, gcc, run
 from tests.codegen.libraries import PIN as ARCH_PIN
 from tests.families import mostly_slow
-from tests.scenes import WEIGHT, push, scene
+from tests.scenes import WEIGHT, push, rod, scene
 
 TAPERED = {
     "name": "rod",
@@ -411,3 +411,30 @@ def test_support_out_of_the_plane_of_its_rod_is_told(export_recipe: Callable[...
     assert compiled.solve(start=solution.x, parameters=beside).outcome is Outcome.OUT_OF_PLANE
     batch = compiled.solve_batch(compiled.defaults, parameters=np.array([beside, inside]))
     assert [one.outcome for one in batch] == [Outcome.OUT_OF_PLANE, Outcome.CONVERGED]
+
+
+def test_hinge_that_is_turned_by_half_a_turn_has_the_same_line(export_recipe: Callable[..., Exported]) -> None:
+    """A base turned about its tangent by half a turn has its planar rod in the plane of the hinge, less has it not."""
+    hinge = {
+        "name": "hinge",
+        "rod": "rod",
+        "at": 1.0,
+        "kind": "revolute",
+        "axis": [0, 1, 0],
+        "position": [0.05, 0, 0.7],
+    }
+    tables = {"joints": [hinge], "inputs": [], "parameters": ["rod.base.quaternion"]}
+    arch = scene(WEIGHT, rods=[rod("planar")], **tables)
+    compiled = export_recipe("hinged_arch", Recipe(arch, 2, 5, dynamics=True), estimates=False).compiled
+    half, less = ([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)] for angle in (np.pi, 3.0))
+    solution = compiled.solve(parameters=half)
+    turned = scene(WEIGHT, rods=[rod("planar", base={"quaternion": half})], joints=[hinge], inputs=[])
+    expected = solve(build(turned, discretise(turned, 2, 5)))
+    assert solution.converged
+    assert_allclose(solution.x, expected.x, rtol=0, atol=1e-8)
+    assert compiled.solve(parameters=less).outcome is Outcome.OUT_OF_PLANE
+    # A step looks at it too.
+    state = compiled.rest(x=solution.x, parameters=half)
+    assert state is not None
+    statuses = [compiled.step(state, 1e-3, None, parameters=base).status.name for base in (half, less)]
+    assert statuses == ["DONE", "OUT_OF_PLANE"]

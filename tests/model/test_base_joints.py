@@ -268,3 +268,14 @@ def test_base_as_an_input_keeps_a_closed_chain_in_its_plane(position: list[float
     if not solution.converged:
         assert "'b' at its joint in the world" in solution.message
     assert_allclose(solution.tip("b").position[[0, 2]], [0.6, 0.1], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("end", "outcome"), [([0.02, 0, -0.02], "COMPLETED"), ([0, 0.03, 0], "OUT_OF_PLANE")])
+def test_a_base_that_moves_a_closed_chain_out_of_its_plane_is_told(end: list[float], outcome: str) -> None:
+    driven = {"input": "a.base.position", "times": [0.0, 0.02], "values": [[0, 0, 0], end], "interpolation": "cubic"}
+    simulation = {"duration": 0.02, "tolerance": 1e-2, "frames": 2}
+    tables = closed_chain(inputs=["a.base.position"], motions=[driven], simulation=simulation)
+    motion = simulate(build(scene_from_dict(tables), moving=True))
+    assert motion.outcome.name == outcome
+    if not motion.converged:
+        assert "'b' at its joint in the world" in motion.message
