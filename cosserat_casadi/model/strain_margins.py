@@ -102,7 +102,8 @@ def _with_tilts_of_a_line(gap: Matrix, held: HeldDirections) -> Matrix:
         return gap
     displacements = held.positions.shape[1]
     tilts = gap[displacements:]
-    return ca.vertcat(gap[:displacements], tilts * ca.sqrt(1 - ca.fmin(ca.sumsqr(tilts) / 4, 1)))
+    sines: Matrix = tilts * ca.sqrt(1 - ca.fmin(ca.sumsqr(tilts) / 4, 1))
+    return ca.vertcat(gap[:displacements], sines)
 
 
 def margins_of(discrete: DiscreteScene) -> list[StrainMargin]:
