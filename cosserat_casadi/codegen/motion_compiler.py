@@ -43,7 +43,7 @@ from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_f
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.repeated_call import RepeatedCall, external
-from cosserat_casadi.motion.simulate import Tell
+from cosserat_casadi.motion.simulate import Tell, functions_of_limits
 from cosserat_casadi.motion.step_kernels import (
     MATRICES,
     StepKernels,
@@ -51,7 +51,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_jacobians,
     interpreted_residual,
 )
-from cosserat_casadi.motion.tip_paths import functions_of_sections
+from cosserat_casadi.motion.tip_paths import functions_of_paths
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
@@ -357,12 +357,13 @@ def _residual(model: Model) -> list[ca.Function]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
-    # Every motion asks for the paths of tips, for how far unknowns move them, and for rows on the constraints.
-    beside = [*functions_of_sections(model), function_of_displacements(model), *functions_of_flight(model)]
+    # Every motion asks for the watched paths, for how far unknowns move them, and for rows on limits and constraints.
+    beside = [*functions_of_paths(model), function_of_displacements(model), *functions_of_flight(model)]
     for points in touching_points(model):
         beside += points.in_iterations
     # With parameters no motion is computed, and rows have no parameters.
-    return [residual, *beside, *([] if model.parameters.size else functions_of_closing(model))]
+    rows = [] if model.parameters.size else [*functions_of_limits(model), *functions_of_closing(model)]
+    return [residual, *beside, *rows]
 
 
 def _jacobians(model: Model) -> list[ca.Function]:

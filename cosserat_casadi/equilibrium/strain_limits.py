@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.calls import evaluated
@@ -41,17 +42,20 @@ class BeyondLimit(NamedTuple):
         return f"It is the {kind} of '{name}'" if kind in ("path", "material") else f"It is the {kind} '{name}'"
 
 
-def first_beyond(model: Model, x: FloatArray, inputs: FloatArray) -> BeyondLimit | None:
+def first_beyond(
+    model: Model, x: FloatArray, inputs: FloatArray, margins_in_c: ca.Function | None = None
+) -> BeyondLimit | None:
     """The first state in which strains are beyond a limit; None where they are within all in every state.
 
     Args:
         model: the discrete scene.
         x: unknowns, shape (k, model.size).
         inputs: stacked inputs, shape (k, model.inputs.size).
+        margins_in_c: the model's margins in machine code; None where they are not.
     """
     if model.strain_margins is None or not len(x):
         return None
-    margins = evaluated(model.strain_margins, x, inputs)[0][:, :, 0]
+    margins = evaluated(margins_in_c or model.strain_margins, x, inputs)[0][:, :, 0]
     beyond = np.flatnonzero(np.min(margins, axis=1) <= VANISHED)
     if not len(beyond):
         return None

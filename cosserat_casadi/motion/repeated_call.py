@@ -145,6 +145,13 @@ def external(name: str, library: str) -> ca.Function:
     return ca.external(name, library)
 
 
+def renamed(function: ca.Function, name: str) -> ca.Function:
+    """A function with dense results, under a name of its own in C."""
+    arguments = function.mx_in()
+    results = [ca.densify(result) for result in function.call(arguments)]
+    return ca.Function(name, arguments, results, function.name_in(), function.name_out())
+
+
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
     """A function: that of its name in a shared object, or, without one, in CasADi's virtual machine.
 

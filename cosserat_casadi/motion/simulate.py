@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
@@ -33,7 +34,7 @@ from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.pose_series import poses_of
-from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, external, renamed
 from cosserat_casadi.motion.step_kernels import KernelSource, interpreted
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_states
@@ -127,6 +128,10 @@ steps became ever shorter.
 """
 
 
+MARGINS = "motion_margins"
+"""Name of the margins of strains in C."""
+
+
 @dataclass(frozen=True)
 class Companion:
     """A motion that tells the error of another.
@@ -211,10 +216,10 @@ class Simulator:
     @cached_property
     def displacements(self) -> FloatArray:
         """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
-        return displacements(self.model, self._library)
+        return displacements(self.model, self.library)
 
     @property
-    def _library(self) -> str | None:
+    def library(self) -> str | None:
         """The shared object with the equations of motion; None where they are not in machine code."""
         return None if self.source is None else self.source.library(self.model)
 
@@ -255,7 +260,7 @@ class Simulator:
         duration = self.simulation.duration
         if duration not in history.paths_until:
             states = watched_states(history, duration)
-            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self._library)
+            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self.library)
         known: Paths = history.paths_until[duration]
         return known
 
@@ -530,14 +535,26 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
-def told_beyond(history: History, duration: float) -> tuple[MotionOutcome, str] | None:
-    """When strains are first beyond their limits, as outcome and sentence; None where they never are."""
+def told_beyond(history: History, duration: float, library: str | None = None) -> tuple[MotionOutcome, str] | None:
+    """When strains are first beyond their limits, as outcome and sentence; None where they never are.
+
+    Args:
+        history: the motion.
+        duration: its end, s.
+        library: shared object that has :func:`functions_of_limits`; None without one.
+    """
     times, x, inputs = watched_states(history, duration)
-    beyond = first_beyond(history.model, x, inputs)
+    limited = history.model.strain_margins is not None and library is not None
+    beyond = first_beyond(history.model, x, inputs, external(MARGINS, library) if limited else None)
     if beyond is None:
         return None
     outcome = MotionOutcome[beyond.word]
     return outcome, f"{outcome.value} {beyond.whose}, from t = {times[beyond.state]:.6g} s on."
+
+
+def functions_of_limits(model: Model) -> list[ca.Function]:
+    """The margins to states that no rod can be in, as :attr:`Model.strain_margins` has them; none without limits."""
+    return [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
 
 
 def judged(
@@ -559,7 +576,7 @@ def judged(
     outcome = MotionOutcome.COMPLETED
     message = message_of(history, outcome)
     duration = simulator.simulation.duration
-    beyond = told_beyond(history, duration)
+    beyond = told_beyond(history, duration, simulator.library)
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
     if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED

@@ -6,7 +6,9 @@ of :func:`watched_sections`, as at rest.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import NamedTuple
 
 import casadi as ca
@@ -23,7 +25,7 @@ from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.pose_series import Frames, frames_of
-from cosserat_casadi.motion.repeated_call import external
+from cosserat_casadi.motion.repeated_call import external, renamed
 from cosserat_casadi.scene.constraint_records import Body
 
 TIP = "motion_tip_"
@@ -31,6 +33,9 @@ TIP = "motion_tip_"
 
 BETWEEN = "motion_between_"
 """Name of the poses of the sections between the ends of a rod in C, before its number."""
+
+BODY = "motion_body_"
+"""Name of the pose of a body in C, before its number."""
 
 WATCHED = 401
 """Times at which paths are compared, evenly spaced."""
@@ -66,6 +71,20 @@ class WatchedStates(NamedTuple):
     inputs: FloatArray
 
 
+class PathFunctions(NamedTuple):
+    """Functions (x, inputs) ↦ what moves along the watched paths.
+
+    Attributes:
+        tips: frames of the tips, by their rods.
+        between: positions and quaternions of the sections between ends, by their rods.
+        bodies: frames of the bodies, by their names.
+    """
+
+    tips: Mapping[str, ca.Function]
+    between: Mapping[str, ca.Function]
+    bodies: Mapping[str, ca.Function]
+
+
 def watched_states(history: History, duration: float) -> WatchedStates:
     """The states of a motion at the times at which it is compared with another one of a duration, s."""
     if duration not in history.watched_until:
@@ -76,13 +95,11 @@ def watched_states(history: History, duration: float) -> WatchedStates:
     return known
 
 
-def functions_of_sections(model: Model) -> list[ca.Function]:
-    """The poses of the tips, rod by rod, as :attr:`Model.tip` has them, and of the sections between ends."""
-    functions = []
-    for number, tip in enumerate(model.tip.values()):
-        at = tip.mx_in()
-        functions.append(ca.Function(f"{TIP}{number}", at, tip.call(at), tip.name_in(), tip.name_out()))
-    return [*functions, *_between(model).values()]
+def functions_of_paths(model: Model) -> list[ca.Function]:
+    """The poses of tips and bodies, as :attr:`Model.tip` and its like have them, and of the sections between ends."""
+    tips = [renamed(tip, f"{TIP}{number}") for number, tip in enumerate(model.tip.values())]
+    bodies = [renamed(body, f"{BODY}{number}") for number, body in enumerate(model.body.values())]
+    return [*tips, *_between(model).values(), *bodies]
 
 
 def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None = None) -> Paths:
@@ -92,9 +109,9 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
         model: the model.
         x: unknowns, shape (T, model.size).
         inputs: stacked inputs, shape (T, model.inputs.size).
-        library: shared object that has :func:`functions_of_sections`; None without one.
+        library: shared object that has :func:`functions_of_paths`; None without one.
     """
-    tips, between = (model.tip, _between(model)) if library is None else _external(model, library)
+    tips, between, bodies = _interpreted(model) if library is None else _external(model, library)
     points = []
     section_axes = []
     lengths = _lengths(model, inputs)
@@ -113,9 +130,7 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
             start = np.asarray(frame.start.position, dtype=float).ravel()
             moved = frame.length * x[:, model.discrete.deviation(base)][:, :3]
             points.append((moved + start) / length)
-    longest = np.maximum.reduce(list(lengths.values()))
-    # As scalars they take less than half of the time.
-    bodies = kept_with(model, "_bodies_in_scalars", lambda: {name: body.expand() for name, body in model.body.items()})
+    longest = reduce(np.maximum, lengths.values())
     for body in model.scene.bodies:
         frames = frames_of(bodies[body.name], x, inputs)
         points += [_moved_with(frames, arm) / longest for arm in _watched_arms(body, longest.max())]
@@ -132,12 +147,19 @@ def _lengths(model: Model, inputs: FloatArray) -> dict[str, FloatArray]:
     return lengths
 
 
-def _external(model: Model, library: str) -> tuple[dict[str, ca.Function], dict[str, ca.Function]]:
-    """The poses of the tips and those between ends, by their rods, without a function being written for them."""
+def _interpreted(model: Model) -> PathFunctions:
+    # As scalars those of bodies take less than half of the time.
+    bodies = kept_with(model, "_bodies_in_scalars", lambda: {name: body.expand() for name, body in model.body.items()})
+    return PathFunctions(model.tip, _between(model), bodies)
+
+
+def _external(model: Model, library: str) -> PathFunctions:
+    """Those of a shared object, without a function being written for them."""
     rods = list(enumerate(model.discrete.rods))
     tips = {name: external(f"{TIP}{number}", library) for number, name in rods}
-    held = [(number, name) for number, name in rods if _places_between(model, name)]
-    return tips, {name: external(f"{BETWEEN}{number}", library) for number, name in held}
+    between = {name: external(f"{BETWEEN}{number}", library) for number, name in rods if _places_between(model, name)}
+    bodies = {body.name: external(f"{BODY}{number}", library) for number, body in enumerate(model.scene.bodies)}
+    return PathFunctions(tips, between, bodies)
 
 
 def _places_between(model: Model, rod: str) -> list[float]:

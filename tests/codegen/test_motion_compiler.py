@@ -24,6 +24,7 @@ from cosserat_casadi.codegen.controlled_steps import (
     steps_library,
 )
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
@@ -34,9 +35,9 @@ from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight, integrated
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
-from cosserat_casadi.motion.simulate import moving_inputs, started
+from cosserat_casadi.motion.simulate import functions_of_limits, moving_inputs, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted, interpreted_jacobians, interpreted_residual
-from cosserat_casadi.motion.tip_paths import functions_of_sections
+from cosserat_casadi.motion.tip_paths import functions_of_paths, paths
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics import time_steps
 from cosserat_casadi.numerics.collocation import radau
@@ -207,6 +208,39 @@ def test_results_of_a_call_are_kept_by_the_next_one() -> None:
     assert_array_equal(matrices, copies[1])
 
 
+def test_bodies_and_limits_of_strains_stand_beside_the_residual() -> None:
+    hinge = {"kind": "revolute", "axis": [0, 1, 0]}
+    joints = [
+        {**hinge, "name": "crank", "angle": 0.0, "between": [{"world": True}, {"body": "arm"}]},
+        {**hinge, "between": [{"body": "arm", "position": [0.3, 0, 0]}, {"rod": "rod", "at": 0.0}]},
+    ]
+    model = moving(
+        {
+            "schema": 1,
+            "rods": [rod("planar", base={"tangent": [1, 0, 0]})],
+            "bodies": [{"name": "arm", "mass": 0.1, "inertia": [1e-3, 1e-3, 1e-3]}],
+            "joints": joints,
+            "actuators": [{"name": "flexor", "kind": "tendon", "rod": "rod", "offset": [0.02, 0.0], "tension": 2.0}],
+            "accuracy": {"modes": 2, "nodes": 4},
+            "motions": [{"input": "crank.angle", "times": [0.0, 0.1], "values": [0.0, 0.2]}],
+            "simulation": {"duration": 0.1, "start": "unloaded"},
+        }
+    )
+    library = MotionCompiler(always=True).library(model)
+    assert library is not None
+    rng = np.random.default_rng(5)
+    states = 0.1 * rng.standard_normal((4, model.size))
+    inputs = model.pack() + 0.1 * rng.standard_normal((4, model.inputs.size))
+    found, expected = paths(model, states, inputs, library), paths(model, states, inputs)
+    assert_allclose(found.points, expected.points, rtol=1e-12, atol=1e-13)
+    assert_allclose(found.section_axes, expected.section_axes, rtol=1e-12, atol=1e-13)
+    (in_c,) = functions_of_limits(model)
+    (limits,) = evaluated(ca.external(in_c.name(), library), states, inputs)
+    (margins,) = evaluated(model.strain_margins, states, inputs)
+    assert np.ptp(margins) > 1e-3
+    assert_allclose(limits, margins, rtol=1e-12, atol=1e-12)
+
+
 def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:
     model = moving(arm())
     compiler = MotionCompiler()
@@ -217,7 +251,7 @@ def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:
     x, _, _, inputs, *_ = somewhere(model)
     library = compiler.library(model)
     assert library is not None
-    tip = ca.external(functions_of_sections(model)[0].name(), library)
+    tip = ca.external(functions_of_paths(model)[0].name(), library)
     for found, expected in zip(tip(x, inputs), model.tip["rod"](x, inputs), strict=True):
         assert_allclose(found.full(), expected.full(), rtol=1e-12, atol=1e-14)
     assert_array_equal(displacements(moving(arm()), library), displacements(model))
