@@ -123,7 +123,8 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
         if name in between:
             positions, quaternions = evaluated(between[name], x, inputs)
             points += list(np.moveaxis(positions / length[..., None], 2, 0))
-            section_axes += [rotations(one)[:, :, :2] for one in np.moveaxis(quaternions, 2, 0)]
+            of_sections = rotations(np.moveaxis(quaternions, 2, 0).reshape(-1, 4))
+            section_axes += list(of_sections[:, :, :2].reshape(-1, len(x), 3, 2))
         base = model.discrete.unloaded.floating_base(name)
         if base is not None:
             frame = model.discrete.frames[base]
@@ -133,7 +134,7 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
     longest = reduce(np.maximum, lengths.values())
     for body in model.scene.bodies:
         frames = frames_of(bodies[body.name], x, inputs)
-        points += [_moved_with(frames, arm) / longest for arm in _watched_arms(body, longest.max())]
+        points += list(_moved_with(frames, _watched_arms(body, longest.max())) / longest)
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
 
 
@@ -198,8 +199,8 @@ def path_distance(first: Paths, second: Paths) -> float:
     return float(np.maximum(distances.max(initial=0.0), LEVER * np.abs(rolls).max(initial=0.0)))
 
 
-def _watched_arms(body: Body, longest: float) -> list[FloatArray]:
-    """Points of a body that are watched, in its axes, m: its origin, and what its inertia would have move.
+def _watched_arms(body: Body, longest: float) -> FloatArray:
+    """Points of a body that are watched, in its axes, shape (k, 3), m: its origin, and what its inertia would move.
 
     These are its centre of mass, and on each axis through it a point at the radius of gyration. For a body with moments
     of inertia and no mass the radius is LEVER lengths of the longest rod.
@@ -214,12 +215,14 @@ def _watched_arms(body: Body, longest: float) -> list[FloatArray]:
         if body.mass > 0.0:
             radius = float(np.sqrt(spread / (2.0 * body.mass)))
         arms += [centre + radius * axis for axis in np.eye(3)]
-    return arms
+    return np.array(arms)
 
 
-def _moved_with(frames: Frames, arm: FloatArray) -> FloatArray:
-    """Positions of a point of a body, shape (T, 3), m."""
-    return np.asarray(frames.position + frames.rotation @ arm)
+def _moved_with(frames: Frames, arms: FloatArray) -> FloatArray:
+    """Positions of k points of a body, shape (k, T, 3), m."""
+    # One product of flat matrices takes a tenth of the time of T small ones.
+    turned = frames.rotation.reshape(-1, 3) @ arms.T
+    return np.asarray(frames.position + turned.T.reshape(len(arms), -1, 3))
 
 
 def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -230,7 +233,7 @@ def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
         second: those of the others.
     """
     # cos and sin of the turn, twice: what the tangents are apart enters by its square alone.
-    products = np.einsum("trja,trjb->trab", first, second)
-    aligned = products[:, :, 0, 0] + products[:, :, 1, 1]
-    turned = products[:, :, 1, 0] - products[:, :, 0, 1]
+    aligned = np.einsum("trja,trja->tr", first, second)
+    turned = np.einsum("trj,trj->tr", first[..., 1], second[..., 0])
+    turned -= np.einsum("trj,trj->tr", first[..., 0], second[..., 1])
     return np.asarray(np.arctan2(turned, aligned))

@@ -22,6 +22,14 @@ from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, Mo
 DEGREE = 6
 """Degree of the polynomial that the constraints along the motion are differentiated by."""
 
+NODES = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
+"""Its nodes, from -1 to 1."""
+
+_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
+
+DERIVATIVES = tuple(chebyshev.chebval(-1.0, chebyshev.chebder(_COEFFICIENTS, order)) for order in (1, 2))
+"""Its first and second derivative at the first node: weights of the values at the nodes."""
+
 RANK = 1e-11
 """Singular value, relative to the largest, below which a direction is one without mass."""
 
@@ -292,18 +300,15 @@ def _in_time(
     first = int(np.count_nonzero(constraints)) - len(exact[0])
     if first == 0:
         return equations.residual_at(instant)[constraints], *exact
-    nodes = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
-    delays = interval * (1.0 + nodes) / 2.0
+    delays = interval * (1.0 + NODES) / 2.0
     samples = []
     for delay in delays:
         moved = Instant(instant.time + delay, instant.x + delay * instant.v, instant.v, instant.a)
         samples.append(equations.residual_at(moved)[constraints])
     values = np.stack(samples)
-    coefficients = chebyshev.chebfit(nodes, values, DEGREE)
     # The nodes run over two units while the interval passes.
     stretch = 2.0 / interval
-    rates = np.asarray(stretch * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 1)))
-    accelerations = np.asarray(stretch**2 * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 2)))
+    rates, accelerations = stretch * DERIVATIVES[0] @ values, stretch**2 * DERIVATIVES[1] @ values
     rates[first:], accelerations[first:] = exact
     return values[0], rates, accelerations
 
