@@ -7,7 +7,9 @@ m/p times what its last one moves. See docs/theory.md, section 11.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.numbers import known
@@ -15,10 +17,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.watched import watched_sections
-from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.displacement import LEVER, displacements
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.tip_paths import watched_states
+from cosserat_casadi.motion.tip_paths import watched_arms, watched_states
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene import Scene
 
@@ -88,35 +91,85 @@ def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
     """Largest entries of all elements, of displacements by each unknown over its rod's length, shape (model.size,).
 
     They are over the length of the shortest rod that goes along: its path is watched over its own length. A twist
-    moves none that goes on straight.
+    moves what goes along by its distance from the axis.
     """
     inputs = model.pack()
     by_strain = {}
     for name, rod in model.discrete.rods.items():
         of_rod = sizes[model.discrete.unknowns.strain(name)]
         by_element = [of_rod[columns].reshape(rod.grid.elements, -1) for columns in rod.columns.values()]
-        shortest = min(model.length(other, inputs) for other in moved_along(model.scene, name))
+        shortest = min(model.length(other, inputs) for other in moved_along(model.scene, name).rods)
         longer = model.length(name, inputs) / shortest
         by_strain[name] = [
-            of_strain.max(axis=0) * (1.0 if strain == TWIST else longer)
+            of_strain.max(axis=0) * (arm_of_twist(model, name) / LEVER if strain == TWIST else longer)
             for strain, of_strain in zip(rod.admitted, by_element, strict=True)
         ]
     return by_strain
 
 
-def moved_along(scene: Scene, rod: str) -> set[str]:
-    """Names of the rods that a strain of a rod moves: this rod, rods that start on it, rods that joints tie to them."""
+class MovedAlong(NamedTuple):
+    """Names of the rods and bodies that a strain of a rod moves."""
+
+    rods: set[str]
+    bodies: set[str]
+
+
+def moved_along(scene: Scene, rod: str) -> MovedAlong:
+    """This rod, which a strain of it moves, rods that start on it, and the rods and bodies that joints tie to them."""
     moved: set[tuple[str, str]] = {("rod", rod)}
     ties = []
     for joint in scene.joints:
         rods = [joint.rod, *(end.rod for end in joint.between or ())]
-        ties.append({("rod", name) for name in rods if name} | {("body", place.body) for place in joint.places})
+        bodies = {("body", place.body) for place in joint.places if place.body}
+        ties.append({("rod", name) for name in rods if name} | bodies)
     before = 0
     while len(moved) > before:
         before = len(moved)
         moved |= {("rod", one.name) for one in scene.rods if ("rod", one.base.rod) in moved}
         moved = moved.union(*(tie for tie in ties if tie & moved))
-    return {name for kind, name in moved if kind == "rod"}
+    return MovedAlong(*({name for kind, name in moved if kind == wanted} for wanted in ("rod", "body")))
+
+
+def arm_of_twist(model: Model, name: str) -> float:
+    """Arm, over lengths of watched rods, at which a twist of a rod counts: at least LEVER; every level asks.
+
+    It is the largest distance from the axis of the unloaded rod, from its tangents where it is curved, of the other
+    rods and of the points of bodies that go along.
+    """
+    arms: dict[str, float] = kept_with(model, "_arms_of_twist", dict)
+    if name not in arms:
+        arms[name] = _new_arm_of_twist(model, name)
+    return arms[name]
+
+
+def _new_arm_of_twist(model: Model, name: str) -> float:
+    moved = moved_along(model.scene, name)
+    places, tangents = _unloaded_axis(model, name)
+    directions = tangents / np.linalg.norm(tangents, axis=1)[:, None]
+    points = [np.empty((0, 3))]
+    lengths_of = {rod: model.length(rod, model.pack()) for rod in model.discrete.rods}
+    lengths = []
+    for other in moved.rods - {name}:
+        points.append(_unloaded_axis(model, other)[0])
+        lengths += [lengths_of[other]] * len(points[-1])
+    longest = max(lengths_of.values())
+    for body in model.scene.bodies:
+        if body.name in moved.bodies:
+            start = model.discrete.unloaded.body_frame(body.name).start
+            points.append(start.position + watched_arms(body, longest) @ start.rotation.T)
+            lengths += [longest] * len(points[-1])
+    offsets = np.concatenate(points)[:, None] - places
+    distances = np.linalg.norm(np.cross(offsets, directions), axis=2).max(axis=1)
+    return float(np.max(distances / np.array(lengths), initial=LEVER))
+
+
+def _unloaded_axis(model: Model, name: str) -> tuple[FloatArray, FloatArray]:
+    """Positions and tangents, not of unit length, of an unloaded rod at its nodes, world axes, m, shape (nodes, 3)."""
+    base = model.discrete.unloaded.base(name)
+    rod = model.discrete.rods[name]
+    own = shape(rod, ca.DM.zeros(rod.size))
+    in_base = [ca.DM(vectors).full().T for vectors in (own.position, own.tangent)]
+    return base.position + in_base[0] @ base.rotation.T, in_base[1] @ base.rotation.T
 
 
 def last_of(moved: FloatArray) -> float:
@@ -159,7 +212,7 @@ def lacking_at_fronts(history: History, duration: float) -> float:
             for strain, moved in zip(rod.admitted, moved_by[name], strict=True)
             if strain not in BENDING
         ]
-        for other in moved_along(model.scene, name):
+        for other in moved_along(model.scene, name).rods:
             squares[other] += max(fronts, default=0.0) ** 2
     return float(np.sqrt(max(squares.values())))
 
@@ -202,7 +255,7 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
         # Such a rod carries no waves.
         return 1.0
     velocity = (stiffness * inertia) ** -0.25
-    for other in moved_along(model.scene, name) - {name}:
+    for other in moved_along(model.scene, name).rods - {name}:
         properties = model.discrete.rods[other].properties
         ahead = _along(properties, strain, watched_sections(model.scene, other))
         if strain in model.discrete.rods[other].admitted and min(ahead[0].min(), ahead[1].min()) > 0.0:

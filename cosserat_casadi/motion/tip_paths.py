@@ -134,7 +134,7 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
     longest = reduce(np.maximum, lengths.values())
     for body in model.scene.bodies:
         frames = frames_of(bodies[body.name], x, inputs)
-        points += list(_moved_with(frames, _watched_arms(body, longest.max())) / longest)
+        points += list(_moved_with(frames, watched_arms(body, longest.max())) / longest)
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
 
 
@@ -199,7 +199,7 @@ def path_distance(first: Paths, second: Paths) -> float:
     return float(np.maximum(distances.max(initial=0.0), LEVER * np.abs(rolls).max(initial=0.0)))
 
 
-def _watched_arms(body: Body, longest: float) -> FloatArray:
+def watched_arms(body: Body, longest: float) -> FloatArray:
     """Points of a body that are watched, in its axes, shape (k, 3), m: its origin, and what its inertia would move.
 
     These are its centre of mass, and on each axis through it a point at the radius of gyration. For a body with moments

@@ -13,7 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.simulate import Simulator, started
-from cosserat_casadi.motion.tip_paths import Paths, _watched_arms, path_distance, paths
+from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_arms
 from cosserat_casadi.scene.constraint_records import Body
 from tests.families import mostly_slow
 from tests.motion.transients import Table, gravity, table
@@ -205,9 +205,9 @@ def test_points_of_bodies_that_are_followed() -> None:
     weightless = Body(name="weightless", mass=0.0, inertia=INERTIA.tolist())
     radius = np.sqrt(np.trace(INERTIA) / (2 * MASS))
     origin = np.zeros(3)
-    assert_allclose(_watched_arms(heavy, 2.0), [origin, CENTRE, *(CENTRE + radius * np.eye(3))], rtol=1e-15, atol=0)
-    assert_allclose(_watched_arms(weightless, 2.0), [origin, *(2.0 * LEVER * np.eye(3))], rtol=1e-15, atol=0)
-    assert_allclose(_watched_arms(Body(name="light"), 2.0), [origin], rtol=0, atol=0)
+    assert_allclose(watched_arms(heavy, 2.0), [origin, CENTRE, *(CENTRE + radius * np.eye(3))], rtol=1e-15, atol=0)
+    assert_allclose(watched_arms(weightless, 2.0), [origin, *(2.0 * LEVER * np.eye(3))], rtol=1e-15, atol=0)
+    assert_allclose(watched_arms(Body(name="light"), 2.0), [origin], rtol=0, atol=0)
 
 
 def test_a_base_that_is_free_is_watched_too() -> None:
