@@ -146,7 +146,7 @@ def external(name: str, library: str) -> ca.Function:
 
 
 def renamed(function: ca.Function, name: str) -> ca.Function:
-    """A function with dense results, under a name of its own in C."""
+    """A function with dense results, under another name in C."""
     arguments = function.mx_in()
     results = [ca.densify(result) for result in function.call(arguments)]
     return ca.Function(name, arguments, results, function.name_in(), function.name_out())

@@ -155,7 +155,7 @@ def _interpreted(model: Model) -> PathFunctions:
 
 
 def _external(model: Model, library: str) -> PathFunctions:
-    """Those of a shared object, without a function being written for them."""
+    """The functions of a shared object, without a function being written for them."""
     rods = list(enumerate(model.discrete.rods))
     tips = {name: external(f"{TIP}{number}", library) for number, name in rods}
     between = {name: external(f"{BETWEEN}{number}", library) for number, name in rods if _places_between(model, name)}

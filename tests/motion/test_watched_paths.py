@@ -228,3 +228,29 @@ def test_a_base_that_is_free_is_watched_too() -> None:
     fallen = np.outer(-0.5 * 9.81 * times**2, [0.0, 0.0, 1.0])
     assert_allclose(base, start + fallen, rtol=0, atol=1e-9)
     assert_allclose(tip, base + np.array([1.0, 0.0, 0.0]), rtol=0, atol=1e-9)
+
+
+# Rods whose lengths are inputs, beside others
+
+
+def test_paths_are_over_the_length_that_an_input_gives_a_rod() -> None:
+    """Two straight rods in series with a body at the end, the first one drawn out: places over the length of each."""
+    rod = {"strain": "kirchhoff", "stiffness": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.0}}
+    tables = {
+        "schema": 1,
+        "inputs": ["first.length"],
+        "accuracy": {"modes": 2, "nodes": 6},
+        "rods": [
+            {"name": "first", "length": 0.5, "linear_density": 1.0, **rod},
+            {"name": "second", "length": 0.2, "linear_density": 1.0, "base": {"rod": "first", "at": 1.0}, **rod},
+        ],
+        "bodies": [{"name": "ball", "mass": 0.1}],
+        "joints": [{"kind": "fixed", "body": "ball", "rod": "second"}],
+    }
+    model = build(scene_from_dict(tables))
+    lengths = np.array([[0.5], [0.6], [0.8]])
+    points = paths(model, np.zeros((3, model.size)), lengths).points
+    first_tip = points[:, 0]
+    assert_allclose(first_tip, np.tile([0.0, 0.0, 1.0], (3, 1)), rtol=0, atol=1e-12)
+    # The body, whose frame stays where it is, over the longest rod.
+    assert_allclose(points[:, -1, 2], 0.7 / lengths[:, 0], rtol=1e-12, atol=0)
