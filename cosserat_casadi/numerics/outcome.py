@@ -18,7 +18,7 @@ class Outcome(Enum):
     SINGULAR = "No equilibrium found: the Jacobian is singular and no step reduces the residual."
     LOAD_STALLED = (
         "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be "
-        "followed further; there may be a limit point or a buckling load."
+        "followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way."
     )
     UNRESOLVED = (
         "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: "

@@ -230,7 +230,7 @@ const char *follower_reissner_status_text(follower_reissner_status status) {
     case FOLLOWER_REISSNER_SINGULAR:
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case FOLLOWER_REISSNER_LOAD_STALLED:
-      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
+      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way.";
     case FOLLOWER_REISSNER_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM:

@@ -229,7 +229,7 @@ const char *nitinol_wire_status_text(nitinol_wire_status status) {
     case NITINOL_WIRE_SINGULAR:
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case NITINOL_WIRE_LOAD_STALLED:
-      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
+      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way.";
     case NITINOL_WIRE_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case NITINOL_WIRE_NOT_IN_EQUILIBRIUM:

@@ -88,7 +88,7 @@ typedef enum {
   PLANAR_STRIP_MAX_ITERATIONS     = 1, /* No equilibrium found: the iterations ran out before the residual was small enough. */
   PLANAR_STRIP_NOT_FINITE         = 2, /* No equilibrium found: the equations gave a value that is not a finite number. */
   PLANAR_STRIP_SINGULAR           = 3, /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
-  PLANAR_STRIP_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
+  PLANAR_STRIP_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way. */
   PLANAR_STRIP_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance. */
   PLANAR_STRIP_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
   PLANAR_STRIP_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
@@ -228,8 +228,8 @@ planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_s
    inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
    status. CONVERGED: these are the inputs asked for, and planar_strip_track goes on. LOST_TRACK: call again, with the inputs of
    that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
-   there, there may be a limit point or a buckling load; other inputs may, and planar_strip_solve from all zeros. NOT_IN_EQUILIBRIUM:
-   nothing was tracked yet, or x is not what it was.
+   there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
+   planar_strip_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
    The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */

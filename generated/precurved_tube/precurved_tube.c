@@ -230,7 +230,7 @@ const char *precurved_tube_status_text(precurved_tube_status status) {
     case PRECURVED_TUBE_SINGULAR:
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case PRECURVED_TUBE_LOAD_STALLED:
-      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
+      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way.";
     case PRECURVED_TUBE_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case PRECURVED_TUBE_NOT_IN_EQUILIBRIUM:

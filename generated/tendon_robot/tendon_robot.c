@@ -285,7 +285,7 @@ const char *tendon_robot_status_text(tendon_robot_status status) {
     case TENDON_ROBOT_SINGULAR:
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case TENDON_ROBOT_LOAD_STALLED:
-      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
+      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way.";
     case TENDON_ROBOT_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance.";
     case TENDON_ROBOT_NOT_IN_EQUILIBRIUM:

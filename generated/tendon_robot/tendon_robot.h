@@ -110,7 +110,7 @@ typedef enum {
   TENDON_ROBOT_MAX_ITERATIONS     = 1, /* No equilibrium found: the iterations ran out before the residual was small enough. */
   TENDON_ROBOT_NOT_FINITE         = 2, /* No equilibrium found: the equations gave a value that is not a finite number. */
   TENDON_ROBOT_SINGULAR           = 3, /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
-  TENDON_ROBOT_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load. */
+  TENDON_ROBOT_LOAD_STALLED       = 4, /* No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point, a buckling load, or an obstacle or a rod in the way. */
   TENDON_ROBOT_UNRESOLVED         = 5, /* An equilibrium of the discrete model was found, but it is not resolved by its modes and nodes, or its steps: allow more of them, or a larger tolerance. */
   TENDON_ROBOT_NOT_IN_EQUILIBRIUM = 6, /* The unknowns are no equilibrium for these inputs: solve first. */
   TENDON_ROBOT_LOST_TRACK         = 7, /* The solution of the last turn could not be followed to these inputs within the bounds of one turn: move the inputs less in a turn, or solve anew. */
@@ -250,8 +250,8 @@ tendon_robot_status tendon_robot_track(const tendon_robot_real *inputs, tendon_r
    inputs, as far as the budget reaches. x and memory move on with it: x is the equilibrium for memory->inputs after any
    status. CONVERGED: these are the inputs asked for, and tendon_robot_track goes on. LOST_TRACK: call again, with the inputs of
    that time; info->load_factor is the share of this turn's line that was gone. LOAD_STALLED: the line does not lead
-   there, there may be a limit point or a buckling load; other inputs may, and tendon_robot_solve from all zeros. NOT_IN_EQUILIBRIUM:
-   nothing was tracked yet, or x is not what it was.
+   there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
+   tendon_robot_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
    The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
    at the end the index of resolution once. options and info may be null. */
