@@ -82,7 +82,6 @@ NUMBERS = """#undef C
 NUMBER = re.compile(r"NUMBER\(([^()]+)\)")
 """A constant in the text of a function until it is known whether it is there once."""
 
-
 LEFT_OUT = (
     '"no-tree-dse", "no-dse", "no-tree-dominator-opts", "no-tree-pta", \\\n'
     '    "no-tree-sink", "no-tree-sra", "no-tree-slsr", "no-tree-bit-ccp", "no-tree-ch"'
