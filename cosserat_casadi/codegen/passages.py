@@ -10,16 +10,21 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words, reals, record, record_table
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from
 from cosserat_casadi.equilibrium.contact.passing_through import admitted_depth
 from cosserat_casadi.equilibrium.smooth_passage import ball_in, depth_allowed, length_of
+from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.numbers import Scalar, any_symbolic, entries, least
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_depth import thin_layers
+from cosserat_casadi.model.contact_pairs import thickness
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.thin import first_places, moved_by
 
 PASSAGE_FILES = ("interpolation.c", "passages.c")
@@ -45,7 +50,14 @@ def passage_kernels(model: Model, names: Names) -> list[ca.Function]:
     """The distances from thin obstacles."""
     if not watches_passages(model):
         return []
-    return [distance_kernel(own, _kernel(names, i)) for i, own in enumerate(_thin(model.at().discrete))]
+    distances = [distance_kernel(own, _kernel(names, i)) for i, own in enumerate(_thin(model.at().discrete))]
+    sizes = _sizes(model)
+    if not any_symbolic(sizes):
+        return distances
+    symbols = [ca.MX.sym("inputs", model.inputs.size), model.parameters.symbol]
+    name = names.kernel("sizes")
+    function = ca.Function(name, symbols, [ca.densify(ca.vertcat(*sizes))], ["inputs", PARAMETERS], ["sizes"])
+    return [*distances, with_parameters_behind_inputs(function).expand(name)]
 
 
 def passage_words(model: Model, names: Names) -> Words:
@@ -57,16 +69,44 @@ def passage_words(model: Model, names: Names) -> Words:
     """
     if not watches_passages(model):
         return {"place_reals": 0}
-    # Steps are judged by the scene's own sizes, whatever the parameters are.
     discrete = model.at().discrete
+    sizes = _sizes(model)
+    are_free = any_symbolic(sizes)
     count = first_places(discrete)[1][-1]
     words: Words = {
         "name": names.name,
         "barriers": len(thin_layers(discrete)),
         "rod_pairs": len(discrete.pairs),
         "barrier_tables": "\n".join([*_barrier_lines(discrete, names), *_pair_lines(discrete)]),
+        "free_sizes": len(sizes) if are_free else 0,
+        "sizes": "" if are_free else reals("KNOWN_SIZES", np.array(sizes)),
     }
-    return {"passages": render("passages.c.in", words), "places": count, "place_reals": 6 * count}
+    return {
+        "passages": render("passages.c.in", words),
+        "places": count,
+        "free_sizes": words["free_sizes"],
+        "place_reals": 6 * count + words["free_sizes"],
+    }
+
+
+def _sizes(model: Model) -> list[Scalar]:
+    """Sizes of all barriers and pairs, as passages.c.in has them; expressions where a parameter is part of them."""
+    known_discrete, discrete = model.at().discrete, model.discrete
+    sizes: list[Scalar] = []
+    for own, layer in zip(thin_layers(known_discrete), thin_layers(discrete), strict=True):
+        length = length_of(discrete, layer)
+        radii: list[Scalar] = [ball_in(layer)] * 2
+        if _is_rod(layer):
+            places = np.linspace(0.0, 1.0, 1 + _parts(known_discrete, own))
+            radii = entries(section_radii(discrete.rods[str(layer.rod)].properties, places))
+        deepest = depth_allowed(layer.obstacle, length)
+        sizes += [admitted_depth(layer.obstacle, length, deepest, least(radii)), *radii]
+    # Half of their thickness, as between axes of rods that pass.
+    return [*sizes, *(thickness(discrete.rods, pair) / 2 for pair in discrete.pairs)]
+
+
+def _is_rod(layer: ContactLayer) -> bool:
+    return layer.body is None and layer.at is None
 
 
 def _thin(discrete: DiscreteScene) -> list[scenes.ObstacleRecord]:
@@ -88,37 +128,36 @@ def _barrier_lines(discrete: DiscreteScene, names: Names) -> Iterator[str]:
     obstacles = [obstacle.name for obstacle in _thin(discrete)]
     for number in range(len(obstacles)):
         yield render("distance.c.in", {"number": number, "kernel": _kernel(names, number)})
-    rods = dict.fromkeys(layer.rod for layer in layers if layer.body is None and layer.at is None)
+    rods = dict.fromkeys(layer.rod for layer in layers if _is_rod(layer))
     for number, rod in enumerate(rods):
         yield from _node_lines(discrete, str(rod), number)
     first, _ = first_places(discrete)
-    entries = []
-    for number, layer in enumerate(layers):
-        is_rod = layer.body is None and layer.at is None
-        radii = _radii(discrete, str(layer.rod)) if is_rod else np.full(2, ball_in(layer))
-        yield reals(f"RADII_{number}", radii)
-        length = length_of(discrete, layer)
-        thinnest = float(radii.min())
-        depth = admitted_depth(layer.obstacle, length, depth_allowed(layer.obstacle, length), thinnest)
+    records = []
+    size = 0
+    for layer in layers:
+        parts = _parts(discrete, layer)
         fields = {
-            "rod": f"&NODES_{list(rods).index(layer.rod)}" if is_rod else "0",
+            "rod": f"&NODES_{list(rods).index(layer.rod)}" if _is_rod(layer) else "0",
             "first": first[moved_by(discrete, layer)],
-            "radii": f"RADII_{number}",
-            "parts": len(radii) - 1,
-            "length": f"(real){float(length)!r}",
-            "admitted": f"(real){float(depth)!r}",
+            "sizes": size,
+            "length": f"(real){float(length_of(discrete, layer))!r}",
+            "parts": parts,
             "distance": f"distance_from_{obstacles.index(layer.obstacle.name)}",
         }
-        entries.append(record(fields))
-    yield record_table("barrier", "BARRIER", "BARRIERS", entries)
+        records.append(record(fields))
+        # The depth, and a radius more than there are parts.
+        size += 2 + parts
+    yield record_table("barrier", "BARRIER", "BARRIERS", records)
 
 
-def _radii(discrete: DiscreteScene, rod: str) -> FloatArray:
-    """Radii of the sections of a rod at places equally far apart, of which two are enough where they are linear."""
+def _parts(discrete: DiscreteScene, layer: ContactLayer) -> int:
+    """Number of equal parts of a rod in each of which its radius is linear; one of a ball."""
+    if not _is_rod(layer):
+        return 1
     places = np.linspace(0.0, 1.0, RADII)
-    radii = section_radius(discrete.rods[rod].properties, places)
+    radii = section_radius(discrete.rods[str(layer.rod)].properties, places)
     is_linear = np.allclose(radii, radii[0] + places * (radii[-1] - radii[0]), rtol=1e-9, atol=0.0)
-    return radii[[0, -1]] if is_linear else radii
+    return 1 if is_linear else RADII - 1
 
 
 def _node_lines(discrete: DiscreteScene, rod: str, number: int) -> Iterator[str]:
@@ -142,17 +181,16 @@ def _pair_lines(discrete: DiscreteScene) -> Iterator[str]:
     if not discrete.pairs:
         return
     _, first = first_places(discrete)
-    entries = []
+    records = []
+    # Those of barriers stand before.
+    size = sum(2 + _parts(discrete, layer) for layer in thin_layers(discrete))
     for number, pair in enumerate(discrete.pairs):
-        spacing = discrete.rods[pair.rods[1]].properties.length / pair.sections[1]
         fields = {
             "first": f"{{{first[2 * number]}, {first[2 * number + 1]}}}",
             "counts": f"{{{pair.sections[0]}, {pair.sections[1]}}}",
-            # Half of it, as between axes of rods that pass.
-            "allowed": f"(real){float(pair.thickness / 2)!r}",
+            "sizes": size + number,
             "apart": f"(real){float(max(pair.apart, -1e30))!r}",
             "length": f"(real){float(pair.length)!r}",
-            "spacing": f"(real){float(spacing)!r}",
         }
-        entries.append(record(fields))
-    yield record_table("rod_pair", "ROD_PAIR", "ROD_PAIRS", entries)
+        records.append(record(fields))
+    yield record_table("rod_pair", "ROD_PAIR", "ROD_PAIRS", records)

@@ -26,10 +26,11 @@ from cosserat_casadi.equilibrium.load_path import between
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.maths.numbers import Scalar, is_zero, least
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_depth import thin_layers
-from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.model.contact_pairs import ContactPair, thickness
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.numerics.continuation import Path, PathPoint
 
@@ -96,7 +97,7 @@ class SmoothBarriers:
             properties = self.model.discrete.rods[rod].properties
             start = at_start._looked_at[rod].positions(obstacle, before, inputs[0])
             end = self._looked_at[rod].positions(obstacle, after, inputs[1])
-            if is_inside_between(obstacle, properties, start, end, depth_allowed(obstacle, properties.length)):
+            if is_inside_between(obstacle, properties, start, end, float(depth_allowed(obstacle, properties.length))):
                 return True
         for layer in self.watched_bodies:
             way = (at_start._place(layer, before, inputs[0]), self._place(layer, after, inputs[1]))
@@ -106,8 +107,8 @@ class SmoothBarriers:
 
     def _is_inside_between(self, layer: ContactLayer, start: FloatArray, end: FloatArray) -> bool:
         """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between positions."""
-        length, radius = length_of(self.model.discrete, layer), ball_in(layer)
-        depth = depth_allowed(layer.obstacle, length)
+        length, radius = float(length_of(self.model.discrete, layer)), float(ball_in(layer))
+        depth = float(depth_allowed(layer.obstacle, length))
         return ball_is_inside_between(layer.obstacle, radius, length, start, end, depth)
 
     def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
@@ -138,7 +139,8 @@ class SmoothBarriers:
             properties = self.model.discrete.rods[rod].properties
             paths = self._looked_at[rod].paths(obstacle, x, inputs, every=ROUGHLY)
             way = (paths[:-1], paths[1:])
-            if is_inside_between(obstacle, properties, *way, depth_allowed(obstacle, properties.length), ROUGHLY):
+            deepest = float(depth_allowed(obstacle, properties.length))
+            if is_inside_between(obstacle, properties, *way, deepest, ROUGHLY):
                 return True
         for layer in self.watched_bodies:
             path = np.array([self._place(layer, *state) for state in zip(x, inputs, strict=True)])
@@ -173,7 +175,7 @@ class SmoothBarriers:
         # Every other section: they are nearer each other than half the thickness.
         meets = pair.meets[::EVERY, ::EVERY]
         apart, way = ((own[0][::EVERY, None] - own[1][None, ::EVERY])[meets] for own in (starts, moved))
-        allowed = pair.thickness / 2
+        allowed = float(thickness(self.model.discrete.rods, pair)) / 2
         squares = np.einsum("ki,ki->k", apart, apart)
         near = squares < (allowed + np.sqrt(np.max(np.einsum("ki,ki->k", way, way), initial=0.0))) ** 2
         apart, way = apart[near], way[near]
@@ -203,7 +205,7 @@ def are_one(x: FloatArray, other: FloatArray) -> bool:
     return bool(np.linalg.norm(x - other) <= SAME * (1 + np.linalg.norm(x)))
 
 
-def length_of(discrete: DiscreteScene, layer: ContactLayer) -> float:
+def length_of(discrete: DiscreteScene, layer: ContactLayer) -> Scalar:
     """Length that depths before a layer are relative to: of its rod, or of the longest one that holds its body, m."""
     if layer.body is not None:
         return discrete.body_frame(layer.body).length
@@ -211,12 +213,12 @@ def length_of(discrete: DiscreteScene, layer: ContactLayer) -> float:
     return discrete.rods[layer.rod].properties.length
 
 
-def ball_in(layer: ContactLayer) -> float:
+def ball_in(layer: ContactLayer) -> Scalar:
     """Radius of the largest ball in the body or the disk of a layer, m."""
-    return float(min(layer.radius, layer.thickness / 2) if layer.thickness else layer.radius)
+    return layer.radius if is_zero(layer.thickness) else least([layer.radius, layer.thickness / 2])
 
 
-def depth_allowed(obstacle: scenes.ObstacleRecord, length: float) -> float:
+def depth_allowed(obstacle: scenes.ObstacleRecord, length: Scalar) -> Scalar:
     """Depth inside a smooth obstacle that is not deep, relative to the length."""
     assert obstacle.width is not None
     return DEEP + obstacle.width / length

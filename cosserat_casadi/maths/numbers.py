@@ -53,6 +53,18 @@ def known(numbers: Numbers) -> FloatArray:
     return numbers
 
 
+def entries(vector: Numbers) -> list[Scalar]:
+    """The entries of a vector."""
+    if is_symbolic(vector):
+        return list(ca.vertsplit(vector))
+    return list(map(float, known(vector)))
+
+
+def least(values: Sequence[Scalar]) -> Scalar:
+    """The least of some values."""
+    return ca.mmin(ca.vertcat(*values)) if any_symbolic(values) else min(values)
+
+
 def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
     """Whether numbers are known to be zero, all of them."""
     if isinstance(value, tuple | list):

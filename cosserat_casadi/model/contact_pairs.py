@@ -14,7 +14,9 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.numbers import Scalar, entries, least
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -56,7 +58,8 @@ class ContactPair:
         stiffness: rate of the force per length with the gap where parallel rods touch, N/m².
         apart: how far the second section is along the rod from the first at least, m; far below zero for two rods.
         sections: number of sections of each rod.
-        thickness: distance of the centres of sections that touch, where it is least, m.
+        thickness: distance of the centres of sections that touch, where it is least, m, with the numbers that scale
+            the equations.
         length: of the first rod, m.
         friction: coefficient of friction.
         slip_speed: speed below which sticking sections creep, m/s.
@@ -165,6 +168,12 @@ def contact_pairs(
             friction=contact.friction,
             slip_speed=contact.slip_speed,
         )
+
+
+def thickness(rods: Mapping[str, DiscreteRod], pair: ContactPair) -> Scalar:
+    """Distance of the centres of sections that touch, where it is least, m."""
+    first, second = (least(entries(section_radii(rods[name].properties, LOOKED_AT))) for name in pair.rods)
+    return first + second
 
 
 def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:

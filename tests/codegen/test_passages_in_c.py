@@ -150,6 +150,44 @@ def test_steps_that_are_barred_vs_python(name: str, tmp_path: Path) -> None:
     assert found == wanted
 
 
+TAPERED_AND_MOVED = SCENES["tapered"].replace(PUSHED, MOVED)
+
+SIZED = {
+    "rod": ('parameters = ["rod.section.radius", "rod.length", "wire.width"]\n' + TAPERED_AND_MOVED, (6, 6, 2, 2)),
+    "rods": (
+        'parameters = [["rod.section.radius", "other.section.radius"], "other.length"]\n' + SCENES["rods"],
+        (2, 2),
+    ),
+}
+"""Scenes whose parameters are sizes of what is watched, and how many times as large they get at most."""
+
+
+@pytest.mark.parametrize("name", SIZED)
+def test_steps_are_judged_by_the_sizes_that_parameters_give(name: str, tmp_path: Path) -> None:
+    """Python's judgement at the parameters; with the scene's own sizes steps of either scene are judged otherwise."""
+    text, largest = SIZED[name]
+    model = build(parse_scene(text, list(FEW)))
+    x, given = random_steps(model, STEPS, 5)
+    own = model.parameters.pack()
+    given[:, :, model.inputs.size :] = own * np.random.default_rng(6).uniform(0.3, largest, (STEPS, 1, own.size))
+    inputs, p = np.split(given, [model.inputs.size], axis=2)
+    if name == "rod":
+        # Straight, it comes down on its wire to where it touches, and every third time deeper than is admitted.
+        base, tip, length, width = p[:, 1].T
+        x *= 0.0
+        inputs[:] = [0.0, 0.0, 0.05]
+        inputs[:, 1, 2] = -0.1 + 1e-3 + base + 0.9 / length * (tip - base)
+        inputs[::3, 1, 2] -= 1.6 * (1e-3 + width[::3])
+    wanted = []
+    for row in range(STEPS):
+        step = (x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]))
+        moved = SmoothBarriers(model.at(p[row, 1]))
+        wanted.append(moved.are_between(*step))
+    assert STEPS / 10 < sum(wanted) < STEPS - STEPS / 10
+    found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(STEPS, -1))
+    assert found == wanted
+
+
 ABOVE, BEHIND = np.array([0.0, 0.0, -0.1]), np.array([0.0, 0.0, -0.25])
 """Pushes under which the tip is above the wire, and under which it would be below without it."""
 

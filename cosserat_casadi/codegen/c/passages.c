@@ -3,7 +3,7 @@
 
    cosserat_casadi/equilibrium/smooth_passage.py asks the same of the steps in Python. A distance changes by no more than
    the way: from a place that is clear by some way the next one that is looked at is as far away, along the motion and
-   along the rod. Uses of the scene: BARRIER, ROD_PAIR, places_at. */
+   along the rod. Uses of the scene: BARRIER, ROD_PAIR, SIZES, places_at, find_sizes. */
 
 #include "interpolation.c"
 
@@ -13,9 +13,6 @@ static const real FINEST = (real)0.25;
 
 /* Longest step along a rod, in which a chord is about as long as the rod. */
 static const real LONGEST_STRETCH = (real)0.125;
-
-/* Bound on how much longer a rod is than its length, where its sections are counted. */
-static const real MOST_STRETCHED = (real)1.5;
 
 /* Sections of rods that touch rods of which one is looked at. */
 enum { EVERY = 2 };
@@ -34,19 +31,20 @@ static real distance_of(const real *a, const real *b) {
 /* How much nearer than it is a section may come on its way to what counts as deep, m; negative where it is deep, or where
    this is no number. */
 static real clear_by(const barrier *own, const real *start, const real *end, real radius, workspace *work) {
+  const real admitted = SIZES(work)[own->sizes + ADMITTED];
   const real way = distance_of(start, end);
   real least = -1, before = 0, gone = 0, share = 0;
   for (;;) {
     real position[3];
     for (int i = 0; i < 3; i++) position[i] = start[i] + share * (end[i] - start[i]);
-    const real clear = own->distance(position, work) - radius + own->admitted;
+    const real clear = own->distance(position, work) - radius + admitted;
     if (!(clear >= 0)) return -1;
     /* Between two looks the way is as clear as from both of its ends. */
     const real between = most_of((before + clear - gone) / 2, 0);
     least = share > 0 ? least_of(least, between) : clear;
     if (share == 1 || way == 0) return least;
     before = clear;
-    gone = most_of(clear, FINEST * own->admitted);
+    gone = most_of(clear, FINEST * admitted);
     if (gone < (1 - share) * way) {
       share += gone / way;
     } else {
@@ -70,23 +68,25 @@ static void position_of(const barrier *own, const real *places, real X, real *po
   point_of_curve(first + 3 * e * rod->nodes, rod->local_nodes, rod->barycentric, rod->nodes, local, position);
 }
 
-static real radius_of(const barrier *own, real X) {
+static real radius_of(const barrier *own, real X, const workspace *work) {
+  const real *radii = SIZES(work) + own->sizes + RADII;
   const real place = X * (real)own->parts;
   const int part = place < (real)own->parts ? (int)place : own->parts - 1;
-  return own->radii[part] + (place - (real)part) * (own->radii[part + 1] - own->radii[part]);
+  return radii[part] + (place - (real)part) * (radii[part + 1] - radii[part]);
 }
 
 /* Whether a section of a rod, or a ball, is deep inside an obstacle on its way. */
 static int goes_through(const barrier *own, const real *before, const real *after, workspace *work) {
+  const real *sizes = SIZES(work) + own->sizes;
   real start[3], end[3], next_start[3], next_end[3];
   real X = 0;
   position_of(own, before, X, start);
   position_of(own, after, X, end);
   for (;;) {
-    const real clear = clear_by(own, start, end, radius_of(own, X), work);
+    const real clear = clear_by(own, start, end, radius_of(own, X, work), work);
     if (clear < 0) return 1;
     if (!own->rod || X == 1) return 0;
-    const real reach = most_of(clear, FINEST * own->admitted);
+    const real reach = most_of(clear, FINEST * sizes[ADMITTED]);
     /* A little less, so that rounding does not halve the step. */
     real step = least_of((real)0.9 * reach / own->length, LONGEST_STRETCH);
     real next;
@@ -120,19 +120,30 @@ static real nearest_of(const real *first, const real *second, const real *first_
   return SQUARE_ROOT(sum);
 }
 
+/* The longest way from one section to the next. */
+static real longest_between(const real *places, int count) {
+  real longest = 0;
+  for (int i = 1; i < count; i++) longest = most_of(longest, distance_of(places + 3 * (i - 1), places + 3 * i));
+  return longest;
+}
+
 /* Whether the axes of two rods come nearer each other than half their thickness. */
-static int pass_each_other(const rod_pair *own, const real *before, const real *after) {
+static int pass_each_other(const rod_pair *own, const real *before, const real *after, const workspace *work) {
+  const real allowed = SIZES(work)[own->sizes];
+  const int others = 3 * own->first[1];
+  const int count = own->counts[1];
+  const real spacing = most_of(longest_between(before + others, count), longest_between(after + others, count));
   for (int i = 0; i < own->counts[0]; i += EVERY) {
     const real X = (i + (real)0.5) / own->counts[0];
     const int first = 3 * (own->first[0] + i);
-    for (int j = 0; j < own->counts[1];) {
-      const int second = 3 * (own->first[1] + j);
-      const real along = ((j + (real)0.5) / own->counts[1] - X) * own->length;
+    for (int j = 0; j < count;) {
+      const int second = others + 3 * j;
+      const real along = ((j + (real)0.5) / count - X) * own->length;
       int skipped = 1;
       if (along >= own->apart) {
-        const real clear = nearest_of(before + first, before + second, after + first, after + second) - own->allowed;
+        const real clear = nearest_of(before + first, before + second, after + first, after + second) - allowed;
         if (!(clear >= 0)) return 1;
-        skipped = (int)least_of(clear / (MOST_STRETCHED * own->spacing), (real)own->counts[1]) / EVERY;
+        skipped = clear < spacing * count ? (int)(clear / spacing) / EVERY : count;
         if (skipped < 1) skipped = 1;
       }
       j += EVERY * skipped;
@@ -142,9 +153,10 @@ static int pass_each_other(const rod_pair *own, const real *before, const real *
 }
 #endif
 
-/* The places in a shape, at the start of a step, 0, or at its end, 1. */
+/* The places in a shape, at the start of a step, 0, or at its end, 1, whose parameters tell the sizes. */
 static void find_places(const real *x, const real *inputs, int end, workspace *work) {
   places_at(x, inputs, work->places[end], work);
+  if (end) find_sizes(inputs, work);
 }
 
 /* Whether the straight way between the places at both ends leads through something thin. */
@@ -158,7 +170,7 @@ static int leads_through(workspace *work) {
 #endif
 #if ROD_PAIRS
   for (int k = 0; k < ROD_PAIRS; k++) {
-    if (pass_each_other(ROD_PAIR + k, before, after)) return 1;
+    if (pass_each_other(ROD_PAIR + k, before, after, work)) return 1;
   }
 #endif
   return 0;

@@ -30,6 +30,7 @@ from cosserat_casadi.equilibrium.contact.gaps import (
 from cosserat_casadi.equilibrium.solution import Solution, SolvedPoses
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.calls import evaluated
+from cosserat_casadi.maths.numbers import Scalar, least
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
@@ -133,7 +134,7 @@ def passes_through(before: Solution, after: Solution, deepest: float = DEEP) -> 
     return False
 
 
-def admitted_depth(obstacle: scenes.ObstacleRecord, length: float, deepest: float, radius: float) -> float:
+def admitted_depth(obstacle: scenes.ObstacleRecord, length: Scalar, deepest: Scalar, radius: Scalar) -> Scalar:
     """Depth inside an obstacle on the way that is not deep, m.
 
     Args:
@@ -142,7 +143,7 @@ def admitted_depth(obstacle: scenes.ObstacleRecord, length: float, deepest: floa
         deepest: the depth relative to it; at most :data:`MIDDLE` of the way to the middle is admitted.
         radius: of a ball, or of the thinnest section of a rod, m.
     """
-    return min(deepest * length, MIDDLE * (obstacle.thickness / 2 + radius))
+    return least([deepest * length, MIDDLE * (obstacle.thickness / 2 + radius)])
 
 
 def ball_is_inside_between(
@@ -163,7 +164,7 @@ def ball_is_inside_between(
         end: another, likewise.
         deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
     """
-    admitted = admitted_depth(obstacle, length, deepest, radius)
+    admitted = float(admitted_depth(obstacle, length, deepest, radius))
     # A stretch without length.
     ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
     sinking = _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
@@ -191,7 +192,7 @@ def is_inside_between(
         every: step from one of SECTIONS to the next one of the positions.
     """
     thinnest = float(section_radius(properties, SECTIONS).min())
-    admitted = admitted_depth(obstacle, properties.length, deepest, thinnest)
+    admitted = float(admitted_depth(obstacle, properties.length, deepest, thinnest))
     sinking = _sinking(
         lambda positions, X: section_gaps(obstacle, properties, positions, X),
         start,

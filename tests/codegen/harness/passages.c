@@ -11,6 +11,7 @@ enum { N = @{size}, INPUTS = @{given} };
 
 typedef struct {
   real places[2][3 * @{places}];
+  real sizes[@{free_sizes} + 1];
   real kernel_reals[@{kernel_reals} + 1];
   int kernel_integers[@{kernel_integers} + 1];
 } workspace;
