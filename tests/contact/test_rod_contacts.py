@@ -222,6 +222,18 @@ base = { position = [0.0, -0.15, -0.187], tangent = [0, 0, 1] }
 ON_POST = 'upper.base={ rod = "post", quaternion = [0.7071067811865476, -0.7071067811865476, 0, 0] }'
 
 
+@pytest.mark.parametrize(("radius", "passes"), [(5e-3, True), (4e-3, True), (3e-3, False)])
+def test_rods_pass_each_other_by_the_radii_that_parameters_give(radius: float, passes: bool) -> None:
+    """Straight rods whose axes come as near as 3.5 mm pass each other where half their thickness is more."""
+    names = ["lower.section.radius", "upper.section.radius"]
+    text = f"parameters = [{names}]" + CROSSED.format(push=0.0, more="")
+    changes = ["accuracy.modes=1", "accuracy.nodes=5", "inputs=['upper.base.position']"]
+    model = build(parse_scene(text, changes)).at({names[0]: radius})
+    inputs = np.array([[0, -0.15, 0.013], [0, -0.15, 0.0035]])
+    still = np.zeros(model.size)
+    assert SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1])) is passes
+
+
 def test_the_jacobian_is_that_of_differences_and_forces_leave_no_moment() -> None:
     model = crossed(-2.0, CARRIED, ON_POST, "accuracy.modes=1", "accuracy.nodes=5")
     solution = solve(model, estimate_error=False)
