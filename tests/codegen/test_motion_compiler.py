@@ -234,6 +234,10 @@ def test_bodies_and_limits_of_strains_stand_beside_the_residual() -> None:
     found, expected = paths(model, states, inputs, library), paths(model, states, inputs)
     assert_allclose(found.points, expected.points, rtol=1e-12, atol=1e-13)
     assert_allclose(found.section_axes, expected.section_axes, rtol=1e-12, atol=1e-13)
+    position, _, rotation = evaluated(model.body["arm"], states, inputs)
+    radius = np.sqrt(3e-3 / (2 * 0.1))
+    at_gyration = np.moveaxis(position + radius * rotation, 2, 1) / 0.8
+    assert_allclose(found.points[:, -3:], at_gyration, rtol=1e-12, atol=1e-13)
     (in_c,) = functions_of_limits(model)
     (limits,) = evaluated(ca.external(in_c.name(), library), states, inputs)
     (margins,) = evaluated(model.strain_margins, states, inputs)
