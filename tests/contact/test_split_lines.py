@@ -130,6 +130,25 @@ def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
     assert lifted.stable
 
 
+@pytest.mark.parametrize("beside", mostly_slow([1.5e-3, 1e-3, 2e-3], [1.5e-3]))
+def test_a_line_begins_shortly_before_a_load(beside: float) -> None:
+    """What a load lifts lies down again by 1e-3 of the length before another load, with the closed form above.
+
+    On so short a stretch rounding leaves the polynomials of the force per length open.
+    """
+    lift = 0.03
+    half = 3 * lift / (4 * WEIGHT) / LENGTH
+    section = 0.8 + half + beside
+    lifted = solved(point_load(0.8, lift) + point_load(section, -0.2, "other"))
+    check_contact(lifted, 1e-7)
+    first, second = lifted.contacts
+    assert_allclose([first.end, second.start], [0.8 - half, 0.8 + half], rtol=0, atol=1e-7)
+    assert_allclose([first.ends[1], second.ends[0]], lift / 4, rtol=2e-4, atol=0)
+    assert [inside.at for inside in second.inside] == [section]
+    assert_allclose(second.inside[0].force, 0.2, rtol=1e-5, atol=0)
+    check_balance(lifted, lift - 0.2)
+
+
 INSIDE = [(0.75, 0.002), (0.75, -0.002), (0.65, 0.001), (0.85, 0.001), (0.85, -0.001)]
 
 

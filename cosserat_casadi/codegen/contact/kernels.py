@@ -274,17 +274,10 @@ class ArrangementKernels:
         normal: Matrix = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)[1]
         return normal
 
-    def _forces(self) -> list[tuple[Touch, Matrix, Matrix]]:
+    def _forces(self) -> Iterator[tuple[Touch, Matrix, Matrix]]:
         """Each contact, the forces at its ends and the coefficients of that along it, without unit."""
         _, f, _ = self._written.unknowns
-        split: list[tuple[Touch, Matrix, Matrix]] = []
-        first = 0
-        for touch in self._written.state.touches:
-            ends = len(touch.ends)
-            count = touch.moment_count(self._written.modes[touch.owner]) if touch.is_line else 0
-            split.append((touch, f[first : first + ends], f[first + ends : first + ends + count]))
-            first += ends + count
-        return split
+        return self._written.state.with_forces(f, self._written.modes)
 
     def _unit(self, touch: Touch) -> float:
         return self._written.system.discrete.contact_unit(touch.owner, of_body=touch.of_body)

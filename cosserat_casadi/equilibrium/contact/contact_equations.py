@@ -177,7 +177,8 @@ class Placed:
         x = ca.MX.sym("x", self.model.size)
         inputs = ca.MX.sym("inputs", self.model.inputs.size)
         system = System(self.model.discrete, Arguments(x, inputs))
-        return x, inputs, gap_rows(system, self.state, self.modes)
+        forces = inputs[self.force_entries] / self.force_units
+        return x, inputs, gap_rows(system, self.state, self.modes, forces)
 
     def obstacle(self, name: str) -> scenes.ObstacleRecord:
         """The obstacle of a name."""
@@ -213,7 +214,7 @@ class Written:
 
     @cached_property
     def _gaps(self) -> Matrix:
-        return gap_rows(self.system, self.state, self.modes)
+        return gap_rows(self.system, self.state, self.modes, self.unknowns[1])
 
     @property
     def residual(self) -> Matrix:

@@ -148,6 +148,18 @@ class ContactEquilibrium:
             return float(np.concatenate([X, sections])[forces.argmin()])
         raise ValueError("no contact of this state")
 
+    def risen(self, touch: Touch, section: float) -> float:
+        """Abscissa over which a line rises on both sides of a section of its that would pull with P: 3P/4q, or 0.
+
+        So far a heavy straight beam of the weight q per length rises from a plane under a load P.
+        """
+        for other, carried, line in self.parts():
+            if other == touch:
+                _, pressure = self.pressure(touch, line)
+                pulls = dict(zip(touch.carriers, -carried, strict=True))
+                return float(0.75 * pulls.get(section, 0.0) / np.median(pressure))
+        raise ValueError("no contact of this state")
+
     def penetrations(self, tolerance: float) -> Iterator[Penetrated]:
         """Stretches and bodies that are inside an obstacle by more than a tolerance."""
         for rod, obstacle in pairs(self.placed.model.scene):
@@ -465,8 +477,16 @@ def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[T
     if touch.is_line:
         # Forces that push bear no moment: a line opens at the section that it acts on, wherever it pulls most.
         for lifted in dict.fromkeys([found.weakest(touch), *touch.seams]):
+            reach = found.risen(touch, lifted)
+            if 0.0 < reach < min(lifted - touch.start, touch.end - lifted):
+                yield _sides(touch, lifted, reach)
             yield from _opened(touch, lifted)
     yield from instead_of_pulling(touch)
+
+
+def _sides(touch: Touch, lifted: float, reach: float) -> tuple[Touch, Touch]:
+    """What is left of a line that rises over a reach on both sides of a section."""
+    return replace(touch, end=lifted - reach, seams=()), replace(touch, start=lifted + reach, seams=())
 
 
 def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
@@ -475,12 +495,8 @@ def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
     after = touch.end - lifted
     if not before > 0.0 < after:
         return
-    reach = OPENING * min(before, after)
-    parts = []
-    if before >= NEAR:
-        parts.append(Touch.line(touch.obstacle, touch.owner, touch.start, lifted - reach))
-    if after >= NEAR:
-        parts.append(Touch.line(touch.obstacle, touch.owner, lifted + reach, touch.end))
+    first, last = _sides(touch, lifted, OPENING * min(before, after))
+    parts = [part for part, length in ((first, before), (last, after)) if length >= NEAR]
     if parts:
         yield tuple(parts)
     if min(before, after) < SHORT <= max(before, after):

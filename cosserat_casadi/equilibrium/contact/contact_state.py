@@ -15,7 +15,7 @@ from cosserat_casadi.equilibrium.solution import SectionForce
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.contact_point import ContactPoint
 from cosserat_casadi.maths.numbers import is_symbolic
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import Columns, FloatArray
 from cosserat_casadi.model.element_ends import element_ends
 from cosserat_casadi.model.system_functions import SystemFunctions
 
@@ -176,7 +176,7 @@ class Touch:
         """Number of polynomials of the force per length, over all stretches."""
         return sum(self.moment_counts(modes))
 
-    def by_stretch(self, along: FloatArray, modes: int) -> Iterator[tuple[float, float, FloatArray]]:
+    def by_stretch(self, along: Columns, modes: int) -> Iterator[tuple[Place, Place, Columns]]:
         """Start and end of each stretch, with its part of the coefficients of the force per length."""
         first = 0
         for (start, end), count in zip(self.stretches, self.moment_counts(modes), strict=True):
@@ -247,9 +247,7 @@ class ContactState:
             first = last
         return ContactState(tuple(touches))
 
-    def with_forces(
-        self, forces: FloatArray, modes: Mapping[str, int]
-    ) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+    def with_forces(self, forces: Columns, modes: Mapping[str, int]) -> Iterator[tuple[Touch, Columns, Columns]]:
         """Each contact, the forces at its sections, and the coefficients of the force along it.
 
         Args:

@@ -1,6 +1,12 @@
 """Equations of known contacts: no gap where rods and bodies touch, no slope of the gap where contact moves.
 
-Along a line they are the moments of the gap with the polynomials of its force. See docs/contact.md.
+Along a line they are the moments of the gap with the polynomials of its force. Over a stretch of the width w the force
+of a polynomial opens the gap by w⁴ of what it is: over short ones by less than rounding, which leaves any force per
+length there, only not its mean, open. So that it is small then, the surface gives way by less than rounding too:
+
+    ∫ P_j (d − ρ) + c/w f_j = 0,    j > 0.
+
+See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -25,11 +31,21 @@ from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 from cosserat_casadi.rod.strain import DiscreteRod
 
+GIVES = 1e-17
+"""c, relative to the length of the rod: how far a surface gives way under EI/ℓ³ that varies along a whole rod."""
 
-def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> Matrix:
-    """Residuals of the contacts, without unit: for each contact the rows of its sections, then the moments along it."""
+
+def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forces: Matrix) -> Matrix:
+    """Residuals of the contacts, without unit: for each contact the rows of its sections, then the moments along it.
+
+    Args:
+        system: the scene with the contacts.
+        state: the contacts.
+        modes: polynomials of the curvature of each rod, by name.
+        forces: of all contacts, without unit, in the order of the loads.
+    """
     rows: list[Matrix] = [ca.MX(0, 1)]
-    for touch in state.touches:
+    for touch, _, along in state.with_forces(forces, modes):
         if touch.of_body:
             rows.append(_body_gap(system, touch))
             continue
@@ -40,11 +56,9 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> M
             if moves:
                 rows.append(slope)
         if touch.is_line:
-            counts = touch.moment_counts(modes[touch.owner])
-            rows += [
-                distances.moments(start, end, count)
-                for (start, end), count in zip(touch.stretches, counts, strict=True)
-            ]
+            for start, end, own in touch.by_stretch(along, modes[touch.owner]):
+                varying = ca.vertcat(0, own[1:])
+                rows.append(distances.moments(start, end, own.shape[0]) + GIVES / (end - start) * varying)
     return ca.vertcat(*rows)
 
 
