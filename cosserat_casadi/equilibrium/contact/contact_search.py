@@ -149,15 +149,16 @@ class ContactEquilibrium:
         raise ValueError("no contact of this state")
 
     def risen(self, touch: Touch, section: float) -> float:
-        """Abscissa over which a line rises on both sides of a section of its that would pull with P: 3P/4q, or 0.
+        """Length of rod that rises on either side of a section that pulls; 0 where no section does.
 
-        So far a heavy straight beam of the weight q per length rises from a plane under a load P.
+        A load P raises a heavy straight beam of the weight q per length from a plane over 3P/4q on either side.
         """
         for other, carried, line in self.parts():
             if other == touch:
                 _, pressure = self.pressure(touch, line)
+                weight = float(np.median(pressure))
                 pulls = dict(zip(touch.carriers, -carried, strict=True))
-                return float(0.75 * pulls.get(section, 0.0) / np.median(pressure))
+                return 0.75 * float(pulls.get(section, 0.0)) / weight if weight > 0.0 else 0.0
         raise ValueError("no contact of this state")
 
     def penetrations(self, tolerance: float) -> Iterator[Penetrated]:
@@ -485,7 +486,7 @@ def _where_it_opens(found: ContactEquilibrium, touch: Touch) -> Iterator[tuple[T
 
 
 def _sides(touch: Touch, lifted: float, reach: float) -> tuple[Touch, Touch]:
-    """What is left of a line that rises over a reach on both sides of a section."""
+    """The lines on both sides of a section around which a line rises over a reach."""
     return replace(touch, end=lifted - reach, seams=()), replace(touch, start=lifted + reach, seams=())
 
 
