@@ -1,8 +1,8 @@
 """Equations of known contacts: no gap where rods and bodies touch, no slope of the gap where contact moves.
 
-Along a line they are the moments of the gap with the polynomials of its force. Over a stretch of the width w a force per
-length f_j P_j moves the gap by some w⁴ f_j/j⁴: along short ones by less than rounding, which leaves f_j open. There the
-surface gives way by less than rounding too, so that f_j is small; the mean f_0 is left as it is:
+Along a line they are the moments of the gap with the polynomials of its force. Over a stretch of the width w a force
+per length f_j P_j moves the gap by some w⁴ f_j/j⁴: along short ones by less than rounding, which leaves f_j open. There
+the surface gives way by less than rounding too, so that f_j is small; the mean f_0 is left as it is:
 
     ∫ P_j (d − ρ) + c/w f_j = 0,    j > 0.
 
