@@ -163,6 +163,13 @@ def _new_arm_of_twist(model: Model, name: str) -> float:
     return float(np.max(distances / np.array(lengths), initial=LEVER))
 
 
+def _along_axis(model: Model, name: str, other: str) -> float:
+    """Largest cosine between tangents of two unloaded rods, without sign."""
+    first, second = (_unloaded_axis(model, rod)[1] for rod in (name, other))
+    sizes = np.outer(np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1))
+    return float(np.max(np.abs(first @ second.T) / sizes))
+
+
 def _unloaded_axis(model: Model, name: str) -> tuple[FloatArray, FloatArray]:
     """Positions and tangents, not of unit length, of an unloaded rod at its nodes, world axes, m, shape (nodes, 3)."""
     base = model.discrete.unloaded.base(name)
@@ -236,7 +243,8 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
     the size of Legendre's polynomials there: near a thin tip they see little of it.
 
     Where the watched sections are thicker than others, the root of the change is believed: on few modes fronts are
-    blurred, and grow less on their way to thin sections. Rods that the rod moves along are watched too.
+    blurred, and grow less on their way to thin sections. Rods that the rod moves along are watched too; into one at an
+    angle a twist goes by its share about that rod's axis.
 
     Args:
         model: the model.
@@ -259,7 +267,8 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
         properties = model.discrete.rods[other].properties
         ahead = _along(properties, strain, watched_sections(model.scene, other))
         if strain in model.discrete.rods[other].admitted and min(ahead[0].min(), ahead[1].min()) > 0.0:
-            velocity = np.append(velocity, (ahead[0] * ahead[1]) ** -0.25)
+            share = _along_axis(model, name, other) if strain == TWIST else 1.0
+            velocity = np.append(velocity, share * (ahead[0] * ahead[1]) ** -0.25)
     late = np.repeat(widths, len(ANGLES)) * np.sqrt(inertia / stiffness)[: len(inside)]
     seen = velocity[: len(inside)] * late * np.tile(np.sqrt(np.sin(ANGLES)), len(widths))
     at_watched = np.sqrt(velocity[len(inside) :].max() * velocity.max())

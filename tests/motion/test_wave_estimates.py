@@ -198,11 +198,11 @@ def test_fronts_from_a_thick_rod_into_a_thin_one_are_told_from_above() -> None:
     assert error < told < CARELESS * error
 
 
-def twisted_with(base: dict[str, Any], length: float, **changes: Any) -> Scene:
+def twisted_with(base: dict[str, Any], length: float, stiffness: float = 1e6, **changes: Any) -> Scene:
     """A rod along x twisted by a tenth of MOMENT, which carries one of so little mass that its tip is free."""
     scene = suddenly("twist", 1e-2)
     scene["loads"][0]["moment"] = [0.1 * MOMENT, 0, 0]
-    light = {"stiffness": {"torsion": 1e6}, "rotary_inertia": [1e-6] * 3, "linear_density": 1e-6}
+    light = {"stiffness": {"torsion": stiffness}, "rotary_inertia": [1e-6] * 3, "linear_density": 1e-6}
     arm = {"name": "arm", "length": length, "strain": ["torsion"], **light, "base": {"rod": "rod", **base}}
     return scene_from_dict({**scene, "rods": [*scene["rods"], arm], **changes}).with_motion_inputs()
 
@@ -233,10 +233,13 @@ def test_arm_of_a_twist_that_turns_a_body() -> None:
     assert_allclose(arm_of_twist(model, "rod"), 0.75 / 1.5, rtol=1e-12, atol=0)
 
 
-@pytest.mark.parametrize("modes", [6, 9])
-def test_fronts_of_a_twist_count_at_the_arm_of_a_rod_across(modes: int) -> None:
-    """At an arm of LEVER a tenth was told, and searches ended with up to five times the error that they told."""
-    scene = twisted_with({"tangent": [0, 1, 0]}, 1.0)
+@pytest.mark.parametrize(("modes", "stiffness"), [(6, 1e6), (9, 1e6), (6, 1.0)])
+def test_fronts_of_a_twist_count_at_the_arm_of_a_rod_across(modes: int, stiffness: float) -> None:
+    """At an arm of LEVER a tenth was told, and searches ended with up to five times the error that they told.
+
+    No twist runs into the rod across, however little its impedance: as if one did, 30 times as much would be told.
+    """
+    scene = twisted_with({"tangent": [0, 1, 0]}, 1.0, stiffness)
     history = history_of(scene, modes, 1e-5)
     tip = paths(history.model, *history.rough_positions(np.linspace(0.0, PASSES, ROWS))).points[:, 1, :]
     turn = 0.1 * MOMENT * RISE
