@@ -12,6 +12,9 @@ from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
+AT_ONCE = 1024
+"""Times whose nodes are held in memory together: all fields of the nodes are several times as large as the sections."""
+
 
 class Poses(NamedTuple):
     """Poses over T times in the world frame; of one frame, or of k sections.
@@ -84,12 +87,16 @@ def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, input
         shapes (T, k, 3) and (T, k, 4), or (T, 3) and (T, 4) of one abscissa.
     """
     # The nodes are asked for once a time, and the sections follow by one matrix: less than a call for each section.
-    nodal_position, nodal_quaternion, *_ = evaluated(model.fields[rod], x, inputs)
     interpolation = model.discrete.rods[rod].grid.interpolation_matrix(X)
-    position = np.einsum("...n,tin->t...i", interpolation, nodal_position)
-    quaternion = np.einsum("...n,tin->t...i", interpolation, nodal_quaternion)
-    # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
-    quaternion /= np.linalg.norm(quaternion, axis=-1, keepdims=True)
+    position = np.empty((len(x), *np.shape(X), 3))
+    quaternion = np.empty((len(x), *np.shape(X), 4))
+    for first in range(0, len(x), AT_ONCE):
+        rows = slice(first, first + AT_ONCE)
+        nodal_position, nodal_quaternion, *_ = evaluated(model.fields[rod], x[rows], inputs[rows])
+        np.einsum("...n,tin->t...i", interpolation, nodal_position, out=position[rows])
+        np.einsum("...n,tin->t...i", interpolation, nodal_quaternion, out=quaternion[rows])
+        # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
+        quaternion[rows] /= np.linalg.norm(quaternion[rows], axis=-1, keepdims=True)
     return Poses(position, quaternion)
 
 

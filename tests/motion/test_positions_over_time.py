@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.pose_series import AT_ONCE, section_poses
 from cosserat_casadi.motion.simulate import started
 from cosserat_casadi.numerics.collocation import radau
 from tests import moving_scenes
@@ -83,3 +85,22 @@ def test_a_motion_that_has_no_step_has_its_start() -> None:
     expected_x, expected_inputs = one_by_one(history, np.zeros(2))
     assert_allclose(x, expected_x, rtol=0, atol=0)
     assert_allclose(inputs, expected_inputs, rtol=0, atol=0)
+
+
+def test_sections_at_many_times_take_little_more_memory_than_their_poses() -> None:
+    """The fields of all nodes at all times would be several times as large; one time alone has the same poses."""
+    model = moving_model(free_rod())
+    (rod,) = model.discrete.rods
+    count = 24 * AT_ONCE + 1
+    x = 0.1 * np.random.default_rng(0).standard_normal((count, model.size))
+    inputs = np.tile(model.inputs.pack(), (count, 1))
+    X = np.linspace(0.0, 1.0, 5)
+    tracemalloc.start()
+    poses = section_poses(model, rod, X, x, inputs)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 2 * (poses.position.nbytes + poses.quaternion.nbytes)
+    for row in (0, AT_ONCE - 1, AT_ONCE, count - 1):
+        alone = section_poses(model, rod, X, x[row : row + 1], inputs[row : row + 1])
+        assert_allclose(poses.position[row], alone.position[0], rtol=0, atol=1e-15)
+        assert_allclose(poses.quaternion[row], alone.quaternion[0], rtol=0, atol=1e-15)
