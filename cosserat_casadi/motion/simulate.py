@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -130,6 +130,9 @@ steps became ever shorter.
 
 MARGINS = "motion_margins"
 """Name of the margins of strains in C."""
+
+STEPS_ALONE = "Its error is that of the time steps on the modes of the model; of a scene it is that of the modes too."
+"""Sentence of a motion of a model."""
 
 
 @dataclass(frozen=True)
@@ -480,7 +483,8 @@ def simulate(
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
     bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
-    return judged(simulator, timed.history, timed.error, bound, [timed.companion])
+    motion = judged(simulator, timed.history, timed.error, bound, [timed.companion])
+    return replace(motion, message=f"{motion.message} {STEPS_ALONE}")
 
 
 def bound_of(scene: Scene, simulation: Simulation, tolerance: float) -> float:
