@@ -51,6 +51,9 @@ LINKS = 20
 INTERVALS = 40
 """Intervals of the grid that gives the unloaded shape of a rod."""
 
+TWIST_AND_SHEAR = frozenset({2, 3, 4})
+"""Numbers of the torsion and of the shears, by which a channel grows longer than its volume over its area."""
+
 STIFF = 1e3
 """Stiffness of a drive, or of a cable of given length, over that of the rod that it moves."""
 
@@ -676,6 +679,9 @@ class _Robot:
         """A pressure that drives the ends of its channel apart."""
         if chamber.wall is not None or chamber.area_growth or chamber.offset_growth:
             self._leave_out(chamber.name, "the chamber does not widen under its pressure in MuJoCo")
+        if not TWIST_AND_SHEAR.isdisjoint(self.unloaded.rods[chamber.rod].properties.admitted):
+            told = "in MuJoCo the pressure works on its length, not its volume: different where sections twist or shear"
+            self._leave_out(chamber.name, told)
         area = chamber.area
         if area is None:
             assert chamber.wall is not None, "the record's rules ask for area or wall"

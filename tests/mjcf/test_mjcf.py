@@ -73,6 +73,22 @@ values = [0.3, 0.29]
     assert_allclose(damping, 0.01 * np.array(stiffness), rtol=1e-9, atol=0)
 
 
+@pytest.mark.parametrize(("strain", "told"), [("reissner", True), ("kirchhoff", True), ("planar", False)])
+def test_a_channel_that_may_twist_or_shear_is_told(strain: str, told: bool) -> None:
+    """MuJoCo's tendon is as long as the channel; the volume counts along the normals of the sections alone."""
+    chamber = """
+[[actuators]]
+name = "channel"
+kind = "chamber"
+rod = "finger"
+pressure = 1e4
+area = 1e-5
+offset = [5e-3, 0]
+"""
+    model = mjcf_of(parse_scene(FINGER.replace("kirchhoff", strain) + chamber), 4)
+    assert [sentence.split(":")[0] for sentence in model.left_out] == ["channel"] * told
+
+
 def test_inputs_are_controls_with_the_values_of_the_scene() -> None:
     root = ET.fromstring(mjcf_of(parse_scene(SCENES["jointed"]), 4).text)
     actuators = root.find("actuator")
