@@ -6,14 +6,13 @@ See docs/theory.md, section 9; section 8 for how constraints yield on the way.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import sqrt
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.contact_layers import thinnest
+from cosserat_casadi.model.contact_layers import longest_step
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import without_noise
 from cosserat_casadi.numerics.broyden import Jacobian, solved
@@ -24,13 +23,9 @@ FIRST_STEP = 0.25
 
 
 def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
-    """Limits of a continuation: beside smooth obstacles its steps are so short that sections go nearly straight.
-
-    Steps are watched as if sections went straight from start to end. Where a rod turns by θ rad in a step, a section
-    is off its chord by θ²/8 of the length at most: that is to be half the thickness of the thinnest obstacle.
-    """
+    """Limits of a continuation: beside smooth obstacles its steps are so short that sections go nearly straight."""
     limits = ContinuationSettings()
-    return replace(limits, longest=min(limits.longest, 2 * sqrt(thinnest(model.scene))))
+    return replace(limits, longest=min(limits.longest, longest_step(model.scene)))
 
 
 def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> Path:

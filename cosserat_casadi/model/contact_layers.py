@@ -29,8 +29,7 @@ NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
 
 SHARE_ON_BODY = 0.25
-"""Share of an obstacle's thickness on a body: it comes to meet the rod, and neither may pass its middle.
-"""
+"""Share of an obstacle's thickness on a body: it comes to meet the rod, and neither may pass its middle."""
 
 
 def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iterator[ContactLayer]:
@@ -111,14 +110,22 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
     return list(map(float, np.linspace(0.0, 1.0, ceil(wanted) + 1)))
 
 
-def thinnest(scene: scenes.Scene) -> float:
-    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any."""
-    thicknesses = [
-        obstacle.thickness if obstacle.body is None else SHARE_ON_BODY * obstacle.thickness
+def longest_step(scene: scenes.Scene) -> float:
+    """Turn of a rod in a step beside obstacles with a width, rad; infinite without any.
+
+    Steps are watched as if sections went straight. Where a rod turns by θ a section is off its chord by θ²/8 of the
+    length at most: that is to be half the thickness of the thinnest obstacle. One on a body comes to meet the rod, and
+    in a step neither may go farther than :data:`SHARE_ON_BODY` of its thickness.
+    """
+    shortest = min((rod.length for rod in scene.rods), default=1.0)
+    steps = [
+        2 * sqrt(obstacle.thickness / shortest)
+        if obstacle.body is None
+        else 2 * SHARE_ON_BODY * obstacle.thickness / shortest
         for obstacle in scene.obstacles
         if obstacle.is_smooth
     ]
-    return min(thicknesses, default=inf) / min((rod.length for rod in scene.rods), default=1.0)
+    return min(steps, default=inf)
 
 
 def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:

@@ -168,9 +168,12 @@ class Placed:
 
     @cached_property
     def gaps_by_inputs(self) -> ca.Function:
-        """(x, inputs) ↦ its derivative with the inputs, of which some move bases."""
+        """(x, inputs) ↦ its derivative with the inputs, of which some move bases; forces of contacts move none."""
         x, inputs, gaps = self._written_gaps
-        return ca.Function("gaps_by_inputs", [x, inputs], [ca.jacobian(gaps, inputs)])
+        by_inputs = ca.jacobian(gaps, inputs)
+        # By less than rounding surfaces give way.
+        by_inputs[:, self.force_entries] = 0
+        return ca.Function("gaps_by_inputs", [x, inputs], [by_inputs])
 
     @cached_property
     def _written_gaps(self) -> tuple[ca.MX, ca.MX, Matrix]:

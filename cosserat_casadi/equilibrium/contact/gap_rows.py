@@ -57,7 +57,7 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forc
                 rows.append(slope)
         if touch.is_line:
             for start, end, own in touch.by_stretch(along, modes[touch.owner]):
-                varying = ca.vertcat(0, own[1:])
+                varying = ca.vertcat(0, own[1:, :])
                 rows.append(distances.moments(start, end, own.shape[0]) + GIVES / (end - start) * varying)
     return ca.vertcat(*rows)
 
