@@ -102,8 +102,8 @@ STUDIES = (
     Study(
         "silicone_arm",
         (
-            Number("chamber.offset.0", "offset in the plane of bending, mm", 1e3),
-            Number("chamber.offset.1", "offset across, mm", 1e3),
+            Number("chamber.offset.x", "offset in the plane of bending, mm", 1e3),
+            Number("chamber.offset.y", "offset across, mm", 1e3),
             Number("chamber.area_growth.0", "growth of area times offset by 200 mbar"),
             Number("chamber.area_growth.1", "by the square of that"),
         ),

@@ -129,7 +129,7 @@ class NamedNumbers:
         """A name for each cell, which names that number alone."""
         rows = dict.fromkeys(row for row, _ in self.cells)
         columns = dict.fromkeys(column for _, column in self.cells)
-        words = _component_words(self.form, len(rows))
+        words = _component_words(self.keys[-1], self.form, len(rows))
         names = []
         for row, column in self.cells:
             component = f".{words[row]}" if len(rows) > 1 else ""
@@ -250,7 +250,7 @@ def _numbers_in(name: str, holder: Holder, segments: Sequence[str]) -> NamedNumb
     mark = varying_mark(field)
     form = _form(value, along=mark is not None, by_component=mark is not None and varies_by_component(field))
     unit = unit_of(field)
-    cells = _chosen(form, _lengths(form, value), remaining)
+    cells = _chosen(keys[-1], form, _lengths(form, value), remaining)
     grid = _grid(form, value, cells)
     default = np.array([grid[cell] for cell in cells], dtype=float)
     chosen_rows = len({row for row, _ in cells})
@@ -294,7 +294,7 @@ def _lengths(form: Form, value: Any) -> list[int]:
     return [len(component) if isinstance(component, tuple) else 1 for component in value]
 
 
-def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[Cell, ...]:
+def _chosen(key: str, form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[Cell, ...]:
     """The cells that the parts of a name behind its key choose; without parts all, as many in every component.
 
     Raises:
@@ -306,7 +306,7 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
     chosen_rows: Iterable[int] = range(rows)
     # A matrix of one row may get more.
     if remaining and (rows > 1 or form is Form.MATRIX):
-        row = _part(remaining.pop(0), _component_words(form, rows), rows, "component")
+        row = _part(remaining.pop(0), _component_words(key, form, rows), rows, "component")
         chosen_rows = [row]
         columns = lengths[row]
     chosen_columns: Iterable[int] = range(columns)
@@ -323,10 +323,12 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
     return tuple((row, column) for column, row in itertools.product(chosen_columns, chosen_rows))
 
 
-def _component_words(form: Form, rows: int) -> Sequence[str]:
-    """Names of the components of a key."""
-    if form is Form.VECTOR and rows == len(SPAN):
+def _component_words(key: str, form: Form, rows: int) -> Sequence[str]:
+    """Names of the components of a key: axes, ends of a span, or numbers of coefficients."""
+    if key == "span":
         return SPAN
+    if form is Form.VECTOR and rows == 2:
+        return ("0", "1")
     return AXES.get(rows, AXES[3][:rows] if rows < 3 else tuple(map(str, range(rows))))
 
 

@@ -164,3 +164,14 @@ def test_numbers_of_a_long_list_have_names_that_stand_for_them_alone() -> None:
         for cell, value in zip(whole.cell_names, values, strict=True):
             (alone,) = scene.model_copy(update={"parameters": (cell,)}).named_parameters()
             assert_array_equal(alone.default, [[value]])
+
+
+def test_two_numbers_are_named_by_what_they_are() -> None:
+    chamber = {"name": "own", "kind": "chamber", "rod": "wire", "pressure": 0.0, "offset": [1e-3, 0]}
+    grown = {**chamber, "area": 1e-6, "area_growth": [0.1, 0.2], "reference_pressure": 1e4, "span": [0.1, 0.9]}
+    scene = scene_from_dict({**SCENE, "actuators": [grown], "parameters": ["own.area_growth", "own.offset", "own.span"]})
+    assert [numbers.cell_names for numbers in scene.named_parameters()] == [
+        ("own.area_growth.0", "own.area_growth.1"),
+        ("own.offset.x", "own.offset.y"),
+        ("own.span.start", "own.span.end"),
+    ]
