@@ -169,7 +169,9 @@ def test_numbers_of_a_long_list_have_names_that_stand_for_them_alone() -> None:
 def test_two_numbers_are_named_by_what_they_are() -> None:
     chamber = {"name": "own", "kind": "chamber", "rod": "wire", "pressure": 0.0, "offset": [1e-3, 0]}
     grown = {**chamber, "area": 1e-6, "area_growth": [0.1, 0.2], "reference_pressure": 1e4, "span": [0.1, 0.9]}
-    scene = scene_from_dict({**SCENE, "actuators": [grown], "parameters": ["own.area_growth", "own.offset", "own.span"]})
+    scene = scene_from_dict(
+        {**SCENE, "actuators": [grown], "parameters": ["own.area_growth", "own.offset", "own.span"]}
+    )
     assert [numbers.cell_names for numbers in scene.named_parameters()] == [
         ("own.area_growth.0", "own.area_growth.1"),
         ("own.offset.x", "own.offset.y"),
