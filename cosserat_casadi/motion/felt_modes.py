@@ -131,19 +131,14 @@ def moved_along(scene: Scene, rod: str) -> MovedAlong:
 
 
 def arm_of_twist(model: Model, name: str) -> float:
-    """Arm, over lengths of watched rods, at which a twist of a rod counts: at least LEVER; every level asks.
+    """Arm, over lengths of watched rods, at which a twist of a rod counts: at least LEVER.
 
     It is the largest distance from the axis of the unloaded rod, from its tangents where it is curved, of the other
     rods and of the points of bodies that go along.
     """
-    arms: dict[str, float] = kept_with(model, "_arms_of_twist", dict)
-    if name not in arms:
-        arms[name] = _new_arm_of_twist(model, name)
-    return arms[name]
-
-
-def _new_arm_of_twist(model: Model, name: str) -> float:
     moved = moved_along(model.scene, name)
+    if moved == MovedAlong({name}, set()):
+        return LEVER
     places, tangents = _unloaded_axis(model, name)
     directions = tangents / np.linalg.norm(tangents, axis=1)[:, None]
     points = [np.empty((0, 3))]
@@ -155,7 +150,7 @@ def _new_arm_of_twist(model: Model, name: str) -> float:
     longest = max(lengths_of.values())
     for body in model.scene.bodies:
         if body.name in moved.bodies:
-            start = model.discrete.unloaded.body_frame(body.name).start
+            start = model.discrete.own_unloaded.body_frame(body.name).start
             points.append(start.position + watched_arms(body, longest) @ start.rotation.T)
             lengths += [longest] * len(points[-1])
     offsets = np.concatenate(points)[:, None] - places
@@ -172,7 +167,7 @@ def _along_axis(model: Model, name: str, other: str) -> float:
 
 def _unloaded_axis(model: Model, name: str) -> tuple[FloatArray, FloatArray]:
     """Positions and tangents, not of unit length, of an unloaded rod at its nodes, world axes, m, shape (nodes, 3)."""
-    base = model.discrete.unloaded.base(name)
+    base = model.discrete.own_unloaded.base(name)
     rod = model.discrete.rods[name]
     own = shape(rod, ca.DM.zeros(rod.size))
     in_base = [ca.DM(vectors).full().T for vectors in (own.position, own.tangent)]

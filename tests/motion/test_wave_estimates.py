@@ -346,3 +346,20 @@ def test_a_steel_wire_is_told_from_above(kind: str, tolerance: float) -> None:
     if kind == "twist":
         still = WIRE_MOMENT / shear_modulus() / (np.pi * WIRE_RADIUS**4 / 2.0)
     assert missed(kind, motion, still) < motion.error_estimate < tolerance
+
+
+def test_the_arm_of_a_twist_follows_parameters() -> None:
+    """The rod that goes along begins along the axis, or across: what the file has counts for neither."""
+    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.0}
+    rod = {"strain": "kirchhoff", "stiffness": stiffness, "linear_density": 1.0, "rotary_inertia": [1e-3, 1e-3, 2e-3]}
+    tilted = {"rod": "first", "at": 1.0, "quaternion": [np.cos(0.4), 0.0, np.sin(0.4), 0.0]}
+    tables = {
+        "schema": 1,
+        "parameters": ["second.base.quaternion"],
+        "accuracy": {"modes": 2, "nodes": 6},
+        "rods": [{"name": "first", "length": 0.5, **rod}, {"name": "second", "length": 0.2, "base": tilted, **rod}],
+    }
+    model = build(scene_from_dict(tables), moving=True)
+    for half, arm in ((0.0, 0.1), (np.pi / 8, np.sqrt(0.5)), (np.pi / 4, 1.0)):
+        turned = model.at({"second.base.quaternion": [np.cos(half), 0.0, np.sin(half), 0.0]}).in_motion
+        assert_allclose(arm_of_twist(turned, "first"), arm, rtol=1e-9, atol=0)
