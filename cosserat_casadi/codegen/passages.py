@@ -30,7 +30,6 @@ from cosserat_casadi.model.thin import first_places, moved_by
 PASSAGE_FILES = ("interpolation.c", "passages.c")
 """Files of the folder ``c`` that a library includes which watches."""
 
-
 RADII = 65
 """Sections whose radii are listed of a rod that is not linear from base to tip."""
 
@@ -65,7 +64,7 @@ def passage_words(model: Model, names: Names) -> Words:
 
     Args:
         model: the exported model.
-        names: what things are called.
+        names: of the library.
     """
     if not watches_passages(model):
         return {"place_reals": 0}
@@ -121,7 +120,7 @@ def _kernel(names: Names, number: int) -> str:
 
 
 def _barrier_lines(discrete: DiscreteScene, names: Names) -> Iterator[str]:
-    """Tables of what may not pass through an obstacle."""
+    """Tables of rods, disks and bodies that may not pass through an obstacle."""
     layers = thin_layers(discrete)
     if not layers:
         return
@@ -182,7 +181,7 @@ def _pair_lines(discrete: DiscreteScene) -> Iterator[str]:
         return
     _, first = first_places(discrete)
     records = []
-    # Those of barriers stand before.
+    # Sizes of barriers stand before.
     size = sum(2 + _parts(discrete, layer) for layer in thin_layers(discrete))
     for number, pair in enumerate(discrete.pairs):
         fields = {

@@ -35,7 +35,7 @@ class KernelResidual:
 
 @dataclass(frozen=True)
 class KernelJacobians:
-    """Its derivatives in machine code, likewise: (t, x, v, a) ↦ stiffness, damping, mass, shape (n, n) each.
+    """Derivatives of inverse dynamics in machine code: (t, x, v, a) ↦ stiffness, damping, mass, shape (n, n) each.
 
     Attributes:
         call: the derivatives in the arguments of inverse dynamics.
