@@ -53,8 +53,9 @@ class Statement:
     asked: bool = False
 
     def stores(self, value: int | None) -> bool:
-        """Whether it only stores a value, whatever is asked for."""
-        return self.made is None and not self.asked and list(self.operands) == [value]
+        """Whether it stores a value as it is, whatever is asked for."""
+        alone = all(side == CHOICE for side in self.sides)
+        return self.made is None and not self.asked and alone and list(self.operands) == [value]
 
     def with_operand(self, place: int, other: Statement) -> Statement:
         """The same statement with the expression of another in place of an operand."""
@@ -65,10 +66,9 @@ class Statement:
         before = [f"{{{i}}}" for i in range(place)]
         behind = [f"{{{count + i}}}" for i in range(place, len(self.operands) - 1)]
         operands = [*self.operands[:place], *other.operands, *self.operands[place + 1 :]]
-        sides: list[int] = []
-        if self.sides:
-            # The operands of the other stand in its text already.
-            sides = [*self.sides[:place], *[CHOICE] * count, *self.sides[place + 1 :]]
+        # Operands of the other stand in its text, and there beside each other.
+        own = self.sides or [CHOICE] * len(self.operands)
+        sides = [*own[:place], *(other.sides or [CHOICE] * count), *own[place + 1 :]]
         text = self.text.format(*before, inner, *behind)
         return replace(self, text=text, operands=operands, sides=sides)
 

@@ -8,7 +8,7 @@ import casadi as ca
 import pytest
 
 from cosserat_casadi.codegen.listing import BINARY, Constant, Listing, Read
-from cosserat_casadi.codegen.statements import LONGEST_LINE, SINGLE, Block, Statement, computations, in_parts
+from cosserat_casadi.codegen.statements import ATOM, LONGEST_LINE, SINGLE, Block, Statement, computations, in_parts
 
 SYMBOLS = 4
 VALUES = [0.1, 0.7, -1.3, 3.1]
@@ -83,6 +83,19 @@ def test_a_value_is_computed_where_it_is_stored(asked: bool) -> None:
     _, *lines = [line.strip() for line in block.lines(lambda number: f"x{number}" if number < 2 else None)]
     both = ["a0 = x0 * x1;", "r0 = a0;"] if asked else ["r0 = a0 = x0 * x1;"]
     assert lines == [*both, "r1 = a0 + a0;"]
+
+
+@pytest.mark.parametrize("operands", [(2, 3), (3, 2)])
+def test_a_value_is_not_computed_within_a_product_that_is_stored(operands: tuple[int, int]) -> None:
+    """There C takes the factor before it for what is assigned to, and the factor behind it for a part of the value."""
+    value = SINGLE.operation(ca.OP_MUL, [0, 1], 2)
+    factor = Statement("factor", [], 3, ATOM)
+    product = SINGLE.operation(ca.OP_MUL, operands, 4)
+    statements = [value, factor, product, Statement("r0 = {0};", [4]), Statement("r1 = {0} + {0};", [2])]
+    block = Block("casadi_real", "a", statements)
+    _, *lines = [line.strip() for line in block.lines(lambda number: f"x{number}" if number < 2 else None)]
+    stored = {(2, 3): "r0 = a0 * factor;", (3, 2): "r0 = factor * a0;"}
+    assert lines == ["a0 = x0 * x1;", stored[operands], "r1 = a0 + a0;"]
 
 
 @pytest.mark.parametrize("fewest_at", [9, 10, 11])

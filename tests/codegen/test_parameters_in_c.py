@@ -30,6 +30,7 @@ TAPERED = {
     "section": {"shape": "circle", "radius": [0.02, 0.015]},
     "intrinsic": {"curvature": [0.2, [0.9, 0.3], 0.0]},
 }
+UNIFORM = {**TAPERED, "section": {"shape": "circle", "radius": 0.02}}
 OFFSET = {
     "name": "pull",
     "kind": "tendon",
@@ -58,6 +59,7 @@ RECIPES = {
         2,
         4,
     ),
+    "puniform": Recipe(scene(push(), rods=[UNIFORM], parameters=["rod.material.youngs_modulus"]), 2, 4),
     "ppinned": Recipe(
         scene(WEIGHT, supports=[PIN], inputs=[], parameters=["supports[0].position", "weight.acceleration"]), 2, 5
     ),
@@ -73,7 +75,7 @@ RECIPES = {
         4,
     ),
 }
-"""A rod with a tendon, a rod that is held at both ends, and an assembly that is eliminated rod after rod."""
+"""A rod with a tendon, one whose modulus alone is named, one that is held at both ends, and an assembly, rod by rod."""
 
 PINNED_ARCH = scene(WEIGHT, **ARCH, supports=[ARCH_PIN], inputs=[], parameters=["supports[0].position"])
 
@@ -81,7 +83,7 @@ STEP = 1e-5
 """Change of a parameter for differences, relative."""
 
 
-@pytest.fixture(params=mostly_slow(RECIPES, quick=["pwire", "probot"]))
+@pytest.fixture(params=mostly_slow(RECIPES, quick=["pwire", "puniform", "probot"]))
 def made(request: pytest.FixtureRequest, export_recipe: Callable[[str, Recipe], Exported]) -> Exported:
     return made_of(export_recipe, request.param)
 
