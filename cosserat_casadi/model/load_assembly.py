@@ -250,10 +250,12 @@ def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray)
     if any_symbolic([nodal_position, *directors]):
         origin = ca.repmat(ca.DM(base.position), 1, to_sections.shape[1])
         columns = [ca.DM(base.rotation) @ as_matrix(director) @ ca.DM(to_sections) for director in directors]
-        return origin + ca.DM(base.rotation) @ as_matrix(nodal_position) @ ca.DM(to_sections), ca.vertcat(*columns)
-    position = base.position[:, None] + base.rotation @ known(nodal_position) @ to_sections
+        position = origin + ca.DM(base.rotation) @ as_matrix(nodal_position) @ ca.DM(to_sections)
+        # Directors of a straight rod stay numbers where a parameter moves its nodes.
+        return ca.MX(position), ca.MX(ca.vertcat(*columns))
+    known_position = base.position[:, None] + base.rotation @ known(nodal_position) @ to_sections
     # Column a of the rotation matrix is director a.
-    return position, np.concatenate([base.rotation @ (known(director) @ to_sections) for director in directors])
+    return known_position, np.concatenate([base.rotation @ (known(director) @ to_sections) for director in directors])
 
 
 def _constant(field: Matrix) -> Numbers:

@@ -185,10 +185,10 @@ class ObstacleRecord(Entry):
         return self.disks is not None and row in self.disks
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """The push of a smooth contact alone may be a parameter: where it is decides which contacts are looked for."""
+        """The push of a smooth contact alone may be a parameter: the rest decides which contacts are looked for, and how."""
         if key in SMOOTH_NUMBERS:
             return super().parameter_refusal(key)
-        problem = f"{key} of an obstacle decides where contacts are looked for, and is no parameter"
+        problem = f"{key} of an obstacle decides where contacts are looked for, or how, and is no parameter"
         return problem, f"take one of {', '.join(SMOOTH_NUMBERS)} of a contact that is smooth, or move what touches it"
 
     @classmethod

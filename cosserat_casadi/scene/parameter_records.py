@@ -235,17 +235,16 @@ def _numbers_in(name: str, holder: Holder, segments: Sequence[str]) -> NamedNumb
         if key not in known:
             where = ".".join([name.split(".")[0], *keys])
             raise RefusedParameter(f"{where} has no {shown(key)}", closest(key, known))
+        reason = record.parameter_refusal(key)
+        if reason is not None:
+            raise RefusedParameter(*reason)
         field = known[key]
         keys.append(key)
-        owner = record
-        record = getattr(owner, key)
+        record = getattr(record, key)
         if _holds_tables(record):
             place = _part(remaining.pop(0) if remaining else "", (), len(record), "entry")
             keys.append(str(place))
             record = record[place]
-    reason = owner.parameter_refusal(keys[-1])
-    if reason is not None:
-        raise RefusedParameter(*reason)
     value = record
     mark = varying_mark(field)
     form = _form(value, along=mark is not None, by_component=mark is not None and varies_by_component(field))

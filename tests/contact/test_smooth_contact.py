@@ -238,7 +238,7 @@ def test_width_and_stiffness_may_be_parameters() -> None:
     assert with_exact_contact(model.scene).parameters == ()
     tied = read_scene(path, ["bar.width=0.02", 'parameters=[["obstacles[0].width", "rod.length"]]'])
     assert with_exact_contact(tied).parameters == ("rod.length",)
-    with pytest.raises(SceneError, match="radius of an obstacle decides where contacts are looked for"):
+    with pytest.raises(SceneError, match="radius of an obstacle decides where contacts are looked for, or how"):
         read_scene(path, ['parameters=["bar.radius"]'])
 
 

@@ -250,6 +250,20 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
         ),
         {"bed.span": [0.25, 0.8]},
     ),
+    "span of a foundation of a straight rod": (
+        streaming(
+            ELASTIC,
+            {
+                "name": "bed",
+                "kind": "foundation",
+                "rod": "wire",
+                "stiffness": [40.0, 30.0, 10.0],
+                "frame": "body",
+                "span": [0.35, 0.7],
+            },
+        ),
+        {"bed.span[0]": 0.25},
+    ),
     "place of a magnet, past other loads": (
         tables(
             WIRE,
@@ -616,6 +630,7 @@ MOVED = (
     "spans of tendons and chambers",
     "span of a rubbing tendon",
     "span of a foundation",
+    "span of a foundation of a straight rod",
     "place of a magnet, past other loads",
 )
 """Cases of one rod whose parameters move element ends."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +12,9 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from cosserat_casadi import SceneError, scene_from_dict
+from cosserat_casadi.scene.parameter_records import PARAMETER_LISTS
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 ROD: dict[str, Any] = {
     "name": "wire",
@@ -19,9 +25,23 @@ ROD: dict[str, Any] = {
     "intrinsic": {"curvature": [0, [4, 1], 0]},
 }
 
+CURVE = {"bending_x": [[0.0, 0.0], [10.0, 0.02], [20.0, 0.03]]}
+LATTICE = {**ROD, "name": "lattice", "material": {**ROD["material"], "law": "table", "table": CURVE}}
+BAR = {
+    "name": "bar",
+    "kind": "capsule",
+    "from": [2.0, -0.1, 0.1],
+    "to": [2.0, 0.1, 0.1],
+    "radius": 0.01,
+    "width": 1e-3,
+    "friction": {"along": 0.1, "across": 0.2},
+    "rods": ["wire"],
+}
+
 SCENE: dict[str, Any] = {
     "schema": 1,
-    "rods": [ROD, {**ROD, "name": "side", "base": {"position": [1, 0, 0], "tangent": [1, 0, 0]}}],
+    "rods": [ROD, {**ROD, "name": "side", "base": {"position": [1, 0, 0], "tangent": [1, 0, 0]}}, LATTICE],
+    "obstacles": [BAR],
     "loads": [{"name": "push", "kind": "point_wrench", "rod": "wire", "at": 0.5, "force": [0.1, 0, 0]}],
     "actuators": [
         {"name": "east", "kind": "tendon", "rod": "wire", "tension": 1.0, "offset": [[8e-4, 1e-4], 0]},
@@ -104,6 +124,9 @@ REFUSED = {
     "coil.span.middle": ("has no component 'middle'", "components: start, end"),
     "side.base.quaternion": ("is given by a direction", "give the quaternion instead, and name that"),
     "side.base.tangent.x": ("is given by a direction", ""),
+    "bar.from.z": ("from of an obstacle decides where contacts are looked for, or how", "take one of width, stiffness"),
+    "bar.friction.along": ("friction of an obstacle decides where contacts are looked for, or how", ""),
+    "lattice.material.table.bending_x[1]": ("is a measured curve", "law = 'polynomial'"),
     "joints[4].position": ("is named 'joints[4]'", ""),
     "push.force": ("is an input already", "leave it out here, or list inputs without it"),
 }
@@ -121,6 +144,28 @@ def test_every_name_that_is_refused_says_why_at_once() -> None:
         assert line.startswith(f"parameters[{i}]: {name!r}")
         assert problem in line
         assert remedy in line
+
+
+def names_in(value: Any, name: str) -> Iterator[str]:
+    """Names of the keys of a table and of the parts of their lists, to any depth."""
+    yield name
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from names_in(part, f"{name}.{key}")
+    elif isinstance(value, list):
+        for i, part in enumerate(value):
+            yield from names_in(part, f"{name}[{i}]")
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_whatever_an_example_holds_is_a_parameter_or_refused(path: Path) -> None:
+    tables = tomllib.loads(path.read_text())
+    kept = [key for key in PARAMETER_LISTS if key in tables]
+    assert kept
+    names = [name for key in kept for i, entry in enumerate(tables[key]) for name in names_in(entry, f"{key}[{i}]")]
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({**tables, "parameters": names})
+    assert any(problem.where.startswith("parameters[") for problem in caught.value.problems)
 
 
 def test_an_entry_of_an_input_is_an_input() -> None:
