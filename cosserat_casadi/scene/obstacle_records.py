@@ -185,7 +185,7 @@ class ObstacleRecord(Entry):
         return self.disks is not None and row in self.disks
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """The push of a smooth contact alone may be a parameter: the rest decides which contacts are looked for, and how."""
+        """Only the push of a smooth contact may be a parameter: the rest decides where contacts are looked for."""
         if key in SMOOTH_NUMBERS:
             return super().parameter_refusal(key)
         problem = f"{key} of an obstacle decides where contacts are looked for, or how, and is no parameter"
