@@ -60,7 +60,8 @@ def _work(actuator: scenes.Muscle, grid: Grid, series: Numbers) -> StrainSum:
     lx, ly, lz = actuator.moment
     stresses = [lx + y * fz, ly - x * fz, lz + x * fy - y * fx, fx, fy, fz]
     strains = [*actuator.curvature, 0.0, 0.0, 0.0]
-    components = [c for c in range(6) if not is_zero(stresses[c]) or not is_zero(strains[c])]
+    # One whose numbers are all zero, as a sweep over its moment may have it, does no work on the first strain.
+    components = [c for c in range(6) if not is_zero(stresses[c]) or not is_zero(strains[c])] or [0]
 
     def everywhere(numbers: Sequence[Any]) -> Numbers:
         return among(stacked_rows([numbers[c] * profile for c in components]), nodes, grid.size)

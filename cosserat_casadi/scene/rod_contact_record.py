@@ -72,7 +72,9 @@ width = 5e-4
         """Rods without a radius, rods that always touch, and obstacles that are touched exactly."""
         named = given.get("rods")
         known = scene.named("rods")
-        names = [name for name in named if name in known] if isinstance(named, list | tuple) else list(known)
+        names = list(known)
+        if isinstance(named, list | tuple):
+            names = [name for name in named if isinstance(name, str) and name in known]
         for name in names:
             yield from _without_radius(name, known[name][1], given.get("width"))
         if isinstance(named, list | tuple) and len(names) == MOST_RODS and are_tied(names[0], names[1], _ties(scene)):

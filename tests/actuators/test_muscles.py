@@ -43,6 +43,15 @@ def test_a_uniform_muscle_makes_uniform_strains() -> None:
     assert_allclose(solution.actuator("muscle")["work"], work, rtol=1e-9, atol=0)
 
 
+@pytest.mark.parametrize("strain", ["reissner", "planar"])
+def test_a_muscle_whose_moment_is_zero_does_nothing(strain: str) -> None:
+    force = push(force=[0.5, 0.0, 0.3])
+    with_one = solve(with_muscle(force, strain=strain, moment=[0.0, 0.0, 0.0], activation=0.7))
+    without = solve(scene(force, strain=strain, accuracy={"modes": 6, "nodes": 16}))
+    assert_allclose(with_one.tip().position, without.tip().position, rtol=0, atol=1e-12)
+    assert with_one.actuator("muscle")["work"] == 0.0
+
+
 def test_a_uniform_moment_in_a_plane_is_a_moment_that_follows_the_tip() -> None:
     follower = {"name": "turn", "kind": "tip_wrench", "rod": "rod", "moment": [0.0, 0.6, 0.0], "frame": "body"}
     force = push(force=[0.5, 0.0, 0.3])

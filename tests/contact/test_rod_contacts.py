@@ -344,6 +344,7 @@ def test_rods_inside_each_other_from_the_start_are_refused() -> None:
     ("change", "sentence"),
     [
         ('rod_contacts=[{ rods = ["lower", "lowest"] }]', "lowest"),
+        ('rod_contacts=[{ rods = [["lower"], "upper"] }]', r"rods\[0\]: must be text, got a list"),
         ('rod_contacts=[{ rods = ["lower", "upper"], width = 0.006 }]', "must be < the radius of 'lower'"),
         ('rod_contacts=[{ rods = ["lower", "upper"], depth = 0.006 }]', "depth"),
         ('upper.base={ rod = "lower", tangent = [1, 0, 0] }', "are tied to each other"),
