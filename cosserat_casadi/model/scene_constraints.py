@@ -147,7 +147,6 @@ def written_constraints(
         nominal: that scene.
         scene: the same with other numbers.
     """
-    before = _given_places(nominal)
     after = _given_places(scene)
     # Sections of carriers and of joints move along their rods; supports hold tips.
     sections: dict[str, Any] = {f"joints[{i}]": joint.at for i, joint in enumerate(scene.joints)}
@@ -157,16 +156,11 @@ def written_constraints(
     constraints = []
     for entry in placed:
         pose = after[entry.where]
-        start = before[entry.where]
-        assert isinstance(start, NumericPose)
-        # Of the two signs of a quaternion, the one that the nominal pose has.
         closing = entry.constraint.pose
         assert isinstance(closing, NumericPose)
-        sign = float(np.sign(closing.quaternion @ start.quaternion))
-        if isinstance(pose, Pose):
-            pose = Pose(pose.position, sign * pose.quaternion)
-        else:
-            pose = NumericPose(pose.position, sign * pose.quaternion)
+        # Where the nominal scene says by which way round a tip is turned, parameters do.
+        if entry.compliance is not STILL:
+            pose = _nearer_pose(pose, closing)
         at = sections.get(entry.where, entry.constraint.at)
         turn = None
         if entry.where in axes_before:
@@ -177,6 +171,17 @@ def written_constraints(
         constraint = replace(entry.constraint, at=at, pose=pose, turn=turn)
         constraints.append(replace(entry, constraint=constraint, carried=carried))
     return constraints
+
+
+def _nearer_pose(pose: NumericPose | Pose, other: NumericPose) -> NumericPose | Pose:
+    """A pose with that sign of its quaternion that is nearer to another pose: Q and −Q are one rotation."""
+    if isinstance(pose, NumericPose):
+        return pose if pose.quaternion @ other.quaternion >= 0 else NumericPose(pose.position, -pose.quaternion)
+    near = ca.MX(ca.dot(pose.quaternion, other.quaternion))
+    if not ca.symvar(near):
+        # The place alone depends on parameters.
+        return pose if float(ca.evalf(near)) >= 0 else Pose(pose.position, -pose.quaternion)
+    return Pose(pose.position, ca.if_else(near < 0, -pose.quaternion, pose.quaternion))
 
 
 def _axes(scene: scenes.Scene) -> dict[str, Matrix]:

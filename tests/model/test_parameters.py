@@ -753,6 +753,55 @@ def test_a_moved_place_keeps_the_rate_of_convergence() -> None:
     assert np.all(np.diff(np.log10(errors)) < -1.0)
 
 
+def turned_platform(quaternion: FloatArray) -> dict[str, Any]:
+    """The platform with a joint that turns it by a quaternion."""
+    first, second = PLATFORM["joints"]
+    return {"schema": 1, **PLATFORM, "joints": [{**first, "quaternion": quaternion.tolist()}, second]}
+
+
+@pytest.fixture(scope="module")
+def turnable() -> Model:
+    """A platform whose first joint turns it by a parameter."""
+    return resolved(scene_from_dict({**turned_platform(np.eye(4)[0]), "parameters": ["joints[0].quaternion"]}))
+
+
+@pytest.mark.parametrize("degrees", [0.0, 20.0, 190.0])
+def test_a_joint_is_at_one_pose_by_either_sign_of_a_parameter(degrees: float, turnable: Model) -> None:
+    """The pose of the scene with these numbers; residual, Jacobian and second derivatives do not tell the sign."""
+    half = np.radians(degrees) / 2
+    quaternion = np.array([np.cos(half), 0.6 * np.sin(half), 0.0, 0.8 * np.sin(half)])
+    wanted = solve(build(scene_from_dict(turned_platform(quaternion)), turnable.discretisation))
+    found = [solve(turnable, parameters={"joints[0].quaternion": own}) for own in (quaternion, -quaternion)]
+    for own in found:
+        assert own.converged
+        assert_allclose(own.body("plate").position, wanted.body("plate").position, rtol=0, atol=1e-9)
+        assert_allclose(own.body("plate").rotation, wanted.body("plate").rotation, rtol=0, atol=1e-9)
+    x, inputs = point(turnable)[0], turnable.pack()
+    signs = np.concatenate([np.ones(turnable.size), -np.ones(4)])
+    for function, factor in (
+        (turnable.residual, 1.0),
+        (turnable.jacobian, 1.0),
+        (turnable.parameter_jacobian, -1.0),
+        (second_derivatives(turnable, inputs), np.outer(signs, signs)),
+    ):
+        near, far = (ca.DM(function.call([x, inputs, own])[0]).full() for own in (quaternion, -quaternion))
+        assert_allclose(far, factor * near, rtol=1e-12, atol=1e-12 * np.abs(near).max())
+
+
+def second_derivatives(model: Model, inputs: FloatArray) -> ca.Function:
+    """Those of the sum of squares of the residual with x and p, as a function of x, inputs that are not read, and p."""
+    x, given, p = ca.MX.sym("x", model.size), ca.MX.sym("inputs", len(inputs)), model.parameters.symbol
+    squares = ca.sumsqr(model.residual(x, inputs, p))
+    return ca.Function("second", [x, given, p], [ca.hessian(squares, ca.vertcat(x, p))[0]])
+
+
+def test_derivatives_are_finite_where_a_parameter_turns_a_joint_by_half_a_turn(turnable: Model) -> None:
+    inputs = turnable.pack()
+    given = [point(turnable)[0], inputs, np.array([0.0, 0.6, 0.0, 0.8])]
+    for function in (turnable.jacobian, turnable.parameter_jacobian, second_derivatives(turnable, inputs)):
+        assert np.all(np.isfinite(ca.DM(function.call(given)[0]).full()))
+
+
 def test_axes_that_keep_planar_rods_in_their_plane_are_refused() -> None:
     planar = {"length": 0.8, "strain": "planar", "stiffness": {"bending_y": 1.0}, "linear_density": 0.1}
     across = {"body": "plate", "kind": "revolute", "axis": [0, 1, 0]}
