@@ -224,12 +224,36 @@ class UnloadedScene:
         return index, np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
 
     def _base_keeps_plane(self, rod: str) -> bool:
-        """Whether the joint at a base in the world, or on another rod, keeps its rod in the x–z plane of the base."""
+        """Whether the joint at a base keeps its rod in the x–z plane of the base, as that of its body is kept."""
         found = self.base_joint(rod)
-        if found is None:
+        if found is not None:
+            joint = self.scene.joints[found[0]]
+            return confines(JOINT_KINDS[joint.kind].held(joint, found[1]))
+        (joint,) = [own for own in self.scene.joints if own.rod == rod and own.holds_base]
+        assert joint.body is not None, "of a base without body the joint is known"
+        if not confines(JOINT_KINDS[joint.kind].directions(joint)):
             return False
-        joint = self.scene.joints[found[0]]
-        return confines(JOINT_KINDS[joint.kind].held(joint, found[1]))
+        return self._stays_in_plane(joint.body, self.base(rod).rotation[:, 1])
+
+    def _stays_in_plane(self, body: str, normal: FloatArray, beyond: frozenset[str] = frozenset()) -> bool:
+        """Whether joints keep a body in a plane, to the world or to other bodies that stay there.
+
+        Args:
+            body: its name.
+            normal: of the plane, world axes, shape (3,).
+            beyond: bodies that it may not be kept by, since it keeps them.
+        """
+        for joint in self.scene.joints:
+            ends = {place.body for place in joint.places} | ({None} if joint.body is None else set())
+            if joint.carries is None or body not in ends or ends & beyond:
+                continue
+            place = self.body_frame(joint.carries.body).start.then(place_of(joint.carries))
+            if not confines(JOINT_KINDS[joint.kind].directions(joint), place.rotation.T @ normal):
+                continue
+            (other,) = ends - {body}
+            if other is None or self._stays_in_plane(other, normal, beyond | {body}):
+                return True
+        return False
 
     @cached_property
     def all_in_parallel_planes(self) -> bool:
@@ -289,7 +313,7 @@ class UnloadedScene:
                 continue
             others = [self._ranks.get(name, len(self._ranks)) for name in names if name != body]
             if joint.rod:
-                says_where = not self._starts_on_body(joint.rod)
+                says_where = not self.starts_on_body(joint.rod)
             else:
                 says_where = all(other < rank for other in others)
             if says_where:
@@ -301,7 +325,7 @@ class UnloadedScene:
         """How many joints of bodies lie between each body and the world or a rod that does not start on a body."""
         ranks: dict[str, int] = {}
         at_rods = [joint for joint in self.scene.joints if joint.carries is None and joint.body is not None]
-        grounded = [joint.body for joint in at_rods if not self._starts_on_body(joint.rod)]
+        grounded = [joint.body for joint in at_rods if not self.starts_on_body(joint.rod)]
         grounded += [joint.carries.body for joint in self.scene.joints if joint.carries and joint.body is None]
         # Where no body is placed by others, rods that start on it are.
         for placed_first in (grounded, [joint.body for joint in at_rods]):
@@ -325,11 +349,11 @@ class UnloadedScene:
             return _Seat(carrier.then(place), carried, held)
         return _Seat(self.body_frame(joint.carries.body).start.then(carried), place, held)
 
-    def _starts_on_body(self, rod: str) -> bool:
+    def starts_on_body(self, rod: str) -> bool:
         """Whether the base of a rod, or of one that carries it, is held to a body."""
         carrier = self.records[rod].base.rod
         if carrier is not None:
-            return self._starts_on_body(carrier)
+            return self.starts_on_body(carrier)
         return any(joint.rod == rod and joint.holds_base and joint.body is not None for joint in self.scene.joints)
 
     def _closed(self, seats: list[_Seat], length: float) -> NumericPose | None:

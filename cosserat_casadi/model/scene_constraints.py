@@ -246,7 +246,9 @@ def decisive_axes(unloaded: UnloadedScene) -> set[int]:
 
 
 def _hinges_below(unloaded: UnloadedScene, rod: str) -> Iterator[int]:
-    """Hinges at the bases of a rod and of the rods that carry it: places in the scene's list."""
+    """Places in the scene's list of hinges at the bases of a rod and of its carriers, and of joints of bodies below."""
+    if unloaded.starts_on_body(rod):
+        yield from (index for index, joint in enumerate(unloaded.scene.joints) if joint.body or joint.carries)
     carried: str | None = rod
     while carried is not None:
         index = unloaded.scene.base_joints.get(carried)
@@ -558,10 +560,13 @@ def _joint_of_bodies(unloaded: UnloadedScene, index: int, normal: FloatArray | N
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
     """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
     plane = unloaded.plane(joint.rod) if joint.rod else None
-    if joint.body is None or plane is None or not _moves_in_plane(joint):
+    if joint.body is None or plane is None or not _moves_in_plane(joint) or unloaded.starts_on_body(joint.rod):
         return
     for candidate in unloaded.scene.joints:
         if not candidate.rod or candidate.body != joint.body or not _moves_in_plane(candidate):
+            continue
+        # All of what the base of a rod on the body has is held there.
+        if unloaded.starts_on_body(candidate.rod):
             continue
         if _shares_plane(unloaded, joint, plane, candidate):
             yield candidate

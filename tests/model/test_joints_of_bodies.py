@@ -237,6 +237,34 @@ def test_four_bar_of_two_links_that_bend(coupler: str, rocker: str) -> None:
     assert_allclose(solution.body("knee").position, knee, rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    "end",
+    [
+        {"kind": "spherical"},
+        {"kind": "revolute", "axis": Y},
+        {"kind": "prismatic", "axis": [1, 0, 0]},
+        {"kind": "fixed"},
+    ],
+    ids=["spherical", "revolute", "prismatic", "fixed"],
+)
+def test_planar_rod_that_begins_on_a_hinged_body_ends_in_the_world(end: dict[str, Any]) -> None:
+    """As one that bends and twists in space: joints and supports at its tip hold it in its plane alone."""
+    place = {"world": True, "position": [0.15, 0.0, 0.45]}
+    on_arm = {"kind": "fixed", "between": [{"rod": "a", "at": 0.0}, {"body": "arm", "position": [0.05, 0.0, 0.0]}]}
+    joints = [hinge({"world": True}, {"body": "arm"}), on_arm, {**end, "between": [{"rod": "a"}, place]}]
+    push = {"name": "push", "kind": "point_wrench", "rod": "a", "at": 0.5, "force": [0.4, 0.0, -0.3]}
+    changes = {"bodies": [{"name": "arm", "mass": 0.0}], "loads": [push]}
+    found, wanted = (
+        solve(build(scene_from_dict(scene([link("a", strain=strain)], joints, **changes))))
+        for strain in ("planar", "kirchhoff")
+    )
+    assert found.converged and wanted.converged
+    assert found.stable == wanted.stable
+    for X in (0.0, 0.5, 1.0):
+        assert_allclose(found.pose(X).position, wanted.pose(X).position, rtol=0, atol=1e-9)
+        assert_allclose(found.pose(X).rotation, wanted.pose(X).rotation, rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize(("tilt", "again"), [(0.2, False), (0.0, True)])
 def test_a_four_bar_that_is_held_twice_is_refused(tilt: float, again: bool) -> None:
     """Planar links whose last hinge leads out of their plane, and one that the world holds in it once more."""
