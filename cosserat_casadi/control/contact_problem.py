@@ -20,7 +20,7 @@ from cosserat_casadi.control.decision_variables import decision_variables, scale
 from cosserat_casadi.control.inverse_result import Inverse, gap_left
 from cosserat_casadi.control.nearby_inputs import SETTLED, shortest
 from cosserat_casadi.control.sought_inputs import SoughtInputs
-from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
+from cosserat_casadi.control.targets import wanted_poses, weighted_errors
 from cosserat_casadi.equilibrium.contact.contact_search import equations_at
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
@@ -46,20 +46,6 @@ TIGHTENED = 5.0
 
 NEARER = 0.1
 """Share of the expected decrease of the error that a turn has to reach."""
-
-
-@dataclass(frozen=True)
-class _Linear:
-    """Errors of targets, linear in changes of n inputs in their scales: shapes (m,) and (m, n)."""
-
-    errors: FloatArray
-    moved: FloatArray
-
-    def step(self, damping: float, lower: FloatArray, upper: FloatArray) -> FloatArray:
-        """The damped change within ranges after which least is left of the errors, shape (n,)."""
-        count = len(lower)
-        moved = np.vstack([self.moved, np.sqrt(damping) * np.eye(count)])
-        return shortest(moved, np.concatenate([self.errors, np.zeros(count)]), lower, upper)
 
 
 @dataclass(frozen=True)
@@ -94,13 +80,17 @@ class ContactProblem(SoughtInputs):
         damping = FIRST_DAMPING
         turns = 0
         while turns < MOST_TURNS and linear is not None and damping < MOST_DAMPING:
-            step = linear.step(damping, lower - change, upper - change)
+            errors, moved = linear
+            # The damped change within ranges after which least is left of the errors.
+            damped = np.vstack([moved, np.sqrt(damping) * np.eye(len(change))])
+            padded = np.concatenate([errors, np.zeros(len(change))])
+            step = shortest(damped, padded, lower - change, upper - change)
             if float(np.abs(step).max(initial=0.0)) <= SETTLED:
                 break
             turns += 1
             there = self._at(here.solution, change + step)
             before, after = gap_left(here), gap_left(there)
-            expected = before - float(np.linalg.norm(linear.errors + linear.moved @ step))
+            expected = before - float(np.linalg.norm(errors + moved @ step))
             # Off a stable branch steps would go far for little.
             leaves = there.unstable and not here.unstable
             if after < before and before - after >= NEARER * expected and not leaves:
@@ -114,8 +104,11 @@ class ContactProblem(SoughtInputs):
     def _at(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
         return self.judged(start if start.converged else None, change, rounds=0)
 
-    def _linearised(self, solution: Equilibrium[Any]) -> _Linear | None:
-        """Errors of an equilibrium; None where its contacts leave it no derivatives."""
+    def _linearised(self, solution: Equilibrium[Any]) -> tuple[FloatArray, FloatArray] | None:
+        """Errors of an equilibrium, shape (m,), and what changes of n inputs in their scales move them by, (m, n).
+
+        None where its contacts leave it no derivatives.
+        """
         assert isinstance(solution, Solution), "rods alone touch obstacles"
         equations, z = equations_at(solution)
         model = equations.model
@@ -132,7 +125,7 @@ class ContactProblem(SoughtInputs):
         unmoved = np.zeros((0, len(self.scale)))
         by_z = equations.moved(z, by_variables, unmoved)
         moved = by_all @ equations.arguments_moved(by_z, by_variables, unmoved)
-        return _Linear(values[:, 0], moved) if np.all(np.isfinite(moved)) else None
+        return (values[:, 0], moved) if np.all(np.isfinite(moved)) else None
 
 
 def contact_problem(

@@ -57,7 +57,14 @@ def decision_variables(model: SystemFunctions) -> DecisionVariables:
         remedy = "list them in inputs, or give each its range in [[bounds]]"
         raise SceneError(Problem("inputs", "no input is named that could be found", remedy))
     lower, upper = narrowed(layout, model.scene.bounds)
-    _refuse_empty_ranges(model, lower, upper)
+    least = [(i, bound, lower[layout.slices[bound.input]]) for i, bound in enumerate(model.scene.bounds)]
+    refuse(
+        [
+            Problem(f"bounds[{i}].upper", f"is below {own.max():g}, the least that {bound.input} can be")
+            for i, bound, own in least
+            if np.any(own > upper[layout.slices[bound.input]])
+        ]
+    )
     all_indices = np.arange(layout.size)
     indices = np.concatenate([all_indices[layout.slices[name]] for name in chosen])
     return DecisionVariables(indices, lower[indices], upper[indices])
@@ -91,17 +98,6 @@ def _chosen_names(model: SystemFunctions) -> list[str]:
     if not changeable and scene.inputs is not None:
         changeable = scene.inputs
     return [name for name in model.inputs.names if name in changeable]
-
-
-def _refuse_empty_ranges(model: SystemFunctions, lower: FloatArray, upper: FloatArray) -> None:
-    problems = []
-    for i, bound in enumerate(model.scene.bounds):
-        entries = model.inputs.slices[bound.input]
-        if np.any(lower[entries] > upper[entries]):
-            least = float(lower[entries].max())
-            problem = f"is below {least:g}, the least that {bound.input} can be"
-            problems.append(Problem(f"bounds[{i}].upper", problem))
-    refuse(problems)
 
 
 def _own_sizes(model: SystemFunctions, inputs: FloatArray) -> FloatArray:

@@ -113,11 +113,16 @@ def search(
         starts: as there.
         report: told which of the further starts begins, and how far the targets are missed so far.
     """
+
+    def rank(end: Inverse) -> tuple[bool, bool, float]:
+        """Less is better: an equilibrium, a stable one if that is wanted, a smaller target error."""
+        return not end.solution.converged, stable and end.unstable, gap_left(end)
+
     began = monotonic()
     model = problem.model
     result = _from_start(problem, start, problem.change(given_inputs(start.model, start.inputs)), stable)
     for tried, change in enumerate(problem.scattered(starts), 1):
-        if _satisfies(result, stable):
+        if result.met and not (stable and result.unstable):
             break
         if monotonic() - began > LONGEST:
             return replace(result, starts_left_out=starts - tried + 1)
@@ -128,7 +133,7 @@ def search(
         begun = solve(model, model.inputs.unpack(inputs), estimate_error=False)
         again = _from_start(problem, begun, change, stable)
         rounds = result.rounds + again.rounds
-        best = min(result, again, key=lambda candidate: _rank(candidate, stable))
+        best = min(result, again, key=rank)
         result = replace(best, rounds=rounds, starts=1 + tried)
     return result
 
@@ -140,15 +145,7 @@ def search_near(
     starts: int,
     report: Callable[[str], None] | None = None,
 ) -> Inverse:
-    """The inverse problem from an equilibrium near its targets: by Newton's method, else by :func:`search`.
-
-    Args:
-        problem: the problem.
-        start: equilibrium of its model to start from.
-        stable: as in :func:`inverse`.
-        starts: as there.
-        report: as there.
-    """
+    """As :func:`search`, from an equilibrium near the targets: by Newton's method, where that leads to them."""
     if isinstance(problem, LiftedProblem):
         found = followed(problem, start)
         if found is not None and found.met and not found.unstable:
@@ -171,16 +168,6 @@ def _from_start(problem: SoughtInputs, start: Equilibrium[Any], change: FloatArr
     if stable and result.solution.stable is False:
         return _from_relaxed(problem, result)
     return result
-
-
-def _satisfies(result: Inverse, stable: bool) -> bool:
-    """Whether a result leaves nothing to look for from other starts."""
-    return result.met and not (stable and result.unstable)
-
-
-def _rank(result: Inverse, stable: bool) -> tuple[bool, bool, float]:
-    """Sort key of results, less is better: an equilibrium, a stable one if that is wanted, a smaller target error."""
-    return not result.solution.converged, stable and result.unstable, gap_left(result)
 
 
 def _from_relaxed(problem: SoughtInputs, result: Inverse) -> Inverse:

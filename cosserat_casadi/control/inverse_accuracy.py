@@ -21,8 +21,7 @@ from cosserat_casadi.control.inverse import (
 from cosserat_casadi.control.inverse import inverse as inverse_model
 from cosserat_casadi.control.inverse_levels import levels_of
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
-from cosserat_casadi.control.target_errors import target_errors, wanted_poses
-from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
+from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of, target_errors, wanted_poses
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.pose import POSE_SIZE
@@ -135,8 +134,12 @@ def inverse_rows(
             # One solve at the same inputs tells what the level leaves, and is where a next search would start.
             reference = levels.reference(result.solution, finer)
             judged = replace(result, solution=levels.judged(result.solution, reference))
-            if fixed:
-                settled[row] = _fixed_verdict(judged, stable)
+            shape_error = judged.solution.largest_error
+            if fixed and (shape_error is None or shape_error > LARGEST_SHAPE_ERROR):
+                # As a solve on modes and nodes that the user fixed: without an estimate nothing vouches for the gaps.
+                settled[row] = _unresolved(judged)
+            elif fixed:
+                settled[row] = with_verdict(judged, stable)
             elif _error_within(judged) or judged.starts_left_out or judged.cut_short:
                 # A search that took too long for its starts is not repeated on more modes, where it takes longer still.
                 settled[row] = with_verdict(judged, stable)
@@ -230,15 +233,6 @@ def _distances(wanted: FloatArray, here: FloatArray, lengths: FloatArray) -> Flo
         angles = rotation_angles(quaternions, wanted[:, i, 3:])
         largest = np.maximum(largest, angles)
     return np.asarray(largest)
-
-
-def _fixed_verdict(judged: Inverse, stable: bool) -> Inverse:
-    """The verdict on modes and nodes that the user fixed: as a solve, unresolved where the shape is far off."""
-    shape_error = judged.solution.largest_error
-    # Without an estimate nothing vouches for the gaps.
-    if shape_error is None or shape_error > LARGEST_SHAPE_ERROR:
-        return _unresolved(judged)
-    return with_verdict(judged, stable)
 
 
 def _error_within(result: Inverse) -> bool:

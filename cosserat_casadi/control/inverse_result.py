@@ -9,8 +9,14 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.control.target_errors import target_errors, wanted_poses, weighted_errors
-from cosserat_casadi.control.targets import TARGET_KINDS, TargetMiss, length_of
+from cosserat_casadi.control.targets import (
+    TARGET_KINDS,
+    TargetMiss,
+    length_of,
+    target_errors,
+    wanted_poses,
+    weighted_errors,
+)
 from cosserat_casadi.equilibrium.answer_error import with_notes
 from cosserat_casadi.equilibrium.contact.contact_state import given_names
 from cosserat_casadi.equilibrium.solution import Equilibrium

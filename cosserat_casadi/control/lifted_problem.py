@@ -9,15 +9,15 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
+from cosserat_casadi.control.decision_variables import decision_variables, scales
 from cosserat_casadi.control.inverse_result import Inverse, gap_left
 from cosserat_casadi.control.sought_inputs import SoughtInputs
-from cosserat_casadi.control.target_errors import wanted_poses, weighted_errors
+from cosserat_casadi.control.targets import wanted_poses, weighted_errors
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, are_one
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import check_potential
 from cosserat_casadi.maths.pose import POSE_SIZE
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
@@ -79,22 +79,14 @@ class LiftedProblem(SoughtInputs):
         """
         # A failed first solve may end at no numbers.
         x = start.x if np.all(np.isfinite(start.x)) else self.model.unloaded()
-        bounds = self._bounds()
+        ranges = self.ranges()
         size = self.model.size
         centre = change
         rounds = 0
         largest_change = np.inf
         cut_short = False
         while rounds < ROUNDS and largest_change > SETTLED and not cut_short:
-            damping = DAMPING[min(rounds, len(DAMPING) - 1)]
-            result = self.optimiser(
-                x0=np.concatenate([x, centre]),
-                p=self._parameters(centre, damping),
-                lbg=0.0,
-                ubg=0.0,
-                **bounds,
-            )
-            optimum = result["x"].full()[:, 0]
+            optimum = self._optimum(x, centre, DAMPING[min(rounds, len(DAMPING) - 1)], ranges)
             rounds += 1
             cut_short = self.optimiser.stats()["return_status"] == OUT_OF_TIME
             if not np.all(np.isfinite(optimum)):
@@ -141,33 +133,34 @@ class LiftedProblem(SoughtInputs):
         held_lower = np.where(at_upper & ~at_lower, upper, lower)
         held_upper = np.where(at_lower, lower, upper)
         held = np.clip(change, held_lower, held_upper)
-        unbounded = np.full(self.model.size, np.inf)
-        optimum = self.optimiser(
-            x0=np.concatenate([x, held]),
-            p=self._parameters(held, DAMPING[-1]),
-            lbg=0.0,
-            ubg=0.0,
-            lbx=np.concatenate([-unbounded, held_lower]),
-            ubx=np.concatenate([unbounded, held_upper]),
-        )["x"].full()[:, 0]
+        optimum = self._optimum(x, held, DAMPING[-1], (held_lower, held_upper))
         rounds = result.rounds + 1
         if not np.all(np.isfinite(optimum)):
             return replace(result, rounds=rounds)
         polished = self.judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
         return min(polished, replace(result, rounds=rounds), key=gap_left)
 
-    def _parameters(self, centre: FloatArray, damping: float) -> FloatArray:
-        """Parameters of the optimiser."""
-        return np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)])
+    def _optimum(
+        self, x: FloatArray, centre: FloatArray, damping: float, ranges: tuple[FloatArray, FloatArray]
+    ) -> FloatArray:
+        """Unknowns and changes at the end of one run of the optimiser, which may be no numbers.
 
-    def _bounds(self) -> dict[str, FloatArray]:
-        """Ranges of the changes; the unknowns have none."""
+        Args:
+            x: unknowns to start from.
+            centre: changes to start from, which the run is damped about, shape (n,).
+            damping: weight of the distance from these.
+            ranges: least and largest changes; the unknowns have none.
+        """
         unbounded = np.full(self.model.size, np.inf)
-        lower, upper = self.ranges()
-        return {
-            "lbx": np.concatenate([-unbounded, lower]),
-            "ubx": np.concatenate([unbounded, upper]),
-        }
+        optimum: FloatArray = self.optimiser(
+            x0=np.concatenate([x, centre]),
+            p=np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)]),
+            lbg=0.0,
+            ubg=0.0,
+            lbx=np.concatenate([-unbounded, ranges[0]]),
+            ubx=np.concatenate([unbounded, ranges[1]]),
+        )["x"].full()[:, 0]
+        return optimum
 
 
 def lifted_problem(
@@ -176,80 +169,28 @@ def lifted_problem(
     start: Equilibrium[Any],
     stable: bool,
 ) -> LiftedProblem:
-    """The problem of a model, ready for searches.
-
-    Args:
-        model: as in :func:`inverse`.
-        targets: poses and positions to reach.
-        start: the equilibrium whose inputs and sensitivities scale the problem.
-        stable: as in :func:`inverse`.
-
-    Raises:
-        SceneError: as there.
-    """
+    """The problem of a model, as :func:`cosserat_casadi.control.inverse.inverse_problem` takes it."""
     variables = decision_variables(model)
     if stable:
         check_potential(model, start.inputs)
     scale = scales(model, variables, start)
-    errors = _errors(model, targets, variables, scale)
-    optimiser = _optimiser(model, errors)
-    origin = variables.clipped(start.inputs)
-    return LiftedProblem(model, targets, variables, scale, origin, optimiser, _linearised(errors))
-
-
-@dataclass(frozen=True)
-class _Errors:
-    """Weighted errors of targets as expressions.
-
-    Attributes:
-        x: unknowns.
-        change: of the decision variables, in their scales.
-        origin: stacked inputs that changes count from.
-        wanted: poses that the targets ask for.
-        inputs: stacked inputs after the change.
-        errors: weighted errors.
-    """
-
-    x: ca.MX
-    change: ca.MX
-    origin: ca.MX
-    wanted: ca.MX
-    inputs: ca.MX
-    errors: Matrix
-
-
-def _errors(
-    model: SystemFunctions,
-    targets: tuple[scenes.Target, ...],
-    variables: DecisionVariables,
-    scale: FloatArray,
-) -> _Errors:
+    count = len(scale)
     x = ca.MX.sym("x", model.size)
-    change = ca.MX.sym("change", len(scale))
+    change = ca.MX.sym("change", count)
     origin = ca.MX.sym("origin", model.inputs.size)
     wanted = ca.MX.sym("wanted", POSE_SIZE * len(targets))
-    inputs = origin + _scatter(variables, scale, model.inputs.size) @ change
+    # From changes of the decision variables to those of the stacked inputs.
+    scatter = ca.DM.triplet(variables.indices.tolist(), list(range(count)), ca.DM(scale), model.inputs.size, count)
+    inputs = origin + scatter @ change
     errors = weighted_errors(model, targets, wanted, x, inputs)
-    return _Errors(x, change, origin, wanted, inputs, errors)
-
-
-def _linearised(of: _Errors) -> ca.Function:
-    """:attr:`LiftedProblem.errors`."""
-    arguments = [of.x, of.change, of.origin, of.wanted]
-    derivatives = [ca.jacobian(of.errors, of.x), ca.jacobian(of.errors, of.change)]
-    return ca.Function("errors", arguments, [of.errors, *derivatives])
-
-
-def _optimiser(model: SystemFunctions, of: _Errors) -> ca.Function:
-    """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
-    centre = ca.MX.sym("centre", of.change.shape[0])
+    centre = ca.MX.sym("centre", count)
     damping = ca.MX.sym("damping")
-    damped = damping * ca.sumsqr(of.change - centre)
+    # min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium.
     problem = {
-        "x": ca.vertcat(of.x, of.change),
-        "p": ca.vertcat(centre, damping, of.origin, of.wanted),
-        "f": (ca.sumsqr(of.errors) + damped) / 2,
-        "g": model.residual(of.x, of.inputs),
+        "x": ca.vertcat(x, change),
+        "p": ca.vertcat(centre, damping, origin, wanted),
+        "f": (ca.sumsqr(errors) + damping * ca.sumsqr(change - centre)) / 2,
+        "g": model.residual(x, inputs),
     }
     options = {
         "print_time": False,
@@ -257,16 +198,7 @@ def _optimiser(model: SystemFunctions, of: _Errors) -> ca.Function:
         "show_eval_warnings": False,
         "ipopt": IPOPT if model.hessian_is_cheap else {**IPOPT, **LEARNED_HESSIAN},
     }
-    return ca.nlpsol("inverse", "ipopt", problem, options)
-
-
-def _scatter(variables: DecisionVariables, scale: FloatArray, size: int) -> ca.DM:
-    """Matrix from n changes of the decision variables to changes of the stacked inputs, shape (size, n)."""
-    count = len(scale)
-    return ca.DM.triplet(
-        variables.indices.tolist(),
-        list(range(count)),
-        ca.DM(scale),
-        size,
-        count,
-    )
+    optimiser = ca.nlpsol("inverse", "ipopt", problem, options)
+    derivatives = [ca.jacobian(errors, x), ca.jacobian(errors, change)]
+    linearised = ca.Function("errors", [x, change, origin, wanted], [errors, *derivatives])
+    return LiftedProblem(model, targets, variables, scale, variables.clipped(start.inputs), optimiser, linearised)

@@ -13,14 +13,13 @@ Where this does not end at the targets, nothing is said about whether another me
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.lifted_problem import LiftedProblem
-from cosserat_casadi.control.target_errors import wanted_poses
+from cosserat_casadi.control.targets import wanted_poses
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.broyden import solved
@@ -41,62 +40,38 @@ UNMOVED = 1e-9
 """Share of the largest singular value below which inputs do not move the errors."""
 
 
-@dataclass(frozen=True)
-class _Linearised:
-    """Equilibrium and errors of targets, linear in changes du of n inputs in their scales.
-
-    Attributes:
-        follows: the unknowns change by minus its first column, and by minus the others times du, shape (size, 1 + n).
-        errors: weighted errors here, shape (m,).
-        balanced: errors after the first of these changes, shape (m,).
-        moved: what each input moves the errors by, shape (m, n).
-    """
-
-    follows: FloatArray
-    errors: FloatArray
-    balanced: FloatArray
-    moved: FloatArray
-
-
 def followed(problem: LiftedProblem, start: Equilibrium[Any]) -> Inverse | None:
     """The result of Newton's method from an equilibrium near the targets, judged; None where it does not converge."""
+    model = problem.model
+    wanted = wanted_poses(problem.targets)
     x = start.x
     change = problem.change(start.inputs)
     lower, upper = problem.ranges()
     for _ in range(MOST_TURNS):
-        linear = _linearised(problem, x, change)
-        if linear is None:
+        inputs = problem.inputs(change)
+        stiffness, residual = (part.full() for part in model.jacobian(x, inputs))
+        by_input = model.input_jacobian(x, inputs).full()[:, problem.variables.indices] * problem.scale
+        linear = problem.errors(x, change, problem.origin, wanted)
+        errors, errors_by_x, errors_by_change = (part.full() for part in linear)
+        # The unknowns change by minus the first column, and by minus the others times du.
+        follows = solved(stiffness, np.column_stack([residual, by_input]))
+        if follows is None:
             return None
-        step = shortest(linear.moved, linear.balanced, lower - change, upper - change)
-        x_step = -linear.follows[:, 0] - linear.follows[:, 1:] @ step
+        balanced = errors[:, 0] - errors_by_x @ follows[:, 0]
+        moved = errors_by_change - errors_by_x @ follows[:, 1:]
+        if not (np.all(np.isfinite(balanced)) and np.all(np.isfinite(moved))):
+            return None
+        step = shortest(moved, balanced, lower - change, upper - change)
+        x_step = -follows[:, 0] - follows[:, 1:] @ step
         largest = float(np.abs(np.concatenate([x_step, step])).max())
         if largest <= SETTLED:
             # Steps settle too where the ranges end short of the targets.
-            reached = float(np.abs(linear.errors).max(initial=0.0)) <= NO_ERROR
+            reached = float(np.abs(errors).max(initial=0.0)) <= NO_ERROR
             return problem.judged(x, change, rounds=0) if reached else None
         share = min(1.0, LONGEST / largest)
         x = x + share * x_step
         change = np.clip(change + share * step, lower, upper)
     return None
-
-
-def _linearised(problem: LiftedProblem, x: FloatArray, change: FloatArray) -> _Linearised | None:
-    """Equilibrium and errors about unknowns and changes of the inputs; None where they are singular or no numbers."""
-    model = problem.model
-    inputs = problem.inputs(change)
-    stiffness, residual = (part.full() for part in model.jacobian(x, inputs))
-    by_input = model.input_jacobian(x, inputs).full()[:, problem.variables.indices] * problem.scale
-    wanted = wanted_poses(problem.targets)
-    found = problem.errors(x, change, problem.origin, wanted)
-    errors, errors_by_x, errors_by_change = (part.full() for part in found)
-    follows = solved(stiffness, np.column_stack([residual, by_input]))
-    if follows is None:
-        return None
-    balanced = errors[:, 0] - errors_by_x @ follows[:, 0]
-    moved = errors_by_change - errors_by_x @ follows[:, 1:]
-    if not (np.all(np.isfinite(balanced)) and np.all(np.isfinite(moved))):
-        return None
-    return _Linearised(follows, errors[:, 0], balanced, moved)
 
 
 def shortest(moved: FloatArray, errors: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:

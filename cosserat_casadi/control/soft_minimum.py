@@ -6,7 +6,7 @@ callback of its derivative: the value's is the gradient, the gradient's is the c
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import casadi as ca
@@ -34,31 +34,26 @@ def soft_minimum(measure: bytes, size: int, width: float) -> ca.Callback:
 
 
 class _SpectrumCache:
-    """Spectrum of the matrix asked about last: value, gradient and curvature share one decomposition."""
+    """Spectra of matrices, that of the last one kept: value, gradient and curvature share one decomposition."""
 
     def __init__(self, measure: FloatArray, size: int, width: float) -> None:
-        self.measure = measure
         self.size = size
-        self.width = width
-        self._last_matrix = b""
-        self._last_spectrum: Spectrum | None = None
+
+        @lru_cache(maxsize=1)
+        def of_doubles(doubles: bytes) -> Spectrum | None:
+            matrix = np.frombuffer(doubles).reshape(size, size)
+            if not np.all(np.isfinite(matrix)):
+                return None
+            try:
+                return Spectrum.of(matrix, measure, width)
+            except np.linalg.LinAlgError:
+                return None
+
+        self._of_doubles = of_doubles
 
     def spectrum(self, matrix: ca.DM) -> Spectrum | None:
         """The spectrum of a matrix; None where it is not finite or the measure is zero for some variation."""
-        dense = matrix.full()
-        key = dense.tobytes()
-        if self._last_matrix != key:
-            self._last_spectrum = self._decomposed(dense)
-            self._last_matrix = key
-        return self._last_spectrum
-
-    def _decomposed(self, matrix: FloatArray) -> Spectrum | None:
-        if not np.all(np.isfinite(matrix)):
-            return None
-        try:
-            return Spectrum.of(matrix, self.measure, self.width)
-        except np.linalg.LinAlgError:
-            return None
+        return self._of_doubles(matrix.full().tobytes())
 
 
 class _SpectralFunction(ca.Callback):  # type: ignore[misc]

@@ -12,7 +12,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import solve
 from cosserat_casadi.control.decision_variables import DecisionVariables
 from cosserat_casadi.control.inverse_result import Inverse, meets_all
-from cosserat_casadi.control.target_errors import target_errors
+from cosserat_casadi.control.targets import target_errors
 from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system_functions import SystemFunctions

@@ -56,7 +56,13 @@ def read_targets(path: Path, scene: scenes.Scene) -> TargetTable:
     if QUATERNION[0] in columns:
         quaternions = np.stack([columns[name] for name in QUATERNION], axis=1)
         norms = np.linalg.norm(quaternions, axis=1)
-        _refuse_norms(path, norms, lines)
+        refuse(
+            [
+                Problem(f"{path}, line {line}", f"the quaternion must have norm 1, got norm {norm:.9g}")
+                for norm, line in zip(norms, lines, strict=True)
+                if abs(norm - 1.0) > NORM_SLACK
+            ]
+        )
         for change, quaternion in zip(changes, (quaternions / norms[:, None]).tolist(), strict=True):
             change["quaternion"] = tuple(quaternion)
     rows = [(target.model_copy(update=change),) for change in changes]
@@ -87,11 +93,3 @@ def _column_problems(where: str, header: list[str], target: scenes.Target) -> li
         kind = 'give the target of the scene kind = "pose"'
         problems.append(Problem(where, "has orientations, but the target leaves them free", kind))
     return problems
-
-
-def _refuse_norms(path: Path, norms: FloatArray, lines: list[int]) -> None:
-    problems = []
-    for norm, line in zip(norms, lines, strict=True):
-        if abs(norm - 1.0) > NORM_SLACK:
-            problems.append(Problem(f"{path}, line {line}", f"the quaternion must have norm 1, got norm {norm:.9g}"))
-    refuse(problems)

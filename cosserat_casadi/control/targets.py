@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar, final
 
 import casadi as ca
@@ -191,7 +191,11 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
         """Distance over the length, and the chord of the angle along its axis, 6×1."""
         position, quaternion = self._pose(target, model, x, inputs)
         position_error = (position - wanted[:3]) / length_of(model, target)
-        return ca.vertcat(position_error, 2 * _half_rotation(wanted[3:], quaternion))
+        # A planar rod leaves entries of its quaternion structurally zero.
+        actual = ca.densify(ca.MX(quaternion))
+        # The vector part is sin(θ/2) times the axis of the rotation between the two.
+        difference = quaternion_product(quaternion_conjugate(ca.MX(wanted[3:])), actual)
+        return ca.vertcat(position_error, 2 * difference[1:])
 
     def gap(self, target: scenes.PoseTarget, solution: Equilibrium[Any]) -> TargetMiss:
         """The distance and the angle."""
@@ -232,10 +236,48 @@ class PointsAlongRod(Target[scenes.CurveTarget]):
         return target.points
 
 
-def _half_rotation(wanted: Matrix, quaternion: Matrix) -> Matrix:
-    """Vector part of the rotation from the wanted orientation to the actual one: sin(θ/2) times its axis."""
-    conjugate = quaternion_conjugate(ca.MX(wanted))
-    # A planar rod leaves entries of its quaternion structurally zero.
-    actual = ca.densify(ca.MX(quaternion))
-    difference = quaternion_product(conjugate, actual)
-    return difference[1:]
+def wanted_poses(targets: Sequence[scenes.Target]) -> FloatArray:
+    """Positions and quaternions that targets ask for, 7 numbers for each; zeros for what a target leaves free."""
+    return np.concatenate([TARGET_KINDS[target.kind].wanted(target) for target in targets])
+
+
+def weighted_errors(
+    model: SystemFunctions,
+    targets: Sequence[scenes.Target],
+    wanted: Matrix,
+    x: Matrix,
+    inputs: Matrix,
+) -> Matrix:
+    """Weighted errors of targets, without unit; half their sum of squares is what an optimiser lessens.
+
+    Positions count relative to the rod's length. Orientations by the chord 2 sin(θ/2) of the angle θ between them,
+    which is smooth at every angle. The points of a curve count together as much as one point.
+
+    Args:
+        model: the model.
+        targets: the targets; their positions and orientations are not read, but for the points of curves.
+        wanted: these, as in :func:`wanted_poses`.
+        x: unknowns.
+        inputs: stacked inputs.
+    """
+    errors = []
+    for i, target in enumerate(targets):
+        pose = wanted[POSE_SIZE * i : POSE_SIZE * (i + 1)]
+        error = TARGET_KINDS[target.kind].error(target, model, pose, x, inputs)
+        errors.append(np.sqrt(target.weight) * error)
+    stacked: Matrix = ca.vertcat(*errors)
+    return stacked
+
+
+def target_errors(solution: Equilibrium[Any], targets: Sequence[scenes.Target]) -> tuple[TargetMiss, ...]:
+    """How far a solution is from each of the targets, and how far the model itself may be off there."""
+    gaps = []
+    for target in targets:
+        mechanics = TARGET_KINDS[target.kind]
+        gap = mechanics.gap(target, solution)
+        error = mechanics.model_error(target, solution)
+        if error is not None:
+            angle_error = None if gap.angle is None else error
+            gap = replace(gap, position_error=error * length_of(solution.model, target), angle_error=angle_error)
+        gaps.append(gap)
+    return tuple(gaps)
