@@ -124,8 +124,9 @@ wave = "one_minus_cosine"
     @property
     def knot_values(self) -> FloatArray:
         """Values of the table in the unit of the input, a row for each time, shape (k, entries)."""
-        values = np.asarray(self.values or (), dtype=float)
-        return values.reshape(len(values), -1)
+        # A single number may stand in a list or without.
+        rows = [np.atleast_1d(np.asarray(value, dtype=float)) for value in self.values or ()]
+        return np.stack(rows) if rows else np.zeros((0, 0))
 
     @property
     def amplitudes(self) -> FloatArray:

@@ -82,6 +82,11 @@ def test_tables_and_waves_are_read() -> None:
     assert parse_scene(scene_text(read)) == read
 
 
+def test_a_number_of_a_table_stands_in_a_list_or_without() -> None:
+    mixed = given({"input": "pulled.tension", "times": [0.0, 0.5], "values": [[0.5], 2.0]})
+    assert_array_equal(mixed.motions[0].knot_values, [[0.5], [2.0]])
+
+
 def test_kinks_and_jumps() -> None:
     times = [0.0, 0.1, 0.2, 0.3]
     values = [[0.0, 1.0], [0.1, 1.0], [0.2, 1.0], [0.2, 1.0]]
