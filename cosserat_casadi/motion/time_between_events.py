@@ -6,14 +6,17 @@ neither depends on how long the motion is watched.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
 
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.inertia import rod_mass
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.load_records import Gravity
+from cosserat_casadi.scene.rod_records import Rod
 
 SLOWEST_ROOT = 1.87510407
 """Least root k of cos k cosh k = −1: a rod that is clamped at one end swings at k² √(EI/ρA)/ℓ², its slowest rate."""
@@ -27,26 +30,32 @@ SWINGS = 3.0
 
 def time_between_events(model: Model, duration: float) -> float:
     """Time in which the next event of contact is expected, s: at most the duration of the motion, s."""
-    discrete = model.discrete.nominal
-    carried = sum(body.mass for body in discrete.scene.bodies)
-    times = [_time_of_swing(rod, discrete.tension_unit(name), carried) for name, rod in discrete.rods.items()]
-    weights = [np.linalg.norm(load.acceleration) for load in model.scene.loads if isinstance(load, Gravity)]
-    longest = max(float(rod.properties.length) for rod in discrete.rods.values())
+    scene = model.scene
+    carried = sum(body.mass for body in scene.bodies)
+    times = [_time_of_swing(_by_its_own_numbers(model, rod), carried) for rod in scene.rods]
+    weights = [np.linalg.norm(load.acceleration) for load in scene.loads if isinstance(load, Gravity)]
+    longest = max(float(rod.length) for rod in scene.rods)
     times += [float(np.sqrt(2.0 * longest / weight)) for weight in weights if weight > 0.0]
     return min(duration, SWINGS * max(times))
 
 
-def _time_of_swing(rod: DiscreteRod, tension_unit: float, carried: float) -> float:
+def _by_its_own_numbers(model: Model, rod: Rod) -> DiscreteRod:
+    """A rod whose equations are scaled by the numbers that parameters give it, not by those of the file."""
+    discrete_rod = model.at().discrete.rods[rod.name]
+    own = replace(rod_properties(rod), fixed_masses=discrete_rod.properties.fixed_masses)
+    return replace(discrete_rod, properties=own)
+
+
+def _time_of_swing(rod: DiscreteRod, carried: float) -> float:
     """Period of the slowest swing of a rod clamped at one end with a mass at the other, s; infinite without any mass.
 
     Args:
         rod: the rod.
-        tension_unit: EI/ℓ² of it, N.
         carried: the mass at its other end, kg.
     """
     mass = rod_mass(rod) + carried / RAYLEIGH
     if mass == 0.0:
         return inf
-    length = float(rod.properties.length)
-    slowest_rate = SLOWEST_ROOT**2 * np.sqrt(tension_unit / (mass * length))
+    # EI/ℓ over m ℓ².
+    slowest_rate = SLOWEST_ROOT**2 * np.sqrt(rod.energy_unit / mass) / rod.length
     return float(2.0 * np.pi / slowest_rate)
