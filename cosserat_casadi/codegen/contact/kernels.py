@@ -225,6 +225,9 @@ class ArrangementKernels:
         rates = grid.rates_in(grid.element_of_node[nodes])
         if rates is not None:
             lengths = lengths * as_matrix(rates)
+        ratio = self._written.system.shapes[touch.owner].ratio
+        if ratio is not None:
+            lengths = lengths * ratio
         normals = ca.horzcat(*[self._normal(touch, int(node)) for node in nodes])
         return normals @ (lengths * along)
 

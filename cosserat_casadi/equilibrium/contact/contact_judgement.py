@@ -120,7 +120,8 @@ def _resultant(
         along = legendre_polynomials(len(own), (X - start) / (end - start)) @ own
         normal = normals(found.solution, touch.owner, obstacle, X)
         total += (grid.weights[nodes] * along) @ normal
-    return total
+    # Forces per length act on the length that an input or a parameter gives the rod; their unit is of the scene's.
+    return found.placed.model.length_ratio(touch.owner, found.solution.inputs) * total
 
 
 @dataclass(frozen=True)
@@ -189,7 +190,8 @@ def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:
     """Second derivative of the gap with X at a point of contact, over the length."""
     pose = found.solution.pose(touch.start, touch.owner)
     strain = found.solution.strain(touch.start, touch.owner)
-    length = found.placed.model.discrete.rods[touch.owner].properties.length
+    model = found.placed.model
+    length = model.length(touch.owner, found.solution.inputs)
     tangent = length * pose.rotation @ strain[3:]
     # The rate of the extension is along the tangent, on which the normal stands.
     bend = length**2 * pose.rotation @ np.cross(strain[:3], strain[3:])
@@ -197,4 +199,5 @@ def _gap_curvature(found: ContactEquilibrium, touch: Touch) -> float:
     (position,) = seen_positions(found.solution, obstacle, pose.position[None])
     first, second = seen_directions(found.solution, obstacle, np.array([tangent, bend]))
     distance = distance_along(obstacle, position, first, second)
-    return distance.bend / length
+    # Gaps are told over the length that the rod has in the scene.
+    return distance.bend / model.discrete.rods[touch.owner].properties.length

@@ -144,7 +144,8 @@ def lies_at_base(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord) 
     properties = solution.model.discrete.rods[rod].properties
     base, tip = section_radius(properties, np.array([0.0, 1.0]))
     tangent = solution.pose(at_base, rod).rotation[0, :, 2]
-    slope = normals(solution, rod, obstacle, at_base)[0] @ tangent - (tip - base) / properties.length
+    taper = (tip - base) / solution.model.length(rod, solution.inputs)
+    slope = normals(solution, rod, obstacle, at_base)[0] @ tangent - taper
     return bool(max(abs(gap_along(solution, rod, obstacle, at_base)[0]), abs(slope)) <= ROUNDING)
 
 
