@@ -68,6 +68,10 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         discrete = with_numbers(nominal, self.parameters.set_in(nominal.scene, values))
         check_loads(discrete)
         check_directions(nominal.constraints, discrete.own_unloaded)
+        if discrete.scene.obstacles:
+            check_obstacles(discrete)
+        if discrete.pairs:
+            check_pairs(self, values)
         return Model(discrete)
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
@@ -227,17 +231,22 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         return np.zeros(self.size)
 
 
-def check_pairs(model: Model) -> None:
+def check_pairs(model: Model, parameters: Mapping[str, npt.ArrayLike] | None = None) -> None:
     """Refuse rods that are inside each other where nothing acts: to which side they belong is not known.
 
     Where constraints have to draw rods together their unloaded places say nothing.
+
+    Args:
+        model: the model.
+        parameters: by name; the scene's values by default.
 
     Raises:
         SceneError: two rods are deeper inside each other than the width of their contact.
     """
     if model.discrete.constraints and not model.discrete.closed_unloaded:
         return
-    if model.contact_depth is not None and float(model.contact_depth(model.unloaded(), model.pack())) > 1.0:
+    given = [model.parameters.pack(parameters)] if model.parameters.size else []
+    if model.contact_depth is not None and float(model.contact_depth(model.unloaded(), model.pack(), *given)) > 1.0:
         problem = "two rods, or two stretches of one, are inside each other where nothing acts"
         raise SceneError(
             Problem("rod_contacts", problem, "move them apart, or name the pairs that touch: rods = [...]")

@@ -29,7 +29,7 @@ def check_obstacles(discrete: DiscreteScene) -> None:
     Raises:
         SceneError: with the faults of all obstacles.
     """
-    refuse(_problems(discrete.nominal))
+    refuse(_problems(discrete))
 
 
 WIDTH = "give each {width}; or solve the scene, or leave them out"
