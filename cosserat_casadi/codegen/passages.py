@@ -22,13 +22,17 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, entries, least
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_depth import thin_layers
-from cosserat_casadi.model.contact_pairs import thickness
+from cosserat_casadi.model.contact_pairs import ContactPair, thickness
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.model.thin import first_places, moved_by
 
 PASSAGE_FILES = ("interpolation.c", "passages.c")
 """Files of the folder ``c`` that a library includes which watches."""
+
+ANY_SHARE = -1.0
+"""Distance in abscissae below that of any two sections."""
 
 RADII = 65
 """Sections whose radii are listed of a rod that is not linear from base to tip."""
@@ -50,10 +54,10 @@ def passage_kernels(model: Model, names: Names) -> list[ca.Function]:
     if not watches_passages(model):
         return []
     distances = [distance_kernel(own, _kernel(names, i)) for i, own in enumerate(_thin(model.at().discrete))]
-    sizes = _sizes(model)
+    symbols = [ca.MX.sym("inputs", model.inputs.size), model.parameters.symbol]
+    sizes = _sizes(model, symbols[0])
     if not any_symbolic(sizes):
         return distances
-    symbols = [ca.MX.sym("inputs", model.inputs.size), model.parameters.symbol]
     name = names.kernel("sizes")
     function = ca.Function(name, symbols, [ca.densify(ca.vertcat(*sizes))], ["inputs", PARAMETERS], ["sizes"])
     return [*distances, with_parameters_behind_inputs(function).expand(name)]
@@ -69,7 +73,7 @@ def passage_words(model: Model, names: Names) -> Words:
     if not watches_passages(model):
         return {"place_reals": 0}
     discrete = model.at().discrete
-    sizes = _sizes(model)
+    sizes = _sizes(model, ca.MX.sym("inputs", model.inputs.size))
     are_free = any_symbolic(sizes)
     count = first_places(discrete)[1][-1]
     words: Words = {
@@ -88,8 +92,8 @@ def passage_words(model: Model, names: Names) -> Words:
     }
 
 
-def _sizes(model: Model) -> list[Scalar]:
-    """Sizes of all barriers and pairs, as passages.c.in has them; expressions where a parameter is part of them."""
+def _sizes(model: Model, inputs: ca.MX) -> list[Scalar]:
+    """Sizes of all barriers and pairs, as passages.c.in has them; expressions where an argument is part of them."""
     known_discrete, discrete = model.at().discrete, model.discrete
     sizes: list[Scalar] = []
     for own, layer in zip(thin_layers(known_discrete), thin_layers(discrete), strict=True):
@@ -100,8 +104,20 @@ def _sizes(model: Model) -> list[Scalar]:
             radii = entries(section_radii(discrete.rods[str(layer.rod)].properties, places))
         deepest = depth_allowed(layer.obstacle, length)
         sizes += [admitted_depth(layer.obstacle, length, deepest, least(radii)), *radii]
-    # Half of their thickness, as between axes of rods that pass.
-    return [*sizes, *(thickness(discrete.rods, pair) / 2 for pair in discrete.pairs)]
+    for pair in discrete.pairs:
+        # Half of their thickness, as between axes of rods that pass.
+        sizes += [thickness(discrete.rods, pair) / 2, _share_apart(discrete, pair, inputs)]
+    return sizes
+
+
+def _share_apart(discrete: DiscreteScene, pair: ContactPair, inputs: ca.MX) -> Scalar:
+    """How far the second section of a pair is from the first at least, in abscissae."""
+    if not pair.itself:
+        return ANY_SHARE
+    (name, _) = pair.rods
+    ratio = ratio_of(discrete, name, Arguments(ca.DM(0, 1), inputs))
+    share = pair.apart / discrete.rods[name].properties.length
+    return share if ratio is None else share / ratio
 
 
 def _is_rod(layer: ContactLayer) -> bool:
@@ -187,9 +203,7 @@ def _pair_lines(discrete: DiscreteScene) -> Iterator[str]:
         fields = {
             "first": f"{{{first[2 * number]}, {first[2 * number + 1]}}}",
             "counts": f"{{{pair.sections[0]}, {pair.sections[1]}}}",
-            "sizes": size + number,
-            "apart": f"(real){float(max(pair.apart, -1e30))!r}",
-            "length": f"(real){float(pair.length)!r}",
+            "sizes": size + 2 * number,
         }
         records.append(record(fields))
     yield record_table("rod_pair", "ROD_PAIR", "ROD_PAIRS", records)

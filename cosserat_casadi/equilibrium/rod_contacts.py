@@ -12,7 +12,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.loads.rod_contact import coefficient
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.model.contact_pairs import ContactPair, section_places
 
 LOOKED_AT_BETWEEN = np.linspace(-1.0, 1.0, 33)
 """Places about a section, in distances of sections, at which gaps are looked for."""
@@ -46,21 +46,23 @@ def _contacts(solution: Solution, pair: ContactPair) -> Iterator[Contact]:
     model = solution.model
     first, second = section_positions(model, pair, solution.x, solution.inputs)
     apart = first[:, None] - second
-    touching = _touching(solution, pair, *pair.lookup)
-    reach = touching + pair.width
-    inside = np.where(pair.meets, np.maximum(reach**2 - np.sum(apart**2, axis=2), 0.0), 0.0)
-    pressed = inside.max(axis=1) > 0.0
+    discrete_rods = [model.at().discrete.rods[rod] for rod in pair.rods]
+    (X, other_X), shares = zip(*map(section_places, discrete_rods, pair.sections), strict=True)
     lengths = [model.length(rod, solution.inputs) for rod in pair.rods]
-    weights = lengths[0] * lengths[1] / np.prod(pair.sections)
+    meets = pair.meets(lengths[0] * X, lengths[1] * other_X)
+    touching = _touching(solution, pair, X, other_X)
+    reach = touching + pair.width
+    inside = np.where(meets, np.maximum(reach**2 - np.sum(apart**2, axis=2), 0.0), 0.0)
+    pressed = inside.max(axis=1) > 0.0
+    weights = lengths[0] * lengths[1] * np.outer(*shares)
     slopes = 6 * weights * np.vectorize(coefficient)(pair.width, pair.stiffness, touching) * inside**2
     forces = np.sum(slopes[..., None] * apart, axis=1)
     for part in runs(pressed):
         rows = np.arange(part.start, part.stop)
         row, column = np.unravel_index(np.argmax(inside[rows]), inside[rows].shape)
-        place = (float(pair.lookup[0][rows[row]]), float(pair.lookup[1][column]))
-        at, gap = _nearest(solution, pair, place)
-        half = 0.5 / pair.sections[0]
-        start, end = pair.lookup[0][rows[0]] - half, pair.lookup[0][rows[-1]] + half
+        at, gap = _nearest(solution, pair, (float(X[rows[row]]), float(other_X[column])))
+        half = shares[0] / 2
+        start, end = X[rows[0]] - half[rows[0]], X[rows[-1]] + half[rows[-1]]
         force = forces[rows].sum(axis=0)
         owner, other = pair.rods
         yield Contact(other, owner, float(start), float(end), force, (), "smooth", pair.width, gap, on_rods=at)

@@ -13,6 +13,7 @@ from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_pairs import section_places
 from cosserat_casadi.model.registry import EFFECTS, remembering
 
 SLIPS = 1.0 - 1e-6
@@ -86,27 +87,26 @@ def _stretches(model: Model, slip: FloatArray) -> Iterator[RubbingStretch]:
     end = 0
     for load, span in _nodes(model):
         nodes = known(model.at().discrete.rods[load.rod].grid.nodes)
-        # Nodes stand for the rod to the middle between them and their neighbours.
-        ends = np.concatenate([[0.0], (nodes[1:] + nodes[:-1]) / 2, [1.0]])
-        yield from _alike(load.obstacle.name, load.rod, ends, slip[span])
+        yield from _alike(load.obstacle.name, load.rod, nodes, slip[span])
         end = span.stop
     for pair in model.discrete.pairs if end < len(slip) else ():
         if pair.friction > 0.0:
-            sections = pair.sections[0]
-            ends = np.arange(sections + 1) / sections
-            yield from _alike(pair.rods[1], pair.rods[0], ends, slip[end : end + sections])
-            end += sections
+            sections, _ = section_places(model.at().discrete.rods[pair.rods[0]], pair.sections[0])
+            yield from _alike(pair.rods[1], pair.rods[0], sections, slip[end : end + len(sections)])
+            end += len(sections)
 
 
-def _alike(obstacle: str, rod: str, ends: FloatArray, slip: FloatArray) -> Iterator[RubbingStretch]:
+def _alike(obstacle: str, rod: str, places: FloatArray, slip: FloatArray) -> Iterator[RubbingStretch]:
     """Stretches of neighbours that stick, then stretches that slip.
 
     Args:
         obstacle: what presses.
         rod: name of the rod.
-        ends: abscissae between which the neighbours lie, shape (k + 1,).
+        places: abscissae of the neighbours, shape (k,).
         slip: of each, shape (k,).
     """
+    # They stand for the rod to the middle between them.
+    ends = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
     for slips in (False, True):
         for part in runs((slip >= 0.0) & ((slip >= SLIPS) == slips)):
             yield RubbingStretch(obstacle, rod, float(ends[part.start]), float(ends[part.stop]), slips)

@@ -161,6 +161,7 @@ class SmoothBarriers:
         return any(
             self._pass_each_other(
                 pair,
+                self.model.length(pair.rods[0], inputs[1]),
                 section_positions(at_start.model, pair_at_start, before, inputs[0]),
                 section_positions(self.model, pair, after, inputs[1]),
             )
@@ -168,12 +169,17 @@ class SmoothBarriers:
         )
 
     def _pass_each_other(
-        self, pair: ContactPair, starts: tuple[FloatArray, FloatArray], ends: tuple[FloatArray, FloatArray]
+        self,
+        pair: ContactPair,
+        length: float,
+        starts: tuple[FloatArray, FloatArray],
+        ends: tuple[FloatArray, FloatArray],
     ) -> bool:
         """Whether the axes of two rods come nearer than half their thickness on the way of their sections."""
         moved = [end - start for start, end in zip(starts, ends, strict=True)]
         # Every other section: they are nearer each other than half the thickness.
-        meets = pair.meets[::EVERY, ::EVERY]
+        along = [length * (np.arange(count) + 0.5) / count for count in pair.sections]
+        meets = pair.meets(*along)[::EVERY, ::EVERY]
         apart, way = ((own[0][::EVERY, None] - own[1][None, ::EVERY])[meets] for own in (starts, moved))
         allowed = float(thickness(self.model.discrete.rods, pair)) / 2
         squares = np.einsum("ki,ki->k", apart, apart)

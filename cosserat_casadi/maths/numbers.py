@@ -65,6 +65,11 @@ def least(values: Sequence[Scalar]) -> Scalar:
     return ca.mmin(ca.vertcat(*values)) if any_symbolic(values) else min(values)
 
 
+def largest(values: Sequence[Scalar]) -> Scalar:
+    """The largest of some values."""
+    return ca.mmax(ca.vertcat(*values)) if any_symbolic(values) else max(values)
+
+
 def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
     """Whether numbers are known to be zero, all of them."""
     if isinstance(value, tuple | list):

@@ -16,8 +16,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.penetration import section_radius
-from cosserat_casadi.maths.numbers import Scalar, entries, least
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.numbers import Scalar, entries, known, largest, least
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.rod_contact_record import RodContact, are_tied
@@ -56,11 +56,9 @@ class ContactPair:
         rods: their names; the same twice of a rod and itself.
         width: gap from which on they push, m.
         stiffness: rate of the force per length with the gap where parallel rods touch, N/m².
-        apart: how far the second section is along the rod from the first at least, m; far below zero for two rods.
+        apart: how far the second section is along the rod from the first at least, m; far below zero for two rods. It
+            may be an expression of parameters.
         sections: number of sections of each rod.
-        thickness: distance of the centres of sections that touch, where it is least, m, with the numbers that scale
-            the equations.
-        length: of the first rod, m.
         friction: coefficient of friction.
         slip_speed: speed below which sticking sections creep, m/s.
     """
@@ -69,10 +67,8 @@ class ContactPair:
     rods: tuple[str, str]
     width: float
     stiffness: float
-    apart: float
+    apart: Scalar
     sections: tuple[int, int]
-    thickness: float
-    length: float
     friction: float
     slip_speed: float
 
@@ -93,22 +89,14 @@ class ContactPair:
         """
         return self.friction * self.width / 3
 
-    @property
-    def lookup(self) -> tuple[FloatArray, FloatArray]:
-        """Abscissae of the sections of both rods."""
-        first, second = ((np.arange(count) + 0.5) / count for count in self.sections)
-        return first, second
+    def meets(self, first: FloatArray, second: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which sections may touch each other, by their distances along both rods, m, shape (first, second)."""
+        return second - first[:, None] >= float(self.apart)
 
     @property
-    def meets(self) -> npt.NDArray[np.bool_]:
-        """Which sections may touch each other, shape (sections of the first, sections of the second)."""
-        first, second = self.lookup
-        return (second - first[:, None]) * self.length >= self.apart
-
-    @property
-    def law(self) -> ca.DM:
+    def law(self) -> Matrix:
         """Numbers of the law, as loads/rod_contact.py takes them."""
-        return ca.DM([self.width, self.stiffness, self.apart, self.friction, self.slip_speed])
+        return ca.vertcat(self.width, self.stiffness, self.apart, self.friction, self.slip_speed)
 
 
 def named_pairs(scene: scenes.Scene) -> Iterator[tuple[RodContact, tuple[str, str]]]:
@@ -152,7 +140,6 @@ def contact_pairs(
             bending = max(nominal[name].energy_unit / nominal[name].properties.length for name in pair)
             stiffness = SURFACE_STIFFNESS * bending / width**2
         thinnest = float(radii[0].min() + radii[1].min())
-        thickest = float(radii[0].max() + radii[1].max())
         itself = pair[0] == pair[1]
         spacing = SPACING * sqrt((thinnest + width) ** 2 - thinnest**2)
         name = contact.label if contact.rods is not None else f"{contact.name or 'contact'} of {pair[0]} and {pair[1]}"
@@ -161,19 +148,32 @@ def contact_pairs(
             rods=pair,
             width=width,
             stiffness=stiffness,
-            apart=FROM_ITSELF * (thickest + width) if itself else -ANYWHERE,
+            apart=FROM_ITSELF * (2 * _largest_radius(rods[pair[0]]) + width) if itself else -ANYWHERE,
             sections=(_sections(name, rods[pair[0]], spacing), _sections(name, rods[pair[1]], spacing)),
-            thickness=thinnest,
-            length=nominal[pair[0]].properties.length,
             friction=contact.friction,
             slip_speed=contact.slip_speed,
         )
+
+
+def section_places(rod: DiscreteRod, count: int) -> tuple[FloatArray, FloatArray]:
+    """Abscissae of the sections of a rod whose elements end at known places, and the share that each stands for."""
+    coordinates = (np.arange(count) + 0.5) / count
+    # Sections stay in their elements, as those of the equations do.
+    elements = replace(rod.grid, ends=None).element_of(coordinates)
+    rates = rod.grid.rates_in(elements)
+    shares = np.full(count, 1.0 / count)
+    return known(rod.grid.on_rod(coordinates, elements)), shares if rates is None else shares * known(rates)
 
 
 def thickness(rods: Mapping[str, DiscreteRod], pair: ContactPair) -> Scalar:
     """Distance of the centres of sections that touch, where it is least, m."""
     first, second = (least(entries(section_radii(rods[name].properties, LOOKED_AT))) for name in pair.rods)
     return first + second
+
+
+def _largest_radius(rod: DiscreteRod) -> Scalar:
+    """Radius of a rod where it is thickest, m."""
+    return largest(entries(section_radii(rod.properties, LOOKED_AT)))
 
 
 def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:

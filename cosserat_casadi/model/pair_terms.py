@@ -91,6 +91,8 @@ class ContactSide:
             lengths = ratio * lengths
         radii = as_matrix(repeated(section_radii(rod.properties, X), self.columns))
         along = rod.properties.length * as_matrix(X)
+        if ratio is not None:
+            along = ratio * along
         data = ca.horzcat(lengths, radii, along).T
         origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.columns)
         return SectionsInContact(origin + self._arms, data, self._motions)

@@ -80,6 +80,10 @@ SCENES = {
 }
 """Everything that may pass through everything thin."""
 
+ITSELF = '[[rod_contacts]]\nrods = ["rod"]\n'
+COILED = 6.0
+"""Factor on random bends with which a rod comes across itself."""
+
 STEPS = 50
 """Random steps of each scene."""
 
@@ -158,6 +162,7 @@ SIZED = {
         'parameters = [["rod.section.radius", "other.section.radius"], "other.length"]\n' + SCENES["rods"],
         (2, 2),
     ),
+    "itself": ('parameters = ["rod.section.radius", "rod.length"]\n' + MOVED + SOLID + ITSELF, (3, 2)),
 }
 """Scenes whose parameters are sizes of what is watched, and how many times as large they get at most."""
 
@@ -178,6 +183,9 @@ def test_steps_are_judged_by_the_sizes_that_parameters_give(name: str, tmp_path:
         inputs[:] = [0.0, 0.0, 0.05]
         inputs[:, 1, 2] = -0.1 + 1e-3 + base + 0.9 / length * (tip - base)
         inputs[::3, 1, 2] -= 1.6 * (1e-3 + width[::3])
+    if name == "itself":
+        # Bent to more than a circle, in the plane of a rod that hardly twists.
+        x *= COILED
     wanted = []
     for row in range(STEPS):
         step = (x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]))

@@ -129,7 +129,8 @@ static real longest_between(const real *places, int count) {
 
 /* Whether the axes of two rods come nearer each other than half their thickness. */
 static int pass_each_other(const rod_pair *own, const real *before, const real *after, const workspace *work) {
-  const real allowed = SIZES(work)[own->sizes];
+  const real *sizes = SIZES(work) + own->sizes;
+  const real allowed = sizes[NEAREST];
   const int others = 3 * own->first[1];
   const int count = own->counts[1];
   const real spacing = most_of(longest_between(before + others, count), longest_between(after + others, count));
@@ -138,9 +139,9 @@ static int pass_each_other(const rod_pair *own, const real *before, const real *
     const int first = 3 * (own->first[0] + i);
     for (int j = 0; j < count;) {
       const int second = others + 3 * j;
-      const real along = ((j + (real)0.5) / count - X) * own->length;
+      const real along = (j + (real)0.5) / count - X;
       int skipped = 1;
-      if (along >= own->apart) {
+      if (along >= sizes[APART]) {
         const real clear = nearest_of(before + first, before + second, after + first, after + second) - allowed;
         if (!(clear >= 0)) return 1;
         skipped = clear < spacing * count ? (int)(clear / spacing) / EVERY : count;
