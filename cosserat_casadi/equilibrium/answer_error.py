@@ -151,10 +151,19 @@ FRICTION_OF_CONTACT = (
 FRICTION_OF_JOINTS = " Friction of joints acts in motion alone, and is left out."
 """A sentence on equilibria of scenes with joints that rub."""
 
+FRICTION_OF_BODIES = " Friction of bodies and disks acts in motion alone, and is left out."
+"""A sentence on paths of scenes in which bodies or disks rub on obstacles."""
+
 
 def left_out_friction(scene: Scene) -> str:
     """A sentence on friction of joints, which acts in motion alone; empty where there is none."""
     return FRICTION_OF_JOINTS if any(joint.rubs for joint in scene.joints) else ""
+
+
+def left_out_on_paths(scene: Scene) -> str:
+    """Sentences on friction that paths leave out, of joints, bodies and disks; empty where there is none."""
+    of_bodies = any(obstacle.rubs and (obstacle.bodies or obstacle.disks) for obstacle in scene.obstacles)
+    return left_out_friction(scene) + (FRICTION_OF_BODIES if of_bodies else "")
 
 
 def _friction_note(solution: Equilibrium[Any]) -> str:

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.answer_error import left_out_friction
+from cosserat_casadi.equilibrium.answer_error import left_out_on_paths
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
@@ -175,7 +175,8 @@ def follow_path(
         )
         message = _sentence(path.outcome, path.factor) + path.stopped_at
         return _resolved(replace(path, message=message))
-    if model.scene.rubs:
+    left_out = left_out_on_paths(model.scene)
+    if model.scene.rubs and model.with_memory.inputs.memory is not None:
         if branch:
             problem = "is of a path without friction: one that rubs goes on in increments"
             raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
@@ -189,7 +190,7 @@ def follow_path(
             first=first,
             progress=progress,
         )
-        message = _sentence(rubbing.outcome, rubbing.factor) + (FROM_NOWHERE if first is None else "")
+        message = _sentence(rubbing.outcome, rubbing.factor) + (FROM_NOWHERE if first is None else "") + left_out
         return _within_limits(_resolved(replace(rubbing, message=message)))
     values_at_zero = model.inputs.unpack(followed.base)
     start = solve(model, values_at_zero, estimate_error=False)
@@ -200,7 +201,7 @@ def follow_path(
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
     path = _within_limits(_resolved(followed.record(traced)))
-    return replace(path, message=path.message + left_out_friction(model.scene))
+    return replace(path, message=path.message + left_out)
 
 
 def _smooth_guard(followed: _Followed) -> Guard | None:

@@ -219,3 +219,34 @@ def test_dynamics_in_c_are_those_of_python(tmp_path: Path) -> None:
     frame = FrameName("body", "ball")
     way = (taken.state.x - start.x)[model.discrete.deviation(frame)][0] * model.discrete.frames[frame].length
     assert_allclose(way, 5 / 7 * 9.81 * np.sin(0.4) * 0.1**2 / 2, rtol=1.5e-2, atol=0)
+
+
+def test_a_path_of_a_body_that_rubs_has_no_friction_and_says_so() -> None:
+    """Bodies rub in motion alone: the path is that of the scene without friction."""
+    rod = {
+        "name": "rod",
+        "length": 0.1,
+        "strain": "planar",
+        "base": {"tangent": [1, 0, 0]},
+        "material": {"youngs_modulus": 2e6, "poisson_ratio": 0.45, "density": 1100.0},
+        "section": {"shape": "circle", "radius": 5e-3},
+    }
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, -0.02], "normal": [0, 0, 1], "bodies": ["head"]}
+    tables = {
+        "schema": 1,
+        "rods": [rod],
+        "bodies": [{"name": "head", "mass": 0.01, "radius": 0.01}],
+        "joints": [{"body": "head", "rod": "rod", "kind": "fixed"}],
+        "loads": [{"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, 0]}],
+        "inputs": ["push.force"],
+        "accuracy": {"modes": 3, "nodes": 6},
+    }
+    smooth = floor | {"width": 4e-3}
+    paths = [
+        follow(build(scene_from_dict(tables | {"obstacles": [obstacle]})), "push.force", [0.0, 0.0, -0.1])
+        for obstacle in (smooth | {"friction": 0.3}, smooth)
+    ]
+    assert all(path.converged for path in paths)
+    assert_allclose(paths[0].tip("rod").position[-1], paths[1].tip("rod").position[-1], rtol=0, atol=1e-9)
+    assert "Friction of bodies and disks acts in motion alone" in paths[0].message
+    assert "riction" not in paths[1].message

@@ -117,5 +117,5 @@ def test_parameters_that_put_a_base_into_an_obstacle_are_refused(width: float | 
     obstacle = floor if width is None else floor | {"width": width}
     tables = {"schema": 1, "rods": [rod("rod")], "obstacles": [obstacle], "parameters": ["rod.base.position"]}
     model = build(scene_from_dict(tables))
-    with pytest.raises(SceneError, match="starts 0.007 m inside it"):
+    with pytest.raises(SceneError, match=r"starts 0\.007 m inside it"):
         model.at({"rod.base.position": [0, 0, -0.015]})

@@ -28,7 +28,7 @@ def _merit_sentence(path: EquilibriumPath) -> str:
     changes = sum(event.contact is not None for event in path.events)
     parts = [f"{len(path.factor)} points"]
     # A path with friction looks for none.
-    if not path.model.scene.rubs:
+    if path.model.inputs.memory is None:
         parts.append(f"{len(path.events) - changes} limit points and bifurcations")
     if path.model.scene.touches_exactly:
         parts.append(f"{changes} changes of contact")
