@@ -189,8 +189,7 @@ def lacking(history: History, duration: float, moved_by: ByStrain | None = None)
     """
     moved_by = felt(history, duration) if moved_by is None else moved_by
     strains = [moved for of_rod in moved_by.values() for moved in of_rod]
-    # A motion that goes on had waves before: its lateness adds up.
-    late = out_of_phase(history) * duration / (duration - history.begin)
+    late = out_of_phase(history, duration, moved_by)
     return max((REST * len(moved) * last_of(moved) for moved in strains), default=0.0) + late
 
 
@@ -280,23 +279,34 @@ def _along(properties: RodProperties, strain: int, X: FloatArray) -> tuple[Float
     return stiffness, np.zeros(len(X))
 
 
-def out_of_phase(history: History) -> float:
+def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float:
     """Largest displacement over the length by which waves come too early or too late, for the modes that they lack.
 
     A frequency errs by half the square of the share of its mode that coefficients lack. So the way of the last
     coefficients, times half of their share, bounds the displacement by which a wave is late in the end. Accelerations
     tell their share of the shortest waves, which long and larger ones would hide.
+
+    No wave errs by more than twice what it moves. One whose last coefficient moves l, with the share s of it, is late
+    by no more than min(2 l / s, s Θ l / 2) after the phase Θ, which is at most √Θ l for any share; and the way of l
+    is 2 Θ l / π.
+
+    Args:
+        history: the motion.
+        duration: its end, s.
+        moved_by: the displacements of :func:`felt`.
     """
     if not history.steps:
         return 0.0
     ends = [history.of_model(history.flight.to_model(step.end)) for _, step in history.steps]
-    sizes = np.array([step.size for _, step in history.steps])
+    # A motion that goes on had waves before: its lateness adds up.
+    sizes = np.array([step.size for _, step in history.steps]) * duration / (duration - history.begin)
     rates = np.abs([end.v for end in ends])
     ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
     accelerations = _by_strain(history.model, np.abs([end.a for end in ends]).max(axis=0))
     late = 0.0
     for rod, of_rod in ways.items():
-        for way, acceleration in zip(of_rod, accelerations[rod], strict=True):
+        for way, acceleration, moved in zip(of_rod, accelerations[rod], moved_by[rod], strict=True):
             share = last_of(acceleration) / max(acceleration.max(), TINY)
-            late = max(late, 0.5 * last_of(way) * share)
+            of_any_share = float(np.sqrt(0.5 * np.pi * last_of(way) * last_of(moved)))
+            late = max(late, min(0.5 * last_of(way) * share, of_any_share))
     return late
