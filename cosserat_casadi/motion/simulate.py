@@ -33,6 +33,7 @@ from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, external, renamed
 from cosserat_casadi.motion.step_kernels import KernelSource, interpreted
@@ -117,8 +118,14 @@ EXACT = 1e-13
 NEWTON = 1e-3
 """Error of Newton's method over the tolerance of a step."""
 
+NEWTON_OF_CLOSED = 1e-4
+"""The same where supports and joints are to stay closed: what they are open by acts on velocities over a step too.
+
+It falls with the tolerance of a step, as what a step errs by does: two motions that tell an error tell this one too.
+"""
+
 CLOSED = 1e-10
-"""Error of Newton's method, over the length, where supports, joints or cables are to stay closed."""
+"""Error of Newton's method, over the length, where contacts, stops or slack cables change the equations."""
 
 FORCE_LEFT = 0.1
 """Force, in EI/ℓ², that the error of Newton's method may make of a stretch: π² in compression buckle a hinged rod.
@@ -229,10 +236,12 @@ class Simulator:
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
         left = min(NEWTON * tolerance, max(CLOSED, FORCE_LEFT * self._stretch))
-        if self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential):
-            # What Newton's method leaves is what supports and joints are open by, or contacts. In flight too: with more
-            # of it steps of a thin rod came to a halt after a blow.
+        if self.model.scene.touches_exactly or OneSided(self.model).pairs:
+            # What Newton's method leaves is what contacts are open by. In flight too: with more of it steps of a thin
+            # rod came to a halt after a blow.
             left = min(left, CLOSED)
+        elif not np.all(self.model.discrete.unknowns.differential):
+            left = min(left, NEWTON_OF_CLOSED * tolerance)
         settings = StepSettings(tolerance=tolerance / self.displacements, newton=left / tolerance)
         return self._integrated(radau(STAGES), settings)
 
