@@ -90,21 +90,32 @@ def felt(history: History, duration: float) -> ByStrain:
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
     """Largest entries of all elements, of displacements by each unknown over its rod's length, shape (model.size,).
 
-    They are over the length of the shortest rod that goes along: its path is watched over its own length. A twist
-    moves what goes along by its distance from the axis.
+    They are multiplied by the factors of :func:`_factors`.
     """
-    inputs = model.pack()
+    factors = kept_with(
+        model, "_factors_of_strains", lambda: {name: _factors(model, name) for name in model.discrete.rods}
+    )
     by_strain = {}
     for name, rod in model.discrete.rods.items():
         of_rod = sizes[model.discrete.unknowns.strain(name)]
-        by_element = [of_rod[columns].reshape(rod.grid.elements, -1) for columns in rod.columns.values()]
-        shortest = min(model.length(other, inputs) for other in moved_along(model.scene, name).rods)
-        longer = model.length(name, inputs) / shortest
         by_strain[name] = [
-            of_strain.max(axis=0) * (arm_of_twist(model, name) / LEVER if strain == TWIST else longer)
-            for strain, of_strain in zip(rod.admitted, by_element, strict=True)
+            factor * of_rod[columns].reshape(rod.grid.elements, -1).max(axis=0)
+            for factor, columns in zip(factors[name], rod.columns.values(), strict=True)
         ]
     return by_strain
+
+
+def _factors(model: Model, name: str) -> list[float]:
+    """Factor on a displacement by each strain of a rod, over its length, for that of what goes along.
+
+    It is over the length of the shortest rod that goes along: its path is watched over its own length. A twist moves
+    what goes along by its distance from the axis.
+    """
+    rod = model.discrete.rods[name]
+    inputs = model.pack()
+    shortest = min(model.length(other, inputs) for other in moved_along(model.scene, name).rods)
+    longer = model.length(name, inputs) / shortest
+    return [arm_of_twist(model, name) / LEVER if strain == TWIST else longer for strain in rod.admitted]
 
 
 class MovedAlong(NamedTuple):
@@ -297,12 +308,14 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
     """
     if not history.steps:
         return 0.0
-    ends = [history.of_model(history.flight.to_model(step.end)) for _, step in history.steps]
+    # Strains are the same in the coordinates of the steps; forces of contacts stand behind the unknowns of the model.
+    own = slice(history.model.size)
+    ends = [step.end for _, step in history.steps]
     # A motion that goes on had waves before: its lateness adds up.
     sizes = np.array([step.size for _, step in history.steps]) * duration / (duration - history.begin)
-    rates = np.abs([end.v for end in ends])
+    rates = np.abs([end.v[own] for end in ends])
     ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
-    accelerations = _by_strain(history.model, np.abs([end.a for end in ends]).max(axis=0))
+    accelerations = _by_strain(history.model, np.abs([end.a[own] for end in ends]).max(axis=0))
     late = 0.0
     for rod, of_rod in ways.items():
         for way, acceleration, moved in zip(of_rod, accelerations[rod], moved_by[rod], strict=True):
