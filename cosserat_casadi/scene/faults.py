@@ -16,6 +16,9 @@ Table = Mapping[str, Any]
 PLAIN = (str, int, float)
 """Classes of values without values inside; to ask for these is faster than to ask for a mapping."""
 
+LISTS = (list, tuple)
+"""Classes of arrays; likewise."""
+
 LONGEST_TEXT = 60
 """Characters of a text or a key of the file that a message quotes."""
 
@@ -103,16 +106,19 @@ def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
     are left to the types.
     """
     if isinstance(value, PLAIN):
+        # No key of a path makes a fault of these.
+        if isinstance(value, str) or not value or SMALLEST_SIZE <= abs(value) <= LARGEST_LENGTH:
+            return
         if isinstance(value, int) and abs(value) > sys.float_info.max:
             yield Fault(path, f"must be finite, got {shown(value)}")
-        elif isinstance(value, int | float) and not isinstance(value, bool):
+        else:
             yield from _length_faults(float(value), path)
+    elif isinstance(value, LISTS):
+        for i, entry in enumerate(value):
+            yield from faults_of_range(entry, (*path, i))
     elif isinstance(value, Mapping):
         for key, entry in value.items():
             yield from faults_of_range(entry, (*path, key))
-    elif isinstance(value, list | tuple):
-        for i, entry in enumerate(value):
-            yield from faults_of_range(entry, (*path, i))
 
 
 def _length_faults(value: float, path: Path) -> Iterator[Fault]:

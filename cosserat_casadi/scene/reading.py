@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.scene.disk_record import lead_through_disks
 from cosserat_casadi.scene.disks_in_contact import seat_disks
-from cosserat_casadi.scene.faults import PLAIN, SceneTables, faults_of_range, shown
+from cosserat_casadi.scene.faults import LISTS, PLAIN, SceneTables, faults_of_range, shown
 from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import owners_of
@@ -182,10 +182,10 @@ def _copy(value: Any) -> Any:
     # Overrides change the tables in place; the caller's must stay as they are.
     if isinstance(value, PLAIN):
         return value
+    if isinstance(value, LISTS):
+        return [_copy(entry) for entry in value]
     if isinstance(value, Mapping):
         return {key: _copy(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_copy(entry) for entry in value]
     return value
 
 

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, Validatio
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from cosserat_casadi.scene.faults import PLAIN, Fault, Path, SceneTables, Table
+from cosserat_casadi.scene.faults import LISTS, PLAIN, Fault, Path, SceneTables, Table
 from cosserat_casadi.scene.input_fields import InputField
 
 RecordType = TypeVar("RecordType", bound="Record")
@@ -63,13 +63,13 @@ def _as_given(value: Any) -> Any:
     """Turn records back into the tables that they were read from; keys that were left out stay out."""
     if isinstance(value, PLAIN):
         return value
-    # A scene may be built from records in Python as well as from tables; the rules see tables in both cases.
-    if isinstance(value, BaseModel):
-        value = value.model_dump(by_alias=True, exclude_unset=True)
+    if isinstance(value, LISTS):
+        return [_as_given(entry) for entry in value]
     if isinstance(value, Mapping):
         return {key: _as_given(entry) for key, entry in value.items() if entry is not None}
-    if isinstance(value, list | tuple):
-        return [_as_given(entry) for entry in value]
+    # A scene may be built from records in Python as well as from tables; the rules see tables in both cases.
+    if isinstance(value, BaseModel):
+        return _as_given(value.model_dump(by_alias=True, exclude_unset=True))
     return value
 
 
