@@ -14,6 +14,7 @@ import threading
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 
@@ -162,14 +163,19 @@ def find_compiler(wanted: str | None = None) -> str:
     Raises:
         ExportError: there is none.
     """
-    asked = wanted or os.environ.get("CC", "").strip()
+    return _found(wanted or os.environ.get("CC", "").strip(), os.environ.get("PATH"))
+
+
+@lru_cache(maxsize=16)
+def _found(asked: str, path: str | None) -> str:
+    """The command, looked for on a path of folders once in a process: every motion asks."""
     for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
         # A path may hold blanks: what is a program as it stands is no command.
-        whole = shutil.which(candidate)
+        whole = shutil.which(candidate, path=path)
         words = [candidate] if whole else _words(candidate)
-        path = shutil.which(words[0])
-        if path:
-            return shlex.join([path, *words[1:]])
+        program = shutil.which(words[0], path=path)
+        if program:
+            return shlex.join([program, *words[1:]])
     problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
     raise ExportError(Problem("compiler", problem, REMEDY))
 

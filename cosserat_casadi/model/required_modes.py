@@ -49,14 +49,20 @@ def signal_modes(scene: scenes.Scene) -> int:
             if EFFECTS[actuator.kind].acts_on(actuator, record.name) and holes(actuator) is None:
                 degree = _actuator_degree(actuator, record, breaks)
                 degrees.append(degree)
-        intrinsic = rod_properties(record).intrinsic
-        degrees += [_series_degree(known(as_vector(coefficients))) for coefficients in intrinsic]
+        degrees.append(_intrinsic_degree(record))
     for load in scene.loads:
         if isinstance(load, scenes.DistributedWrench):
             components = (*load.force, *load.moment)
             degrees += [_series_degree(component) for component in components]
     degrees += [_series_degree(wave) for motion in scene.motions if motion.travels for wave in motion.along_the_rod]
     return max(degrees) + BEYOND
+
+
+@lru_cache(maxsize=64)
+def _intrinsic_degree(record: scenes.Rod) -> int:
+    """Degree at which the strains of a rod without load have decayed."""
+    intrinsic = rod_properties(record).intrinsic
+    return max(_series_degree(known(as_vector(coefficients))) for coefficients in intrinsic)
 
 
 @lru_cache(maxsize=64)

@@ -359,8 +359,9 @@ class _Table(_Path):
         return np.asarray(constant + s * (linear + s * (quadratic + s * cubic)))
 
 
+@lru_cache(maxsize=16)
 def _path_of(motion: InputMotion, degrees: int) -> _Path:
-    """The path of a motion of an input with so many Legendre coefficients."""
+    """The path of a motion of an input with so many Legendre coefficients; every level of a search asks."""
     if motion.is_table:
         return _table_of(motion)
     # A wave without frequency is refused where the scene is read.
