@@ -95,6 +95,8 @@ def _mapped(function: ca.Function, count: int) -> ca.Function:
 def _dense(entries: FloatArray, sparsity: ca.Sparsity) -> FloatArray:
     """Matrices of a pattern from its entries, column after column: shapes (T, nonzeros) to (T, rows, columns)."""
     stored_rows, stored_columns = sparsity.get_triplet()
+    if sparsity.is_dense():
+        return entries.reshape(-1, *sparsity.shape[::-1]).swapaxes(1, 2)
     matrices = np.zeros((len(entries), *sparsity.shape))
     matrices[:, stored_rows, stored_columns] = entries
     return matrices

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import reduce
+from functools import lru_cache, reduce
 from typing import NamedTuple
 
 import casadi as ca
@@ -140,11 +140,13 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
 
 def _lengths(model: Model, inputs: FloatArray) -> dict[str, FloatArray]:
     """Length of each rod, m: at every time where it is an input, shape (T, 1), else shape (1, 1)."""
+    in_scene: dict[str, float] = kept_with(
+        model, "_lengths_in_scene", lambda: {name: model.length(name, model.pack()) for name in model.discrete.rods}
+    )
     lengths = {}
-    for name in model.discrete.rods:
+    for name, length in in_scene.items():
         entries = model.inputs.of_rod(name, "length")
-        length = inputs[:, entries] if entries is not None else model.length(name, model.pack())
-        lengths[name] = np.atleast_2d(length)
+        lengths[name] = inputs[:, entries] if entries is not None else np.array([[length]])
     return lengths
 
 
@@ -155,7 +157,14 @@ def _interpreted(model: Model) -> PathFunctions:
 
 
 def _external(model: Model, library: str) -> PathFunctions:
-    """The functions of a shared object, without a function being written for them."""
+    """The functions of a shared object, without a function being written for them; every motion asks."""
+    loaded: dict[str, PathFunctions] = kept_with(model, "_paths_in_c", dict)
+    if library not in loaded:
+        loaded[library] = _loaded(model, library)
+    return loaded[library]
+
+
+def _loaded(model: Model, library: str) -> PathFunctions:
     rods = list(enumerate(model.discrete.rods))
     tips = {name: external(f"{TIP}{number}", library) for number, name in rods}
     between = {name: external(f"{BETWEEN}{number}", library) for number, name in rods if _places_between(model, name)}
@@ -199,6 +208,7 @@ def path_distance(first: Paths, second: Paths) -> float:
     return float(np.maximum(distances.max(initial=0.0), LEVER * np.abs(rolls).max(initial=0.0)))
 
 
+@lru_cache(maxsize=64)
 def watched_arms(body: Body, longest: float) -> FloatArray:
     """Points of a body that are watched, in its axes, shape (k, 3), m: its origin, and what its inertia would move.
 
@@ -215,7 +225,10 @@ def watched_arms(body: Body, longest: float) -> FloatArray:
         if body.mass > 0.0:
             radius = float(np.sqrt(spread / (2.0 * body.mass)))
         arms += [centre + radius * axis for axis in np.eye(3)]
-    return np.array(arms)
+    points = np.array(arms)
+    # Several motions have them.
+    points.setflags(write=False)
+    return points
 
 
 def _moved_with(frames: Frames, arms: FloatArray) -> FloatArray:
