@@ -344,12 +344,12 @@ def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
         rank: the share.
     """
     try:
-        inverse = np.linalg.inv(matrix)
+        inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
     except np.linalg.LinAlgError:
         return None
     condition = len(matrix) * _largest_column(matrix) * _largest_column(inverse)
     # A condition that is not a number is not below the bound.
-    return np.asarray(inverse) if condition * rank < 1.0 else None
+    return inverse if condition * rank < 1.0 else None
 
 
 def _largest_column(matrix: FloatArray) -> float:
