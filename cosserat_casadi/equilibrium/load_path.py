@@ -12,7 +12,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.contact_layers import longest_step
+from cosserat_casadi.model.contact_layers import inexact_beside, longest_step
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.unloaded_response import without_noise
 from cosserat_casadi.numerics.broyden import Jacobian, solved
@@ -23,9 +23,14 @@ FIRST_STEP = 0.25
 
 
 def continuation_limits(model: SystemFunctions) -> ContinuationSettings:
-    """Limits of a continuation: beside smooth obstacles its steps are so short that sections go nearly straight."""
+    """Limits of a continuation: beside smooth obstacles its steps are so short that sections go nearly straight.
+
+    Beside thin ones its points are exact to a share of their layers.
+    """
     limits = ContinuationSettings()
-    return replace(limits, longest=min(limits.longest, longest_step(model.scene)))
+    scene = model.scene
+    longest = min(limits.longest, longest_step(scene))
+    return replace(limits, longest=longest, inexact=min(limits.inexact, inexact_beside(scene)))
 
 
 def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> Path:

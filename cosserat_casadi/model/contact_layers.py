@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import ceil, inf, sqrt
+from math import ceil, inf, isfinite, sqrt
 
 import numpy as np
 
@@ -27,6 +27,9 @@ MOST_ELEMENTS = 12
 
 NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
+
+SHARE_OF_LAYER = 0.5
+"""Error of a point on a path over the width of the thinnest layer, relative to the length."""
 
 SHARE_ON_BODY = 0.25
 """Share of an obstacle's thickness on a body: it comes to meet the rod, and neither may pass its middle."""
@@ -126,6 +129,17 @@ def longest_step(scene: scenes.Scene) -> float:
         if obstacle.is_smooth
     ]
     return min(steps, default=inf)
+
+
+def inexact_beside(scene: scenes.Scene) -> float:
+    """Error of the unknowns (2-norm) that a path may leave beside thin smooth obstacles; infinite without any.
+
+    A strain that is off by ε moves a section by about ε L. Where that is more than a layer is wide, a point may lie so
+    deep in it, or so far above it, that its tangent leads elsewhere, and the path stalls.
+    """
+    longest = max((rod.length for rod in scene.rods), default=1.0)
+    widths = [obstacle.width for obstacle in scene.obstacles if obstacle.width and isfinite(obstacle.thickness)]
+    return SHARE_OF_LAYER * min(widths, default=inf) / longest
 
 
 def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:

@@ -34,7 +34,7 @@ from tests.codegen.libraries import HARNESS, Exported, compile_quickly
 from tests.contact.test_contact_of_assemblies import BALL, HEAD
 from tests.contact.test_contact_of_assemblies import ROD as LONG_ROD
 from tests.contact.test_passage_of_bodies import DISK, SMALL
-from tests.contact.test_smooth_contact import CROSSING, PUSH, ROD, THIN, WIRE
+from tests.contact.test_smooth_contact import CROSSING, OFF_A_BAR, ON_A_BAR, PUSH, ROD, THIN, WIRE
 
 ExportRecipe = Callable[..., Exported]
 
@@ -194,6 +194,28 @@ def test_steps_are_judged_by_the_sizes_that_parameters_give(name: str, tmp_path:
     assert STEPS / 10 < sum(wanted) < STEPS - STEPS / 10
     found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(STEPS, -1))
     assert found == wanted
+
+
+@dataclass(frozen=True)
+class OwnRecipe:
+    """A scene as text, on the modes and nodes that it fixes."""
+
+    text: str
+    dynamics: bool = False
+
+    def model(self) -> Model:
+        return build(parse_scene(self.text))
+
+
+@pytest.mark.slow
+def test_a_path_leaves_a_thin_bar_in_c(export_recipe: ExportRecipe) -> None:
+    """As in Python; the compiler takes long over so many nodes."""
+    made = export_recipe("leaves", OwnRecipe(ON_A_BAR), estimates=False)
+    pressed = solve(made.model, estimate_error=False)
+    wanted = solve(made.model, {"push.force": OFF_A_BAR}, start=pressed, estimate_error=False)
+    found = made.compiled.follow(pressed.inputs, OFF_A_BAR, pressed.x)
+    assert wanted.converged and found.converged
+    assert_allclose(found.x, wanted.x, rtol=0, atol=1e-9)
 
 
 ABOVE, BEHIND = np.array([0.0, 0.0, -0.1]), np.array([0.0, 0.0, -0.25])

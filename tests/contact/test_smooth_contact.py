@@ -797,6 +797,48 @@ width = 1e-3
 """
 
 
+ON_A_BAR = """
+schema = 1
+inputs = ["push.force"]
+accuracy = { modes = 2, nodes = 24 }
+[[rods]]
+name = "rod"
+length = 0.5
+strain = "planar"
+material = { youngs_modulus = 1e8, poisson_ratio = 0.4, density = 1100.0 }
+section = { shape = "circle", radius = 2e-3 }
+base = { tangent = [1, 0, 0] }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, -0.05]
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.3, -0.2, -0.03]
+to = [0.3, 0.2, -0.03]
+radius = 5e-3
+width = 2e-3
+"""
+
+
+OFF_A_BAR = np.array([0.0017, 0.0, 0.0087])
+"""A push that lifts its rod off the bar."""
+
+
+def test_a_path_leaves_a_thin_bar() -> None:
+    """A point that is off by more than the layer is wide has a tangent that leads elsewhere: the path stalled."""
+    pressed = solve(build(parse_scene(ON_A_BAR)), estimate_error=False)
+    assert [contact.obstacle for contact in pressed.contacts] == ["bar"]
+    off = solve(pressed.model, {"push.force": OFF_A_BAR}, start=pressed, estimate_error=False)
+    assert off.converged and not off.contacts
+    # Nothing is touched there: it is the equilibrium of the rod alone.
+    alone = build(parse_scene(ON_A_BAR.partition("[[obstacles]]")[0], ["accuracy.modes=10"]))
+    free = solve(alone, {"push.force": OFF_A_BAR}, estimate_error=False)
+    assert_allclose(off.tip().position, free.tip().position, rtol=0, atol=1e-4)
+
+
 def test_sections_go_straight_in_a_step_but_for_half_a_thickness() -> None:
     """The sagitta of the arc of a rod of length 1 m that turns about its base by the angle of the longest step."""
     angle = continuation_limits(build(parse_scene(ROD + PUSH + THIN))).longest
