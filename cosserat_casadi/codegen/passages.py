@@ -8,13 +8,13 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.codegen.block_sources import Words, reals, record, record_table
+from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
+from cosserat_casadi.codegen.parameters import given_size, with_parameters_behind_inputs
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from
 from cosserat_casadi.equilibrium.contact.passing_through import admitted_depth
-from cosserat_casadi.equilibrium.smooth_passage import ball_in, depth_allowed, length_of
+from cosserat_casadi.equilibrium.smooth_passage import ball_in, depth_allowed, length_of, quaternions_of
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.penetration import section_radius
@@ -76,8 +76,11 @@ def passage_words(model: Model, names: Names) -> Words:
     sizes = _sizes(model, ca.MX.sym("inputs", model.inputs.size))
     are_free = any_symbolic(sizes)
     count = first_places(discrete)[1][-1]
+    quaternions = quaternions_of(model)
     words: Words = {
         "name": names.name,
+        "quaternions": len(quaternions),
+        "quaternion_places": numbers(quaternions) or "0",
         "barriers": len(thin_layers(discrete)),
         "rod_pairs": len(discrete.pairs),
         "barrier_tables": "\n".join([*_barrier_lines(discrete, names), *_pair_lines(discrete)]),
@@ -88,7 +91,7 @@ def passage_words(model: Model, names: Names) -> Words:
         "passages": render("passages.c.in", words),
         "places": count,
         "free_sizes": words["free_sizes"],
-        "place_reals": 6 * count + words["free_sizes"],
+        "place_reals": 9 * count + words["free_sizes"] + model.size + 2 * max(given_size(model), 1),
     }
 
 

@@ -1,23 +1,28 @@
 """Bars, balls and other rods that no step may take a rod, a disk or a body through, where contact is smooth.
 
 A smooth obstacle pushes where a rod is in it: a step that ends behind it has not felt it. The ends of a step are judged
-by their depth; here the straight way between them is. So it is with rods that push each other.
+by their depth; here the way between them is, on which unknowns and inputs change in proportion. A part of it in which
+sections leave the straight line is halved where the room beside an obstacle does not cover that. So it is with rods
+that push each other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.passing_through import (
     DEEP,
+    FINEST,
     SECTIONS,
     LookedAt,
+    admitted_depth,
     ball_is_inside_between,
     is_inside_between,
     seen_from,
@@ -26,6 +31,7 @@ from cosserat_casadi.equilibrium.load_path import between
 from cosserat_casadi.equilibrium.rod_contacts import section_positions
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import Scalar, is_zero, least
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -40,8 +46,25 @@ EVERY = 2
 SAME = 1e-6
 """Distance of unknowns, over their norm, within which two equilibria are one."""
 
+SHORTEST = 2.0**-9
+"""Share of a step below which no part is halved: it counts as barred."""
+
 ROUGHLY = 8
 """Sections of which one is looked at where many states follow each other: rods are nearly straight between them."""
+
+
+class _Way(NamedTuple):
+    """A straight way of sections or of a body.
+
+    Attributes:
+        start: positions, shape (k, 3), m.
+        end: positions, likewise.
+        bend: how far they are off it in the middle of the step, m.
+    """
+
+    start: FloatArray
+    end: FloatArray
+    bend: float
 
 
 @dataclass(frozen=True)
@@ -84,7 +107,7 @@ class SmoothBarriers:
         inputs: tuple[FloatArray, FloatArray],
         earlier: SmoothBarriers | None = None,
     ) -> bool:
-        """Whether a rod or body is deep inside one on the straight way between two shapes, and at neither of its ends.
+        """Whether a rod or body is deep inside one on the way between two shapes, and at neither of its ends.
 
         Args:
             before: unknowns at the start, shape (model.size,).
@@ -92,24 +115,86 @@ class SmoothBarriers:
             inputs: stacked inputs at start and end.
             earlier: of the model with the parameters at the start; where they are other ones.
         """
-        at_start = earlier or self
-        for rod, obstacle in self.watched:
-            properties = self.model.discrete.rods[rod].properties
-            start = at_start._looked_at[rod].positions(obstacle, before, inputs[0])
-            end = self._looked_at[rod].positions(obstacle, after, inputs[1])
-            if is_inside_between(obstacle, properties, start, end, float(depth_allowed(obstacle, properties.length))):
-                return True
-        for layer in self.watched_bodies:
-            way = (at_start._place(layer, before, inputs[0]), self._place(layer, after, inputs[1]))
-            if self._is_inside_between(layer, *way):
-                return True
-        return self.rods_pass(before, after, inputs, earlier)
+        last = self.model.inputs.nearer(*inputs)
 
-    def _is_inside_between(self, layer: ContactLayer, start: FloatArray, end: FloatArray) -> bool:
+        def places_at(share: float) -> list[FloatArray]:
+            x, given = between(before, after, share), between(inputs[0], last, share)
+            own = self._places(x, given)
+            if earlier is None or earlier is self:
+                return own
+            # Other parameters take what moves there in straight lines.
+            others = earlier._places(x, given)
+            return [between(*places, share) for places in zip(others, own, strict=True)]
+
+        lengths = [self.model.length(pair.rods[0], inputs[1]) for pair in self.model.discrete.pairs]
+        return self._barred(places_at, lengths, (0.0, 1.0), (places_at(0.0), places_at(1.0)))
+
+    def _places(self, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
+        """Positions of sections of rods and of bodies in the axes of obstacles, then of sections of pairs, m."""
+        of_rods = [self._looked_at[rod].positions(obstacle, x, inputs) for rod, obstacle in self.watched]
+        of_bodies = [self._place(layer, x, inputs)[None] for layer in self.watched_bodies]
+        pairs = [section_positions(self.model, pair, x, inputs) for pair in self.model.discrete.pairs]
+        return [*of_rods, *of_bodies, *(side for pair in pairs for side in pair)]
+
+    def _barred(
+        self,
+        places_at: Callable[[float], list[FloatArray]],
+        lengths: list[float],
+        part: tuple[float, float],
+        ends: tuple[list[FloatArray], list[FloatArray]],
+    ) -> bool:
+        """Whether a part of a step leads through something thin.
+
+        Args:
+            places_at: share of the step ↦ places.
+            lengths: of the first rod of each pair, m.
+            part: the shares at which it starts and ends.
+            ends: the places there.
+        """
+        halfway = sum(part) / 2
+        middle = places_at(halfway)
+        halves = zip(middle, *ends, strict=True)
+        bends = [float(np.linalg.norm(own - (a + b) / 2, axis=1).max()) for own, a, b in halves]
+        found = self._leads_through(ends, bends, lengths)
+        if found is None and part[1] - part[0] > SHORTEST:
+            return self._barred(places_at, lengths, (part[0], halfway), (ends[0], middle)) or self._barred(
+                places_at, lengths, (halfway, part[1]), (middle, ends[1])
+            )
+        return found is not False
+
+    def _leads_through(
+        self, ends: tuple[list[FloatArray], list[FloatArray]], bends: list[float], lengths: list[float]
+    ) -> bool | None:
+        """Whether straight ways do, none of which is off by more than its bend, m; None where that does not tell."""
+        ways = iter([_Way(*own) for own in zip(*ends, bends, strict=True)])
+        barred = [self._rod_is_inside(rod, obstacle, next(ways)) for rod, obstacle in self.watched]
+        barred += [self._ball_is_inside(layer, next(ways)) for layer in self.watched_bodies]
+        pairs = zip(self.model.discrete.pairs, lengths, strict=True)
+        barred += [self._pass_each_other(pair, length, next(ways), next(ways)) for pair, length in pairs]
+        if any(found is None for found in barred):
+            return None
+        return any(barred)
+
+    def _rod_is_inside(self, rod: str, obstacle: scenes.ObstacleRecord, way: _Way) -> bool | None:
+        """Whether a section of a rod is deep inside an obstacle on the way between positions."""
+        properties = self.model.discrete.rods[rod].properties
+        deepest = float(depth_allowed(obstacle, properties.length))
+        thinnest = float(section_radius(properties, SECTIONS).min())
+        admitted = float(admitted_depth(obstacle, properties.length, deepest, thinnest))
+        given = (obstacle, properties, way.start, way.end, deepest)
+        return _as_far_as_bent(lambda bend: is_inside_between(*given, bend=bend), way.bend, admitted)
+
+    def _ball_is_inside(self, layer: ContactLayer, way: _Way) -> bool | None:
         """Whether the largest ball in a body or a disk is deep inside an obstacle on the way between positions."""
-        length, radius = float(length_of(self.model.discrete, layer)), float(ball_in(layer))
-        depth = float(depth_allowed(layer.obstacle, length))
-        return ball_is_inside_between(layer.obstacle, radius, length, start, end, depth)
+        obstacle, radius, length = self._ball(layer)
+        deepest = float(depth_allowed(obstacle, length))
+        admitted = float(admitted_depth(obstacle, length, deepest, radius))
+        given = (obstacle, radius, length, way.start, way.end, deepest)
+        return _as_far_as_bent(lambda bend: ball_is_inside_between(*given, bend), way.bend, admitted)
+
+    def _ball(self, layer: ContactLayer) -> tuple[scenes.ObstacleRecord, float, float]:
+        """Obstacle of a layer, radius of the ball before it, and what depths are relative to, m."""
+        return layer.obstacle, float(ball_in(layer)), float(length_of(self.model.discrete, layer))
 
     def _place(self, layer: ContactLayer, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """Position of a body or a disk in the axes of its obstacle, shape (3,), m."""
@@ -134,66 +219,74 @@ class SmoothBarriers:
                 yield row
 
     def _somewhere_inside(self, x: FloatArray, inputs: FloatArray) -> bool:
-        """Whether a rod or body is deep inside an obstacle on the straight ways from state to state."""
+        """Whether a rod or body is deep inside an obstacle on the ways from state to state, or as near as they bend."""
+        halfway = ((x[:-1] + x[1:]) / 2, (inputs[:-1] + inputs[1:]) / 2)
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            paths = self._looked_at[rod].paths(obstacle, x, inputs, every=ROUGHLY)
-            way = (paths[:-1], paths[1:])
+            paths, middle = (self._looked_at[rod].paths(obstacle, *at, every=ROUGHLY) for at in ((x, inputs), halfway))
+            bends = np.linalg.norm(middle - (paths[:-1] + paths[1:]) / 2, axis=2).max(axis=1, initial=0.0)
             deepest = float(depth_allowed(obstacle, properties.length))
-            if is_inside_between(obstacle, properties, *way, deepest, ROUGHLY):
+            if is_inside_between(obstacle, properties, paths[:-1], paths[1:], deepest, ROUGHLY, bends):
                 return True
         for layer in self.watched_bodies:
-            path = np.array([self._place(layer, *state) for state in zip(x, inputs, strict=True)])
-            if self._is_inside_between(layer, path[:-1], path[1:]):
+            path, middle = (
+                np.array([self._place(layer, *state) for state in zip(*at, strict=True)])
+                for at in ((x, inputs), halfway)
+            )
+            bends = np.linalg.norm(middle - (path[:-1] + path[1:]) / 2, axis=1)
+            ball = self._ball(layer)
+            if ball_is_inside_between(*ball, path[:-1], path[1:], float(depth_allowed(ball[0], ball[2])), bends):
                 return True
         return False
 
-    def rods_pass(
-        self,
-        before: FloatArray,
-        after: FloatArray,
-        inputs: tuple[FloatArray, FloatArray],
-        earlier: SmoothBarriers | None = None,
-    ) -> bool:
-        """Whether rods pass through each other, or a rod through itself, on the straight way, as above."""
-        at_start = earlier or self
-        pairs = zip(at_start.model.discrete.pairs, self.model.discrete.pairs, strict=True)
-        return any(
-            self._pass_each_other(
-                pair,
-                self.model.length(pair.rods[0], inputs[1]),
-                section_positions(at_start.model, pair_at_start, before, inputs[0]),
-                section_positions(self.model, pair, after, inputs[1]),
-            )
-            for pair_at_start, pair in pairs
-        )
-
-    def _pass_each_other(
-        self,
-        pair: ContactPair,
-        length: float,
-        starts: tuple[FloatArray, FloatArray],
-        ends: tuple[FloatArray, FloatArray],
-    ) -> bool:
+    def _pass_each_other(self, pair: ContactPair, length: float, first: _Way, second: _Way) -> bool | None:
         """Whether the axes of two rods come nearer than half their thickness on the way of their sections."""
-        moved = [end - start for start, end in zip(starts, ends, strict=True)]
         # Every other section: they are nearer each other than half the thickness.
         along = [length * (np.arange(count) + 0.5) / count for count in pair.sections]
         meets = pair.meets(*along)[::EVERY, ::EVERY]
-        apart, way = ((own[0][::EVERY, None] - own[1][None, ::EVERY])[meets] for own in (starts, moved))
-        allowed = float(thickness(self.model.discrete.rods, pair)) / 2
-        squares = np.einsum("ki,ki->k", apart, apart)
-        near = squares < (allowed + np.sqrt(np.max(np.einsum("ki,ki->k", way, way), initial=0.0))) ** 2
+        apart, later = (
+            (own[::EVERY, None] - other[None, ::EVERY])[meets]
+            for own, other in ((first.start, second.start), (first.end, second.end))
+        )
+        way = later - apart
+        # Others stay apart.
+        allowed, bend = float(thickness(self.model.discrete.rods, pair)) / 2, first.bend + second.bend
+        longest = np.sqrt(np.einsum("ki,ki->k", way, way).max(initial=0.0))
+        near = np.einsum("ki,ki->k", apart, apart) <= (allowed + bend + longest) ** 2
         apart, way = apart[near], way[near]
         lengths = np.einsum("ki,ki->k", way, way)
         share = -np.einsum("ki,ki->k", apart, way) / np.where(lengths > 0.0, lengths, 1.0)
-        nearest = apart + np.clip(share, 0.0, 1.0)[:, None] * way
-        return bool(np.any(np.linalg.norm(nearest, axis=1) < allowed))
+        nearest = np.linalg.norm(apart + np.clip(share, 0.0, 1.0)[:, None] * way, axis=1).min(initial=np.inf)
+        return _as_far_as_bent(lambda bend: bool(nearest < allowed + bend), bend, allowed)
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:
         of_disks = {layer.rod for layer in self.watched_bodies if layer.rod is not None}
         return {rod: LookedAt(self.model, rod) for rod in {rod for rod, _ in self.watched} | of_disks}
+
+
+def _as_far_as_bent(is_barred: Callable[[float], bool], bend: float, admitted: float) -> bool | None:
+    """Whether a straight way is barred; None where one that is off it by the bend would be, and that is too far off.
+
+    Args:
+        is_barred: whether one is that may be off by so much, m.
+        bend: how far the way is off the straight one, m.
+        admitted: depth, m, of which a share of :data:`FINEST` is overlooked.
+    """
+    if bend <= FINEST * admitted:
+        return is_barred(0.0)
+    return None if is_barred(bend) else False
+
+
+def quaternions_of(model: Model) -> list[int]:
+    """Places of the first numbers of quaternions among the inputs, behind which the parameters stand."""
+    whole = [
+        span.start
+        for entry, span in model.parameters
+        # The sign of that of a support says by which way round a tip is turned.
+        if entry.keys[-1] == "quaternion" and entry.size == 4 and entry.holder.table != "supports"
+    ]
+    return model.inputs.quaternions + [model.inputs.size + start for start in whole]
 
 
 def has_barriers(scene: scenes.Scene) -> bool:

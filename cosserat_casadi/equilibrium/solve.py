@@ -307,7 +307,8 @@ def _settled_on_obstacles(
 def _continuation(task: _Task) -> _End:
     """From a solution along its inputs, from unknowns by Newton, else along the load path."""
     if isinstance(task.start, Solution):
-        path = input_path(task.model, task.start.x, task.start.inputs, task.inputs)
+        nearer = task.model.inputs.nearer(task.start.inputs, task.inputs)
+        path = input_path(task.model, task.start.x, task.start.inputs, nearer)
     else:
         corrected = _corrected_guess(task)
         if corrected is not None:
@@ -316,7 +317,8 @@ def _continuation(task: _Task) -> _End:
             return _End(task.model.unloaded(), Outcome.CONVERGED, iterations=0)
         path = load_path(task.model, task.inputs)
     first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
-    path = past_no_obstacle(path, task.model, (first, task.inputs), before_it=task.model_of_start)
+    inputs = (first, task.model.inputs.nearer(first, task.inputs))
+    path = past_no_obstacle(path, task.model, inputs, before_it=task.model_of_start)
     result = follow(path, task.limits, task.progress)
     if result.outcome is not Outcome.CONVERGED:
         result = _with_parameters(task, result)
@@ -338,8 +340,9 @@ def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationRes
         is_alike = False
     if not is_alike:
         return failed
-    path = input_path(model, start.x, start.inputs, task.inputs, (before, after))
-    path = past_no_obstacle(path, model, (start.inputs, task.inputs), (before, after))
+    inputs = (start.inputs, model.inputs.nearer(start.inputs, task.inputs))
+    path = input_path(model, start.x, *inputs, (before, after))
+    path = past_no_obstacle(path, model, inputs, (before, after))
     result = follow(path, task.limits, task.progress)
     iterations = failed.iterations + result.iterations
     return replace(result if result.outcome is Outcome.CONVERGED else failed, iterations=iterations)

@@ -28,7 +28,9 @@ from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.codegen.status import OUTCOMES, MotionStatus
 from cosserat_casadi.codegen.texts import fill, resource
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.equilibrium.contact.passing_through import LookedAt, admitted_depth
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, depth_allowed
+from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import HARNESS, Exported, compile_quickly
 from tests.contact.test_contact_of_assemblies import BALL, HEAD
@@ -81,9 +83,6 @@ SCENES = {
 """Everything that may pass through everything thin."""
 
 ITSELF = '[[rod_contacts]]\nrods = ["rod"]\n'
-COILED = 6.0
-"""Factor on random bends with which a rod comes across itself."""
-
 STEPS = 50
 """Random steps of each scene."""
 
@@ -154,6 +153,60 @@ def test_steps_that_are_barred_vs_python(name: str, tmp_path: Path) -> None:
     assert found == wanted
 
 
+TURNS = 30
+
+TURNED = 'inputs = ["rod.base.quaternion"]\n' + SOLID + PUSH + THIN
+
+
+def turned(axis: FloatArray, angle: float, quaternion: FloatArray) -> FloatArray:
+    """A quaternion behind a turn about an axis in the world, rad."""
+    turn = np.array([np.cos(angle / 2), *np.sin(angle / 2) * axis / np.linalg.norm(axis)])
+    return np.asarray(quaternion_product(turn[:, None], quaternion[:, None]))[:, 0]
+
+
+def least_room(model: Model, x: FloatArray, inputs: FloatArray) -> float:
+    """How much nearer a rod may come to its wire on the way between two shapes, over the depth that is admitted."""
+    (wire,), properties = model.scene.obstacles, model.discrete.rods["rod"].properties
+    radius = 4e-3
+    admitted = float(admitted_depth(wire, 1.0, depth_allowed(wire, properties.length), radius))
+    shares = np.linspace(0.0, 1.0, 151)[:, None]
+    # Where a section is nearest on the way, then about there.
+    for _ in range(2):
+        ways = [(1.0 - shares) * first + shares * last for first, last in (x, inputs)]
+        positions = LookedAt(model, "rod").paths(wire, *ways, every=2)
+        distance = np.linalg.norm(positions[..., [0, 2]] - [wire.start[0], wire.start[2]], axis=-1) - wire.radius
+        nearest = shares[np.argmin(distance.min(axis=1))]
+        shares = np.clip(nearest + np.linspace(-0.01, 0.01, 151)[:, None], 0.0, 1.0)
+    return float(distance.min() - radius + admitted) / admitted
+
+
+def test_steps_in_which_a_base_turns_are_judged_by_where_sections_go(tmp_path: Path) -> None:
+    """Turns of up to 170 degrees, against many places on the way; chords lead past the wire, or cut it."""
+    model = build(parse_scene(TURNED, list(FEW)))
+    rng = np.random.default_rng(11)
+    start = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])
+    steps, wanted, kept = [], [], []
+    for row in range(TURNS):
+        first = turned(rng.standard_normal(3), rng.uniform(-0.4, 0.4), start)
+        last = turned(np.array([0.2, 1.0, 0.2]) * rng.standard_normal(3), rng.uniform(0.3, 3.0), first)
+        x = 0.2 * rng.standard_normal((2, model.size)) / np.arange(1, model.size + 1)
+        room = least_room(model, x, np.array([first, last]))
+        # Other signs of a quaternion are the same turn.
+        last = last if row % 3 else -last
+        steps.append(np.concatenate([x, [first, last]], axis=1).ravel())
+        wanted.append(room < 0.0)
+        # Which side of the bound a rod is on that comes so near to it is overlooked.
+        kept.append(abs(room) > 0.5)
+        in_python = SmoothBarriers(model).are_between(*x, (first, last))
+        assert not kept[-1] or in_python == wanted[-1]
+    assert sum(kept) > 0.9 * TURNS
+    assert TURNS / 10 < sum(wanted) < TURNS - TURNS / 10
+    found = barred_in_c(model, tmp_path, np.array(steps))
+    assert [own for own, certain in zip(found, kept, strict=True) if certain] == [
+        own for own, certain in zip(wanted, kept, strict=True) if certain
+    ]
+
+
 TAPERED_AND_MOVED = SCENES["tapered"].replace(PUSHED, MOVED)
 
 SIZED = {
@@ -184,8 +237,9 @@ def test_steps_are_judged_by_the_sizes_that_parameters_give(name: str, tmp_path:
         inputs[:, 1, 2] = -0.1 + 1e-3 + base + 0.9 / length * (tip - base)
         inputs[::3, 1, 2] -= 1.6 * (1e-3 + width[::3])
     if name == "itself":
-        # Bent to more than a circle, in the plane of a rod that hardly twists.
-        x *= COILED
+        # Of two numbers for each element the first is its mean bend: from half a circle to more than a whole one.
+        x *= 0.02
+        x[:, :, ::2] += 2.0 * np.pi * np.random.default_rng(7).uniform(0.5, 1.1, (STEPS, 2, 1))
     wanted = []
     for row in range(STEPS):
         step = (x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]))

@@ -674,6 +674,25 @@ def test_a_base_that_another_scene_sets_across_a_wire_takes_no_rod_through(head:
     assert "change them by less" in found.message
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_base_that_turns_takes_no_rod_through_a_wire(sign: float) -> None:
+    """The chord of the tip leads past the wire, its arc does not; with the other sign the base turns no other way."""
+    text = 'inputs = ["rod.base.quaternion"]\n' + ROD + THIN.replace("[0.9, -1, -0.1]", "[0.8, -1, -0.48]")
+    model = build(
+        parse_scene(text.replace("[0.9, 1, -0.1]", "[0.8, 1, -0.48]"), ["accuracy.modes=3", "accuracy.nodes=8"])
+    )
+    above = solve(model)
+    assert above.converged
+    half = np.radians(90.0 + np.array([20.0, 70.0, 160.0])) / 2
+    near, *far = np.stack([np.cos(half), 0.0 * half, np.sin(half), 0.0 * half], axis=1)
+    found = solve(model, {"rod.base.quaternion": near}, start=above)
+    assert found.converged
+    assert_allclose(found.tip().position, [np.cos(np.radians(20.0)), 0.0, -np.sin(np.radians(20.0))], rtol=0, atol=1e-9)
+    for quaternion in far:
+        barred = solve(model, {"rod.base.quaternion": sign * quaternion}, start=above)
+        assert barred.outcome is Outcome.LOAD_STALLED
+
+
 def test_a_path_to_other_inputs_and_parameters_knows_its_rate() -> None:
     """Against central differences of the residual, beside the wire, where all of them act."""
     model = build(parse_scene('parameters = ["rod.stiffness.bending_y", "wire.width"]' + ROD + PUSH + WIRE))
@@ -885,10 +904,10 @@ def test_a_wire_between_the_few_sections_that_are_looked_at_bars_the_way(beyond:
     model = build(parse_scene(ROD + PUSH + THIN, few))
     x = np.full(model.size, 6.0)
     assert_allclose(model.tip["rod"](x, model.pack())[0].full()[0, 0], np.sin(6.0) / 6.0, rtol=0, atol=1e-6)
-    # The place of X = 0.505, and the direction in which the rod comes there.
+    # The place of X = 0.505, and the side from which the rod comes there as it winds up.
     nodes = LookedAt(model, "rod").positions(model.scene.obstacles[0], x, model.pack())
     outwards = nodes[404] - (nodes[400] + nodes[408]) / 2
-    centre = nodes[404] - beyond * outwards / np.linalg.norm(outwards)
+    centre = nodes[404] + beyond * outwards / np.linalg.norm(outwards)
     ends = [f"wire.{end}={[float(centre[0]), y, float(centre[2])]}" for end, y in (("from", -1.0), ("to", 1.0))]
     barriers = SmoothBarriers(
         build(parse_scene(ROD + PUSH + THIN, [*few, *ends, "wire.radius=4e-5", "wire.width=1e-5"]))

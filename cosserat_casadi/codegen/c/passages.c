@@ -1,9 +1,10 @@
 /* Whether a step leads through something thin: a smooth ball or bar, or another rod, pushes where a rod is in it, so that a
-   step which ends behind it has not felt it. What moves goes in straight lines from one shape to the other.
+   step which ends behind it has not felt it. Unknowns and inputs change in proportion on the way; a part of it in which what
+   moves leaves the straight line is halved where the room beside something thin does not cover that.
 
    cosserat_casadi/equilibrium/smooth_passage.py asks the same of the steps in Python. A distance changes by no more than
    the way: from a place that is clear by some way the next one that is looked at is as far away, along the motion and
-   along the rod. Uses of the scene: BARRIER, ROD_PAIR, SIZES, places_at, find_sizes. */
+   along the rod. Uses of the scene: BARRIER, ROD_PAIR, QUATERNION, SIZES, places_at, find_sizes. */
 
 #include "interpolation.c"
 
@@ -14,8 +15,19 @@ static const real FINEST = (real)0.25;
 /* Longest step along a rod, in which a chord is about as long as the rod. */
 static const real LONGEST_STRETCH = (real)0.125;
 
-/* Sections of rods that touch rods of which one is looked at. */
-enum { EVERY = 2 };
+enum {
+  EVERY = 2,      /* sections of rods that touch rods of which one is looked at */
+  MOST_PARTS = 64 /* of a step that are looked at */
+};
+
+/* Unknowns at both ends of a step, and inputs with parameters behind them. */
+typedef struct {
+  const real *x[2];
+  const real *inputs[2];
+} step_ends;
+
+/* Where places are looked at in a part of a step. */
+enum { AT_START, IN_MIDDLE, AT_END };
 
 static real least_of(real a, real b) { return a < b ? a : b; }
 
@@ -25,6 +37,17 @@ static real distance_of(const real *a, const real *b) {
   real sum = 0;
   for (int i = 0; i < 3; i++) sum += (b[i] - a[i]) * (b[i] - a[i]);
   return SQUARE_ROOT(sum);
+}
+
+/* How far places are off the straight line in the middle of a part; zero where that is no more than is overlooked. */
+static real bend_of(const workspace *work, int first, int count, real overlooked) {
+  real bend = 0;
+  for (int i = 3 * first; i < 3 * (first + count); i += 3) {
+    real halfway[3];
+    for (int j = 0; j < 3; j++) halfway[j] = (work->places[AT_START][i + j] + work->places[AT_END][i + j]) / 2;
+    bend = most_of(bend, distance_of(halfway, work->places[IN_MIDDLE] + i));
+  }
+  return bend > overlooked ? bend : 0;
 }
 
 #if BARRIERS
@@ -75,15 +98,17 @@ static real radius_of(const barrier *own, real X, const workspace *work) {
   return radii[part] + (place - (real)part) * (radii[part + 1] - radii[part]);
 }
 
-/* Whether a section of a rod, or a ball, is deep inside an obstacle on its way. */
-static int goes_through(const barrier *own, const real *before, const real *after, workspace *work) {
+/* Whether a section of a rod, or a ball, is deep inside an obstacle on its way, or so near that its bend tells. */
+static int goes_through(const barrier *own, real bend, workspace *work) {
+  const real *before = work->places[AT_START];
+  const real *after = work->places[AT_END];
   const real *sizes = SIZES(work) + own->sizes;
   real start[3], end[3], next_start[3], next_end[3];
   real X = 0;
   position_of(own, before, X, start);
   position_of(own, after, X, end);
   for (;;) {
-    const real clear = clear_by(own, start, end, radius_of(own, X, work), work);
+    const real clear = clear_by(own, start, end, radius_of(own, X, work) + bend, work);
     if (clear < 0) return 1;
     if (!own->rod || X == 1) return 0;
     const real reach = most_of(clear, FINEST * sizes[ADMITTED]);
@@ -127,10 +152,12 @@ static real longest_between(const real *places, int count) {
   return longest;
 }
 
-/* Whether the axes of two rods come nearer each other than half their thickness. */
-static int pass_each_other(const rod_pair *own, const real *before, const real *after, const workspace *work) {
+/* Whether the axes of two rods come nearer each other than half their thickness, or so near that their bend tells. */
+static int pass_each_other(const rod_pair *own, real bend, const workspace *work) {
+  const real *before = work->places[AT_START];
+  const real *after = work->places[AT_END];
   const real *sizes = SIZES(work) + own->sizes;
-  const real allowed = sizes[NEAREST];
+  const real allowed = sizes[NEAREST] + bend;
   const int others = 3 * own->first[1];
   const int count = own->counts[1];
   const real spacing = most_of(longest_between(before + others, count), longest_between(after + others, count));
@@ -154,25 +181,74 @@ static int pass_each_other(const rod_pair *own, const real *before, const real *
 }
 #endif
 
-/* The places in a shape, at the start of a step, 0, or at its end, 1, whose parameters tell the sizes. */
-static void find_places(const real *x, const real *inputs, int end, workspace *work) {
-  places_at(x, inputs, work->places[end], work);
-  if (end) find_sizes(inputs, work);
+/* Whether a quaternion among the inputs changes to one that is nearer with the other sign, which is the same rotation. */
+static int turns_farther(const real *from, const real *to, int first) {
+  real product = 0;
+  for (int i = first; i < first + 4; i++) product += from[i] * to[i];
+  return product < 0;
 }
 
-/* Whether the straight way between the places at both ends leads through something thin. */
-static int leads_through(workspace *work) {
-  const real *before = work->places[0];
-  const real *after = work->places[1];
+/* The places after a share of a step. */
+static void find_places(const step_ends *step, real share, int where, workspace *work) {
+  real *x = work->x_between;
+  real *inputs = work->inputs_between;
+  for (int i = 0; i < N; i++) x[i] = (1 - share) * step->x[0][i] + share * step->x[1][i];
+  for (int i = 0; i < INPUTS; i++) inputs[i] = (1 - share) * step->inputs[0][i] + share * step->inputs[1][i];
+  for (int k = 0; k < QUATERNIONS; k++) {
+    const int first = QUATERNION[k];
+    if (!turns_farther(step->inputs[0], step->inputs[1], first)) continue;
+    for (int i = first; i < first + 4; i++) inputs[i] -= 2 * share * step->inputs[1][i];
+  }
+  places_at(x, inputs, work->places[where], work);
+}
+
+/* Whether a part of a step leads through something thin, as far as its bend lets see: then *bends. */
+static int part_leads_through(workspace *work, int *bends) {
 #if BARRIERS
   for (int k = 0; k < BARRIERS; k++) {
-    if (goes_through(BARRIER + k, before, after, work)) return 1;
+    const barrier *own = BARRIER + k;
+    const int count = own->rod ? own->rod->elements * own->rod->nodes : 1;
+    const real bend = bend_of(work, own->first, count, FINEST * SIZES(work)[own->sizes + ADMITTED]);
+    *bends = bend > 0;
+    if (goes_through(own, bend, work)) return 1;
   }
 #endif
 #if ROD_PAIRS
   for (int k = 0; k < ROD_PAIRS; k++) {
-    if (pass_each_other(ROD_PAIR + k, before, after, work)) return 1;
+    const rod_pair *own = ROD_PAIR + k;
+    real bend = 0;
+    for (int i = 0; i < 2; i++) {
+      bend += bend_of(work, own->first[i], own->counts[i], FINEST / 2 * SIZES(work)[own->sizes + NEAREST]);
+    }
+    *bends = bend > 0;
+    if (pass_each_other(own, bend, work)) return 1;
   }
 #endif
   return 0;
+}
+
+/* Whether a step leads through something thin; its end tells the sizes. */
+static int leads_through(const step_ends *step, workspace *work) {
+  const size_t all = sizeof work->places[0];
+  real begun = 0, share = 1;
+  find_sizes(step->inputs[1], work);
+  find_places(step, 0, AT_START, work);
+  find_places(step, 1, AT_END, work);
+  for (int parts = 0; parts < MOST_PARTS; parts++) {
+    int bends = 0;
+    find_places(step, begun + share / 2, IN_MIDDLE, work);
+    if (!part_leads_through(work, &bends)) {
+      begun += share;
+      if (begun == 1) return 0;
+      share = least_of(2 * share, 1 - begun);
+      memcpy(work->places[AT_START], work->places[AT_END], all);
+      find_places(step, begun + share, AT_END, work);
+    } else if (bends) {
+      share /= 2;
+      memcpy(work->places[AT_END], work->places[IN_MIDDLE], all);
+    } else {
+      return 1;
+    }
+  }
+  return 1;
 }

@@ -153,6 +153,7 @@ def ball_is_inside_between(
     start: FloatArray,
     end: FloatArray,
     deepest: float = DEEP,
+    bend: float | FloatArray = 0.0,
 ) -> bool:
     """Whether a ball is inside an obstacle on a straight way from one position to another.
 
@@ -163,11 +164,12 @@ def ball_is_inside_between(
         start: position, shape (3,), or those of several ways, shape (ways, 3), m.
         end: another, likewise.
         deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
+        bend: how far the way may be off the straight one, m, or that of each way, shape (ways,).
     """
     admitted = float(admitted_depth(obstacle, length, deepest, radius))
     # A stretch without length.
     ends = (np.repeat(np.atleast_2d(start), 2, axis=0), np.repeat(np.atleast_2d(end), 2, axis=0))
-    sinking = _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted)
+    sinking = _sinking(lambda positions, _: ball_gaps(obstacle, radius, positions), *ends, np.zeros(2), admitted, bend)
     return bool(sinking.any())
 
 
@@ -178,6 +180,7 @@ def is_inside_between(
     end: FloatArray,
     deepest: float = DEEP,
     every: int = 1,
+    bend: float | FloatArray = 0.0,
 ) -> bool:
     """Whether a section of a rod is inside an obstacle on a straight way to another.
 
@@ -190,6 +193,7 @@ def is_inside_between(
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
             :data:`MIDDLE` of the way of its thinnest section to the middle.
         every: step from one of SECTIONS to the next one of the positions.
+        bend: how far sections may be off the straight way, m, or off each way, shape (ways,).
     """
     thinnest = float(section_radius(properties, SECTIONS).min())
     admitted = float(admitted_depth(obstacle, properties.length, deepest, thinnest))
@@ -199,7 +203,7 @@ def is_inside_between(
         end,
         SECTIONS[::every],
         admitted,
-        np.maximum(_off_chords(start), _off_chords(end)),
+        np.maximum(_off_chords(start), _off_chords(end)) + bend,
     )
     return bool(sinking.any())
 

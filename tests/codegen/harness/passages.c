@@ -10,7 +10,9 @@ typedef double real;
 enum { N = @{size}, INPUTS = @{given} };
 
 typedef struct {
-  real places[2][3 * @{places}];
+  real places[3][3 * @{places}];
+  real x_between[N];
+  real inputs_between[INPUTS];
   real sizes[@{free_sizes} + 1];
   real kernel_reals[@{kernel_reals} + 1];
   int kernel_integers[@{kernel_integers} + 1];
@@ -29,12 +31,12 @@ static int read_numbers(real *numbers, int count) {
 }
 
 int main(void) {
-  real x[N], inputs[INPUTS];
+  static real x[2][N], inputs[2][INPUTS];
+  const step_ends step = {{x[0], x[1]}, {inputs[0], inputs[1]}};
   for (;;) {
     for (int end = 0; end < 2; end++) {
-      if (!read_numbers(x, N) || !read_numbers(inputs, INPUTS)) return 0;
-      find_places(x, inputs, end, &work);
+      if (!read_numbers(x[end], N) || !read_numbers(inputs[end], INPUTS)) return 0;
     }
-    printf("%d\n", leads_through(&work));
+    printf("%d\n", leads_through(&step, &work));
   }
 }
