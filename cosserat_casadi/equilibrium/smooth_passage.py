@@ -241,7 +241,11 @@ class SmoothBarriers:
 
     def _pass_each_other(self, pair: ContactPair, length: float, first: _Way, second: _Way) -> bool | None:
         """Whether the axes of two rods come nearer than half their thickness on the way of their sections."""
-        # Every other section: they are nearer each other than half the thickness.
+        # Every other section: they are nearer each other than half the thickness, unless an input lengthens the rods.
+        spacings = [
+            max(np.linalg.norm(np.diff(places, axis=0), axis=1).max() for places in (own.start, own.end))
+            for own in (first, second)
+        ]
         along = [length * (np.arange(count) + 0.5) / count for count in pair.sections]
         meets = pair.meets(*along)[::EVERY, ::EVERY]
         apart, later = (
@@ -250,14 +254,15 @@ class SmoothBarriers:
         )
         way = later - apart
         # Others stay apart.
-        allowed, bend = float(thickness(self.model.discrete.rods, pair)) / 2, first.bend + second.bend
+        half, bend = float(thickness(self.model.discrete.rods, pair)) / 2, first.bend + second.bend
+        allowed = max(half, float(np.hypot(*spacings)) * EVERY / 2)
         longest = np.sqrt(np.einsum("ki,ki->k", way, way).max(initial=0.0))
         near = np.einsum("ki,ki->k", apart, apart) <= (allowed + bend + longest) ** 2
         apart, way = apart[near], way[near]
         lengths = np.einsum("ki,ki->k", way, way)
         share = -np.einsum("ki,ki->k", apart, way) / np.where(lengths > 0.0, lengths, 1.0)
         nearest = np.linalg.norm(apart + np.clip(share, 0.0, 1.0)[:, None] * way, axis=1).min(initial=np.inf)
-        return _as_far_as_bent(lambda bend: bool(nearest < allowed + bend), bend, allowed)
+        return _as_far_as_bent(lambda bend: bool(nearest < allowed + bend), bend, half)
 
     @cached_property
     def _looked_at(self) -> dict[str, LookedAt]:

@@ -213,7 +213,7 @@ SIZED = {
     "rod": ('parameters = ["rod.section.radius", "rod.length", "wire.width"]\n' + TAPERED_AND_MOVED, (6, 6, 2, 2)),
     "rods": (
         'parameters = [["rod.section.radius", "other.section.radius"], "other.length"]\n' + SCENES["rods"],
-        (2, 2),
+        (2, 8),
     ),
     "itself": ('parameters = ["rod.section.radius", "rod.length"]\n' + MOVED + SOLID + ITSELF, (3, 2)),
 }

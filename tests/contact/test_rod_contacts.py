@@ -13,7 +13,7 @@ from scipy.optimize import brentq, fsolve
 
 from cosserat_casadi import Model, Outcome, build, follow, parse_scene, simulate, solve
 from cosserat_casadi.equilibrium.answer_error import SAFETY
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
+from cosserat_casadi.equilibrium.smooth_passage import EVERY, SmoothBarriers
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.case_equilibria import Equilibria
 from cosserat_casadi.loads.rod_contact import GROUP, PANEL, SectionPairs, SectionsInContact, coefficient
@@ -232,6 +232,22 @@ def test_rods_pass_each_other_by_the_radii_that_parameters_give(radius: float, p
     inputs = np.array([[0, -0.15, 0.013], [0, -0.15, 0.0035]])
     still = np.zeros(model.size)
     assert SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1])) is passes
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.75])
+def test_a_rod_that_an_input_lengthens_passes_no_rod_between_sections(share: float) -> None:
+    """Eight times as long, sections that are looked at are farther apart than half the thickness."""
+    changes = ["accuracy.modes=1", "accuracy.nodes=5", "inputs=['upper.base.position', 'upper.length']"]
+    model = build(parse_scene(CROSSED.format(push=0.0, more=""), changes))
+    (pair,) = model.discrete.pairs
+    base, length = np.array([0.0, -0.15, 0.02]), 8 * model.lengths["upper"]
+    inputs = np.array([[*base, length], [*base - [0, 0, 0.04], length]])
+    # The place where it crosses the other rod moves from a section that is looked at to the next.
+    inputs[:, 1] -= share * EVERY * length / pair.sections[list(pair.rods).index("upper")]
+    still = np.zeros(model.size)
+    assert SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1]))
+    inputs[1, 2] = 0.018
+    assert not SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1]))
 
 
 def test_the_jacobian_is_that_of_differences_and_forces_leave_no_moment() -> None:

@@ -157,13 +157,19 @@ static int pass_each_other(const rod_pair *own, real bend, const workspace *work
   const real *before = work->places[AT_START];
   const real *after = work->places[AT_END];
   const real *sizes = SIZES(work) + own->sizes;
-  const real allowed = sizes[NEAREST] + bend;
+  const int own_first = 3 * own->first[0];
   const int others = 3 * own->first[1];
+  const int own_count = own->counts[0];
   const int count = own->counts[1];
   const real spacing = most_of(longest_between(before + others, count), longest_between(after + others, count));
-  for (int i = 0; i < own->counts[0]; i += EVERY) {
-    const real X = (i + (real)0.5) / own->counts[0];
-    const int first = 3 * (own->first[0] + i);
+  const real own_spacing =
+      most_of(longest_between(before + own_first, own_count), longest_between(after + own_first, own_count));
+  /* Where axes cross, sections that are looked at are so near each other: more than half the thickness of long rods. */
+  const real met = SQUARE_ROOT(spacing * spacing + own_spacing * own_spacing) * EVERY / 2;
+  const real allowed = most_of(sizes[NEAREST], met) + bend;
+  for (int i = 0; i < own_count; i += EVERY) {
+    const real X = (i + (real)0.5) / own_count;
+    const int first = own_first + 3 * i;
     for (int j = 0; j < count;) {
       const int second = others + 3 * j;
       const real along = (j + (real)0.5) / count - X;
