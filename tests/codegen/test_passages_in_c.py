@@ -36,6 +36,7 @@ from tests.codegen.libraries import HARNESS, Exported, compile_quickly
 from tests.contact.test_contact_of_assemblies import BALL, HEAD
 from tests.contact.test_contact_of_assemblies import ROD as LONG_ROD
 from tests.contact.test_passage_of_bodies import DISK, SMALL
+from tests.contact.test_rod_contacts import lengthened
 from tests.contact.test_smooth_contact import CROSSING, OFF_A_BAR, ON_A_BAR, PUSH, ROD, THIN, WIRE
 
 ExportRecipe = Callable[..., Exported]
@@ -270,6 +271,13 @@ def test_a_path_leaves_a_thin_bar_in_c(export_recipe: ExportRecipe) -> None:
     found = made.compiled.follow(pressed.inputs, OFF_A_BAR, pressed.x)
     assert wanted.converged and found.converged
     assert_allclose(found.x, wanted.x, rtol=0, atol=1e-9)
+
+
+def test_rods_that_an_input_lengthens_pass_no_rod_between_sections(tmp_path: Path) -> None:
+    model, inputs = lengthened()
+    still = np.zeros((len(inputs), 2, model.size))
+    found = barred_in_c(model, tmp_path, np.concatenate([still, inputs], axis=2).reshape(len(inputs), -1))
+    assert found == [True, False] * 4
 
 
 ABOVE, BEHIND = np.array([0.0, 0.0, -0.1]), np.array([0.0, 0.0, -0.25])

@@ -234,20 +234,26 @@ def test_rods_pass_each_other_by_the_radii_that_parameters_give(radius: float, p
     assert SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1])) is passes
 
 
-@pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.75])
-def test_a_rod_that_an_input_lengthens_passes_no_rod_between_sections(share: float) -> None:
-    """Eight times as long, sections that are looked at are farther apart than half the thickness."""
+def lengthened() -> tuple[Model, FloatArray]:
+    """Rods that cross, and inputs at both ends of steps: one, eight times as long, comes down on the other or through it.
+
+    The place where it crosses the other rod moves from a section that is looked at to the next.
+    """
     changes = ["accuracy.modes=1", "accuracy.nodes=5", "inputs=['upper.base.position', 'upper.length']"]
     model = build(parse_scene(CROSSED.format(push=0.0, more=""), changes))
     (pair,) = model.discrete.pairs
-    base, length = np.array([0.0, -0.15, 0.02]), 8 * model.lengths["upper"]
-    inputs = np.array([[*base, length], [*base - [0, 0, 0.04], length]])
-    # The place where it crosses the other rod moves from a section that is looked at to the next.
-    inputs[:, 1] -= share * EVERY * length / pair.sections[list(pair.rods).index("upper")]
+    length = 8 * model.lengths["upper"]
+    spacing = EVERY * length / pair.sections[pair.rods.index("upper")]
+    places = [(-0.15 - share * spacing, last) for share in (0.0, 0.25, 0.5, 0.75) for last in (-0.02, 0.018)]
+    return model, np.array([[[0.0, y, height, length] for height in (0.02, last)] for y, last in places])
+
+
+def test_a_rod_that_an_input_lengthens_passes_no_rod_between_sections() -> None:
+    """Its sections that are looked at are farther apart than half the thickness."""
+    model, steps = lengthened()
     still = np.zeros(model.size)
-    assert SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1]))
-    inputs[1, 2] = 0.018
-    assert not SmoothBarriers(model).are_between(still, still, (inputs[0], inputs[1]))
+    found = [SmoothBarriers(model).are_between(still, still, (first, last)) for first, last in steps]
+    assert found == [True, False] * 4
 
 
 def test_the_jacobian_is_that_of_differences_and_forces_leave_no_moment() -> None:
