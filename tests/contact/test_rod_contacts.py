@@ -235,7 +235,7 @@ def test_rods_pass_each_other_by_the_radii_that_parameters_give(radius: float, p
 
 
 def lengthened() -> tuple[Model, FloatArray]:
-    """Rods that cross, and inputs at both ends of steps: one, eight times as long, comes down on the other or through it.
+    """Rods that cross, and inputs at both ends of steps: one, eight times as long, comes down on the other or past it.
 
     The place where it crosses the other rod moves from a section that is looked at to the next.
     """
