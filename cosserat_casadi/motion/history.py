@@ -660,7 +660,10 @@ def _check_start(
         problems.append(Problem("velocities", what, "give velocities that they allow, or leave those of bodies out"))
     elif start.velocity_error * duration > CONSISTENT:
         names = " or ".join(map(repr, moving)) or "an input"
-        what = f"{names}, which moves supports, joints or cables, has a speed at t = 0, where the scene is at rest"
+        what = (
+            f"{names}, which moves supports, joints or cables, has a speed at t = 0, where the scene is at rest: "
+            "no finite force brings what they hold to it at once"
+        )
         remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
         problems.append(Problem("motions", what, remedy))
     refuse(problems)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
+from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import scene_from_dict, simulate
+from cosserat_casadi import SceneError, parse_scene, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from tests.motion.transients import Table, gravity, table
 
@@ -108,3 +109,58 @@ def test_a_rod_that_is_drawn_out_vs_independent_galerkin_method() -> None:
     assert error <= motion.error_estimate + 1e-6
     # It must move for its path to be wrong.
     assert np.ptp(tips, axis=0).min() > 0.1 * LENGTHS[0]
+
+
+CARRYING = """
+schema = 1
+inputs = ["rod.length"]
+accuracy = { modes = 2, nodes = 6 }
+[[rods]]
+name = "rod"
+length = 0.5
+strain = "planar"
+stiffness = { bending_y = 0.05 }
+linear_density = 0.1
+rotary_inertia = [1e-5, 1e-5, 2e-5]
+base = { position = [0, 0, 0], free = true }
+[[rods]]
+name = "carried"
+length = 0.3
+strain = "planar"
+stiffness = { bending_y = 0.05 }
+linear_density = 0.1
+rotary_inertia = [1e-5, 1e-5, 2e-5]
+base = { rod = "rod", at = 1.0 }
+[simulation]
+duration = 0.3
+start = "unloaded"
+tolerance = 1e-4
+[[motions]]
+input = "rod.length"
+times = [0.0, 0.3]
+values = [0.5, 0.7]
+interpolation = "cubic"
+"""
+
+
+def test_momentum_of_a_free_rod_that_grows_and_carries_another_stays_zero() -> None:
+    """In line: z' (M + m) + l' (M/2 + m) = 0, with the mass M = 0.1 l of the one and m of the other; base at z."""
+    motion = simulate(parse_scene(CARRYING))
+    assert motion.converged, motion.message
+    rest = 0.03
+
+    def rate(t: float, _: FloatArray) -> list[float]:
+        share = t / 0.3
+        length, growth = 0.5 + 0.2 * share**2 * (3 - 2 * share), 1.2 * share * (1 - share) / 0.3
+        mass = 0.1 * length
+        return [-growth * (mass / 2 + rest) / (mass + rest)]
+
+    base = solve_ivp(rate, (0.0, 0.3), [0.0], t_eval=motion.times, rtol=1e-10, atol=1e-12).y[0]
+    tips = base + 0.5 + 0.2 * (motion.times / 0.3) ** 2 * (3 - 2 * motion.times / 0.3)
+    assert motion.error_estimate is not None and motion.error_estimate < 1e-3
+    assert_allclose(motion.tip("rod").position[:, 2], tips, rtol=0, atol=0.5 * motion.error_estimate)
+
+
+def test_a_sudden_growth_that_a_joint_would_have_to_follow_is_refused() -> None:
+    with pytest.raises(SceneError, match="no finite force brings what they hold to it at once"):
+        simulate(parse_scene(CARRYING.replace('interpolation = "cubic"', "")))
