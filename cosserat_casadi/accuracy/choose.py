@@ -15,6 +15,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.common_modes import Answers, CommonModes, LoadCase, Values
 from cosserat_casadi.accuracy.fixing import fixed_by_rod, on_elements_of, unfixed, with_accuracy
+from cosserat_casadi.accuracy.levels import is_thin
 from cosserat_casadi.accuracy.ranges import CaseRanges, Given, input_ranges, ranges_of_cases
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.errors import Problem, SceneError
@@ -34,8 +35,9 @@ SAMPLES = 16
 """Random corners that are solved, and random points too; as many fresh points are tried in the end."""
 
 SAMPLES_IN_CONTACT = 2
-"""The same in exact contact, where a solve takes seconds: which contacts are closed is found anew at each point. There
-neither the ends of each range alone are tried, nor does the worst point climb."""
+"""The same where a solve takes seconds: in exact contact, where which contacts are closed is found anew at each point,
+and beside smooth obstacles so thin that they ask for many intervals. There neither the ends of each range alone are
+tried, nor does the worst point climb."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -105,7 +107,8 @@ def choose(
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
         progress: told how many points are solved.
         samples: random corners that are tried, and as many random points, beside the ends of each range alone and of
-            all; by default 16. In exact contact by default 2, and the ends of each range alone are left out.
+            all; by default 16. In exact contact and beside thin obstacles by default 2, and the ends of each range
+            alone are left out.
         cases: inputs and parameters by name, at least one case, in place of ranges; what a case does not name keeps the
             scene's value.
 
@@ -119,7 +122,7 @@ def choose(
     if cases is None:
         search = _Search(scene, input_ranges(scene, ranges), progress)
         if samples is None:
-            samples = SAMPLES_IN_CONTACT if scene.touches_exactly else SAMPLES
+            samples = SAMPLES_IN_CONTACT if search.takes_long else SAMPLES
         search.begin(samples)
     else:
         if not cases:
@@ -158,7 +161,8 @@ class _Search:
     def __post_init__(self) -> None:
         self._random = np.random.default_rng(SEED)
         self._bare = unfixed(self.scene, self.scene.accuracy.tolerance)
-        self.modes = CommonModes([], self.progress)
+        self.modes = CommonModes([], self.progress, settles=False)
+        self.takes_long = self.scene.touches_exactly or is_thin(self.scene)
 
     def add(self, points: Iterable[FloatArray]) -> list[int]:
         """Add points; return their numbers."""
@@ -178,13 +182,13 @@ class _Search:
         self.add([self._own_point])
         if self.ranges.moving.size:
             self.samples = samples
-            # Corners, where errors are largest as a rule, come first; a solve in exact contact takes seconds.
-            ends = [] if self.scene.touches_exactly else self._ends()
+            # Corners, where errors are largest as a rule, come first.
+            ends = [] if self.takes_long else self._ends()
             self.add([*self._corners(), *ends, self.ranges.lower, self.ranges.upper, *self._inner()])
 
     def more(self, answers: Answers) -> Iterator[list[int]]:
         """Points to which the worst one climbs; then fresh random ones."""
-        if not self.scene.touches_exactly:
+        if not self.takes_long:
             yield self._climbed(answers)
         yield self.add(self._inner())
 

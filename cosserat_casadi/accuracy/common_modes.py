@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain
+from math import ceil
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +19,12 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.enough_modes import enough_for, with_more_modes
 from cosserat_casadi.accuracy.fixing import Chosen, on_elements_of, union
+from cosserat_casadi.accuracy.levels import is_thin, layer_nodes
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.equilibrium.answer_error import watched_error
 from cosserat_casadi.equilibrium.locking import has_freedom, locked_inputs
 from cosserat_casadi.equilibrium.metrics import prolong
+from cosserat_casadi.equilibrium.smooth_passage import has_barriers
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import Start, solve
 from cosserat_casadi.model.build import Model, build
@@ -49,6 +52,9 @@ MOST_ROUNDS = 12
 
 FEW_MODES, FEW_NODES = 2, 6
 """Modes and intervals to begin with where the first case has no equilibrium."""
+
+THIN_MODES, MORE_NODES = 3, 1.5
+"""Modes to begin with beside thin obstacles, and the factor on the intervals that these ask for."""
 
 Values = Mapping[str, npt.ArrayLike]
 
@@ -92,10 +98,12 @@ class CommonModes:
     Attributes:
         cases: in the order in which they were made; at least one.
         progress: told how many solves are done.
+        settles: whether rods that snap to obstacles as loads grow are let settle there; those of the first case are.
     """
 
     cases: list[LoadCase]
     progress: CountProgress | None = None
+    settles: bool = True
     _solves: int = 0
     _last: dict[int, Solution] = field(default_factory=dict)
     _well_within: dict[int, float] = field(default_factory=dict)
@@ -218,9 +226,9 @@ class CommonModes:
         case = self.cases[number]
         model = answers.model_of(case)
         start = self._start(answers, number, model)
-        solution = self._solved_on(model, case, start)
-        if start is not None and not solution.converged:
-            solution = self._solved_on(model, case)
+        solution = None if start is None else self._solved_on(model, case, start)
+        if solution is None or not solution.converged:
+            solution = self._solved_on(model, case, self._unloaded(number, model))
         if solution.converged:
             self._last[number] = solution
         return solution
@@ -236,6 +244,12 @@ class CommonModes:
         # On more modes the first case, which is well within its tolerance, may not have been solved yet.
         first = self._answer(answers, 0)
         return first if first.converged else None
+
+    def _unloaded(self, number: int, model: Model) -> Start:
+        """The unloaded scene as a start; as zeros, from which rods that snap on the way are not let settle."""
+        if number == 0 or self.settles or not has_barriers(model.scene):
+            return None
+        return np.zeros(model.size)
 
     def _solved_on(self, model: Model, case: LoadCase, start: Start = None) -> Solution:
         self._solves += 1
@@ -255,6 +269,9 @@ class CommonModes:
         scene = case.scene
         if case.parameters:
             scene = parameter_layout(scene).set_in(scene, case.parameters)
+        if is_thin(scene):
+            # A search for this case alone would take longer than all others together.
+            return discretise(case.scene, THIN_MODES, ceil(MORE_NODES * layer_nodes(scene)))
         own = solve_rods(scene, case.inputs)
         return own.model.discretisation if own.converged else discretise(case.scene, FEW_MODES, FEW_NODES)
 
@@ -275,7 +292,8 @@ class CommonModes:
         lost = []
         for number in sorted(self._failed):
             case = self.cases[number]
-            if self._solved_on(richer.model_of(case), case).converged:
+            model = richer.model_of(case)
+            if self._solved_on(model, case, self._unloaded(number, model)).converged:
                 lost.append(number)
         self._hopeless |= self._failed.difference(lost)
         self._failed = set(lost)

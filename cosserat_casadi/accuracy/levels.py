@@ -8,10 +8,14 @@ from math import ceil
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.contact_layers import seeing_nodes
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.scene_rods import rod_properties
+from cosserat_casadi.model.watched import SAMPLES
 
 REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
 """Modes per strain component and element of a reference solution, level by level."""
@@ -56,6 +60,22 @@ def nodes_for_turn(modes: int, turn: float) -> int:
             the interpolation need a bounded turn of each (docs/theory.md, section 10).
     """
     return nodes_for(modes) + ceil(turn / 2)
+
+
+def layer_nodes(scene: scenes.Scene) -> int:
+    """Intervals per element below which a rod sinks into a thin smooth obstacle between nodes; 0 without any."""
+    needed = [0]
+    for record in scene.rods:
+        rod = rod_properties(record)
+        widest = rod.length * float(np.diff(element_ends(scene, record.name)).max())
+        thinnest = float(section_radius(rod, SAMPLES).min())
+        needed.append(seeing_nodes(scene, record.name, thinnest, widest))
+    return max(needed)
+
+
+def is_thin(scene: scenes.Scene) -> bool:
+    """Whether thin smooth obstacles ask for more intervals than the modes of a usual level: a solve takes seconds."""
+    return layer_nodes(scene) > nodes_for(REFERENCE_MODES[FIRST_LEVELS[0][1]])
 
 
 def verified_modes(scene: scenes.Scene, of_short: tuple[int, ...]) -> tuple[int, ...]:
@@ -107,27 +127,30 @@ class Level:
         index: into REFERENCE_MODES.
         grid_factor: factor on the intervals.
         min_nodes: intervals below which a grid was too coarse for so bent a rod.
+        layer_nodes: intervals that thin smooth obstacles ask for, before the factor.
         finest: index of the last level that is tried whether or not the rods converge; those above, where they do.
     """
 
     index: int
     grid_factor: float = 1.0
     min_nodes: int = 0
+    layer_nodes: int = 0
     finest: int = REFERENCE_MODES.index(USUAL_MODES)
 
     @classmethod
-    def first(cls, tolerance: float, signal_modes: int = 0) -> Level:
+    def first(cls, tolerance: float, signal_modes: int = 0, layer_nodes: int = 0) -> Level:
         """The level that a scene begins with.
 
         Args:
             tolerance: wanted error.
             signal_modes: modes below which a level is blind to what the scene puts along its rods; the last level
                 where none has so many.
+            layer_nodes: intervals that thin smooth obstacles ask for.
         """
         suitable = (index for bound, index in FIRST_LEVELS if tolerance >= bound)
         visible = _lowest_with(signal_modes)
         finest = _lowest_with(max(USUAL_MODES, SIGNAL_FACTOR * signal_modes))
-        return cls(max(next(suitable), visible), finest=finest)
+        return cls(max(next(suitable), visible), layer_nodes=layer_nodes, finest=finest)
 
     @property
     def modes(self) -> int:
@@ -136,7 +159,7 @@ class Level:
 
     def nodes(self, turn: float) -> int:
         """Intervals per element, for rods whose elements turn by an angle in rad."""
-        nodes = nodes_for_turn(self.modes, turn)
+        nodes = max(nodes_for_turn(self.modes, turn), self.layer_nodes)
         stretched = ceil(self.grid_factor * nodes)
         return max(stretched, self.min_nodes)
 

@@ -34,7 +34,7 @@ from cosserat_casadi.accuracy.assess import (
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
-from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, nodes_for_turn
+from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, layer_nodes, nodes_for_turn
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
@@ -256,7 +256,7 @@ def _for_tolerance(solver: SceneSolver, tolerance: float) -> _Reference | Soluti
     if solver.is_assembly:
         # On fewer modes what is extrapolated is far too large, and so is the model that it leads to.
         least = max(least, TELLING)
-    first = Level.first(tolerance, least)
+    first = Level.first(tolerance, least, layer_nodes(solver.scene))
     return _refined(solver, first, tolerance)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import ceil, inf, isfinite, sqrt
+from math import ceil, inf, isfinite, pi, sqrt
 
 import numpy as np
 
@@ -24,6 +24,13 @@ ELEMENT_FACTOR = 3.0
 
 MOST_ELEMENTS = 12
 """Elements that contact alone asks for: beyond them modes are the cheaper means."""
+
+LOOSEST_NODES = 1.5
+"""Distance of nodes in the middle of an element over half of the stretch that a thin obstacle presses: where they are
+farther apart a rod sinks in between them, and its shape hangs on where they are."""
+
+MOST_LAYER_NODES = 60
+"""Intervals that layers alone ask for: who wants thinner ones waits until the grid is refined."""
 
 NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
@@ -129,6 +136,26 @@ def longest_step(scene: scenes.Scene) -> float:
         if obstacle.is_smooth
     ]
     return min(steps, default=inf)
+
+
+def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) -> int:
+    """Intervals of an element that see how thin smooth obstacles press a rod; 0 without any.
+
+    A straight rod whose axis is at the distance d from that of a bar is in its layer for √(2 w d) to both sides.
+    Chebyshev nodes are π/2 times as far apart in the middle of an element as on the average.
+
+    Args:
+        scene: the scene.
+        rod: name of the rod.
+        radius: of its thinnest section, m.
+        widest: length of its longest element, m.
+    """
+    needed = [0.0]
+    for obstacle in scene.obstacles:
+        if obstacle.width and isfinite(obstacle.thickness) and obstacle.concerns(rod):
+            stretch = sqrt(2 * obstacle.width * (obstacle.thickness / 2 + radius))
+            needed.append(pi / 2 * widest / (LOOSEST_NODES * stretch))
+    return ceil(min(max(needed), MOST_LAYER_NODES))
 
 
 def inexact_beside(scene: scenes.Scene) -> float:

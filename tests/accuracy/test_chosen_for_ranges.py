@@ -10,8 +10,9 @@ from cosserat_casadi import SceneError, build, discretise, parse_scene, solve
 from cosserat_casadi.accuracy.choose import Choice, choose
 from cosserat_casadi.accuracy.ranges import Origin, input_ranges
 from cosserat_casadi.equilibrium.locking import degrees_of_freedom
-from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.equilibrium.metrics import pose_distance, prolong
 from cosserat_casadi.scene.writing import scene_text
+from tests.contact.test_smooth_contact import ON_A_BAR
 from tests.scenes import STIFFNESS, WEIGHT, push, rod, scene
 
 
@@ -204,3 +205,18 @@ def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
     )
     assert degrees_of_freedom(build(held, discretise(held, 2, 6))) == 0
     assert degrees_of_freedom(build(held, discretise(held, 3, 8))) == 3
+
+
+@pytest.mark.slow
+def test_modes_are_chosen_beside_a_thin_bar() -> None:
+    """They begin with intervals that see its layer, and a few points are tried; away from them the error holds too."""
+    free = "accuracy = { modes = 2, nodes = 24 }"
+    pressed = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=2e-3", "bar.width=1e-3", "accuracy.tolerance=1e-3"])
+    chosen = choose(pressed, {"push.force.z": (-0.05, -0.03)})
+    assert chosen.met and not chosen.without_equilibrium
+    assert chosen.solves == 1 + 2 + 2 + 2 + 2
+    fine = build(chosen.scene, discretise(chosen.scene, 6, 120))
+    push = {"push.force": [0.0, 0.0, -0.037]}
+    coarse = solve(chosen.model, push, estimate_error=False)
+    assert coarse.converged
+    assert pose_distance(coarse, solve(fine, push, start=prolong(coarse, fine), estimate_error=False)) <= 1e-3

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cosserat_casadi import Scene, Solution, build, discretise, read_scene, solve
+from cosserat_casadi import Scene, Solution, build, discretise, parse_scene, read_scene, solve
 from cosserat_casadi.accuracy.assess import Enough, NeedsFinerGrid, NeedsModes, NeedsNodes, NoEquilibrium, assess
-from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level
+from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level, is_thin, layer_nodes
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.conftest import ROOT
+from tests.contact.test_smooth_contact import ON_A_BAR
 from tests.scenes import WEIGHT, push, scene
 
 BENT = scene(push(force=[3.0, 1.0, -0.5]), WEIGHT)
@@ -117,3 +118,36 @@ def test_first_level_of_an_assembly_tells_how_fast_it_converges() -> None:
     assert tried[0].startswith(f"{build(platform, first).size} unknowns")
     # Nothing finer is needed: what follows is the coarsened model.
     assert len(tried) == 2
+
+
+def test_levels_beside_a_thin_wire_see_its_layer() -> None:
+    """On fewer intervals the rod sinks between nodes, and its path stalls; on these it lies in the layer.
+
+    The axis is in the layer for √(2 w d) = 1.7 mm to both sides of the wire. Eleven elements of 45 mm are to have nodes
+    at most 1.5 times as far apart in their middles, where they are π/2 times as far apart as on the average.
+    """
+    free = "accuracy = { modes = 2, nodes = 24 }"
+    wire = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=1e-3", "bar.width=5e-4"])
+    nodes = int(np.ceil(np.pi / 2 * 500 / 11 / (1.5 * np.sqrt(2 * 0.5 * (1 + 2)))))
+    assert layer_nodes(wire) == nodes == 28
+    assert is_thin(wire)
+    assert Level.first(1e-4, layer_nodes=nodes).nodes(0.0) == nodes
+    assert Level.first(1e-4, layer_nodes=nodes).with_finer_grid().nodes(0.0) == np.ceil(GRID_FACTOR * nodes)
+    few = build(wire, discretise(wire, 3, 10))
+    # Zeros: it is not let settle.
+    coarse = solve(few, start=np.zeros(few.size), estimate_error=False)
+    assert coarse.outcome is Outcome.LOAD_STALLED
+    seen = solve(build(wire, discretise(wire, 3, nodes)), estimate_error=False)
+    assert seen.converged
+    (contact,) = seen.contacts
+    assert contact.gap is not None and 0.0 < contact.gap < 5e-4
+
+
+def test_a_thick_bar_and_a_table_ask_for_no_intervals_of_their_own() -> None:
+    free = "accuracy = { modes = 2, nodes = 24 }"
+    thick = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=0.02", "bar.width=5e-3"])
+    assert 0 < layer_nodes(thick) < 12
+    assert not is_thin(thick)
+    table = ON_A_BAR.replace(free, "").partition("[[obstacles]]")[0]
+    table += '[[obstacles]]\nname = "table"\nkind = "plane"\npoint = [0, 0, -0.03]\nnormal = [0, 0, 1]\nwidth = 5e-4\n'
+    assert layer_nodes(parse_scene(table)) == 0

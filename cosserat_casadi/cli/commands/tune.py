@@ -44,7 +44,7 @@ def tune(
         typer.Option(
             min=1,
             max=100_000,
-            help=f"Random corners, and random points: {SAMPLES}, and {SAMPLES_IN_CONTACT} in exact contact.",
+            help=f"Random corners, and points: {SAMPLES}, and {SAMPLES_IN_CONTACT} beside wires and in exact contact.",
             show_default=False,
         ),
     ] = None,
