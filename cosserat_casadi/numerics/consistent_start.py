@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -352,6 +353,6 @@ def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
     return inverse if condition * rank < 1.0 else None
 
 
-def _largest_column(matrix: FloatArray) -> float:
+def _largest_column(matrix: npt.NDArray[Any]) -> float:
     """Norm of a small matrix by its columns: NumPy's own takes as long as the inverse."""
     return float(np.abs(matrix).sum(axis=0).max())
