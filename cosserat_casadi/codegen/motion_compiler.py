@@ -80,7 +80,7 @@ TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.3, 7e-5), JACOBIANS: (0.3, 3.3e
 ITERATION = 2e-4
 """Time of an iteration of Newton's method in Python beyond that in C, s: 1.7e-4 to 6.5e-4, equations left out."""
 
-TO_COMPILE_STEPS = 0.35
+TO_COMPILE_STEPS = 0.3
 """Processor time for compiling the steps, s; once for all models."""
 
 MOTIONS_TO_COME = 2.0
