@@ -119,9 +119,9 @@ NEWTON = 1e-3
 """Error of Newton's method over the tolerance of a step."""
 
 NEWTON_OF_CLOSED = 1e-4
-"""The same where supports and joints are to stay closed: what they are open by acts on velocities over a step too.
+"""The same where supports and joints are to stay closed: their openings are errors of velocities over a step too.
 
-It falls with the tolerance of a step, as what a step errs by does: two motions that tell an error tell this one too.
+They fall with the tolerance of a step, as its other errors do, so that two motions that tell an error tell them too.
 """
 
 CLOSED = 1e-10

@@ -14,7 +14,7 @@ from cosserat_casadi import Model, Motion, MotionOutcome, build, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.motion_ending import independence_of
-from cosserat_casadi.motion.simulate import moving_inputs, started
+from cosserat_casadi.motion.simulate import NEWTON_OF_CLOSED, Simulator, moving_inputs, started
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
@@ -83,6 +83,33 @@ def test_constraints_stay_closed(family: str) -> None:
     assert_allclose(opened, 0.0, rtol=0, atol=CLOSED)
     middle = motion.section("a", [0.5]).position
     assert np.ptp(middle, axis=0).max() > 1e-4
+
+
+def opened_at_ends(scene: dict[str, Any], tolerance: float) -> float:
+    """Largest row of a constraint at the end of a step of this tolerance, without unit."""
+    model = moving_model(scene).at().in_motion
+    simulation = model.scene.simulation
+    assert simulation is not None
+    history = Simulator(model, simulation, started(model, simulation, None)).controlled(tolerance)
+    assert history.completed
+    rows = rows_of(model)
+    ends = [(step.end.x, leg.piece.at(step.end.time).value) for leg, step in history.steps]
+    return float(max(np.abs(model.residual(x, inputs).full()[rows, 0]).max() for x, inputs in ends))
+
+
+@pytest.mark.parametrize("family", QUICK)
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+def test_ends_of_steps_are_open_by_a_share_of_their_tolerance(family: str, tolerance: float) -> None:
+    """So two motions that tell an error tell what Newton's method leaves too."""
+    assert opened_at_ends(swayed(family), tolerance) < NEWTON_OF_CLOSED * tolerance
+
+
+def test_joints_with_stops_are_closed_at_any_tolerance() -> None:
+    """What Newton's method leaves does not decide when a stop is met."""
+    scene = swayed("revolute joint")
+    assert opened_at_ends(scene, 1e-2) > CLOSED
+    scene["joints"][1]["upper_stop"] = 0.5
+    assert opened_at_ends(scene, 1e-2) <= CLOSED
 
 
 @pytest.mark.parametrize("family", mostly_slow([*HELD, *JOINTS], quick=QUICK))
