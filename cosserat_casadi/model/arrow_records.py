@@ -113,7 +113,9 @@ class LoadArrows:
                 force, moment = _wrench(kernel, stored(values), (positions, rotations), data)
             else:
                 origin, (world_R_body,) = self.body_pose(seen_from)
-                in_body = _in_body(origin, world_R_body, positions, rotations)
+                body_R_world = world_R_body.T
+                places = [body_R_world @ (positions[:, k] - origin[:, 0]) for k in range(positions.shape[1])]
+                in_body = ca.horzcat(*places), [body_R_world @ rotation for rotation in rotations]
                 force, moment = (world_R_body @ part for part in _wrench(kernel, stored(values), in_body, data))
             yield DrawnLoad(member, load, label, False, positions, force, moment)
             label = ""
@@ -130,27 +132,9 @@ class LoadArrows:
             # Profiles are those of a load per length: at a point they are one.
             profiles = np.ones((sum(kernel.columns), 1))
             force, moment = _wrench(kernel, stored(values), (start, rotation), profiles)
-            label = _body_label(load, body)
+            # A load that acts on bodies which it does not name, as a weight does, is one for each.
+            label = load.name if getattr(load, "body", None) is not None else f"{load.name} of {body.name}"
             yield DrawnLoad(member, load, label, True, start, point.factor * force, point.factor * moment)
-
-
-def _body_label(load: scenes.LoadRecord, body: scenes.Body) -> str:
-    """Name of a load, with the body where the load acts on bodies that it does not name, as a weight does."""
-    if getattr(load, "body", None) is not None:
-        return load.name
-    return f"{load.name} of {body.name}"
-
-
-def _in_body(
-    origin: Matrix | FloatArray,
-    world_R_body: Matrix | FloatArray,
-    positions: Matrix | FloatArray,
-    rotations: Sequence[Matrix] | FloatArray,
-) -> DrawnPoses:
-    """Poses of k sections of the world in the axes of a body, which has one pose."""
-    body_R_world = world_R_body.T
-    columns = [body_R_world @ (positions[:, k] - origin[:, 0]) for k in range(positions.shape[1])]
-    return ca.horzcat(*columns), [body_R_world @ rotation for rotation in rotations]
 
 
 def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray) -> tuple[Matrix, Matrix]:

@@ -43,8 +43,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
 from cosserat_casadi.model.body_obstacle_loads import BorneLoad, borne_loads
 from cosserat_casadi.model.discrete_scene import STOP_COMPLIANCE, CableOfLength, DiscreteScene, JointStop
-from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.frame_pose import turn_matrix
+from cosserat_casadi.model.floating_frames import FrameName, turn_matrix
 from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, smoothing_at, spring
 from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.scene_actuators import CORNER
@@ -171,7 +170,7 @@ class Assembly:
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
-        blocks = self._empty_blocks()
+        blocks = BlockMatrix(self.discrete.unknowns.ends)
         for rod, tangent in self.system.tangents.items():
             strains = self.discrete.unknowns.strain(rod)
             blocks.add(strains, strains, tangent.jacobian)
@@ -182,7 +181,9 @@ class Assembly:
         for floating in self.discrete.unloaded.floating_rods:
             self._add_turned_loads(blocks, floating.name)
         for borne in self._borne_loads:
-            self._add_borne_load(blocks, borne)
+            # The motion of a body moves the obstacle that presses the rod.
+            by_deviation = borne.residual_with_body @ self.system.frame_poses[borne.body].motion
+            blocks.add(self.discrete.unknowns.strain(borne.rod), self.discrete.deviation(borne.body), by_deviation)
         for terms in self.system.pairs:
             self._add_pair(blocks, terms)
         for name in self.discrete.frames:
@@ -199,21 +200,19 @@ class Assembly:
             if stop.stiffness is not None:
                 by_push = by_push + by_way * stop.softness
             blocks.add(push, push, column_at(by_push, self.load_factor))
-        self._add_springs(blocks)
+        for entries, compliance in self._compliances():
+            block = spring(entries.stop - entries.start, compliance, self._closing(compliance))
+            if block is not None:
+                blocks.add(entries, entries, block)
         return blocks.matrix()
 
     @cached_property
     def constraint_jacobian(self) -> Matrix:
         """∂ residual / ∂x with the rows of the constraints alone; the other rows are empty."""
-        blocks = self._empty_blocks()
+        blocks = BlockMatrix(self.discrete.unknowns.ends)
         for placed in self.discrete.constraints:
             self._add_constraint(blocks, placed)
         return blocks.matrix()
-
-    def _empty_blocks(self) -> BlockMatrix:
-        """A matrix of the unknowns' size without blocks."""
-        ends = [entries.stop for entries in self.discrete.unknowns.slices.values()]
-        return BlockMatrix(ends)
 
     def _section_motion(self, placed: PlacedConstraint) -> Matrix:
         """δ: motion [δθ; δr] of a held section with the strains of its rod, 6×n, base axes."""
@@ -301,12 +300,6 @@ class Assembly:
         if reaction.with_shift is not None:
             by_shift, _, _ = reaction.with_shift
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
-
-    def _add_borne_load(self, blocks: BlockMatrix, borne: BorneLoad) -> None:
-        """Block of the motion of a body in the residual of a rod that is pressed by an obstacle on the body."""
-        strains = self.discrete.unknowns.strain(borne.rod)
-        deviation = self.discrete.deviation(borne.body)
-        blocks.add(strains, deviation, borne.residual_with_body @ self.system.frame_poses[borne.body].motion)
 
     def _add_pair(self, blocks: BlockMatrix, terms: PairTerms) -> None:
         """Blocks of two rods that push each other in the rows of their strains."""
@@ -398,7 +391,13 @@ class Assembly:
         by_motion: dict[FrameName, Matrix] = defaultdict(lambda: ca.DM(6, 6))
         for placed in self.discrete.constraints:
             if placed.frame == name:
-                variations += self._reaction_variations(placed, by_motion)
+                of_reaction = placed.constraint.reaction_variation
+                added, by_poses = self._wrench_on_frame(placed, of_reaction, by_motion)
+                variations += added
+                # It acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
+                if placed.constraint.held.slides and placed.carried is None:
+                    by_strain = by_poses.section @ self._section_motion(placed)
+                    variations.append((self.discrete.unknowns.strain(placed.rod), by_strain))
             if placed.carried is not None and placed.carried.frame == name:
                 of_wrench = placed.constraint.on_body_variation
                 variations += self._wrench_on_frame(placed, of_wrench, by_motion)[0]
@@ -418,19 +417,6 @@ class Assembly:
         for moved, derivative in by_motion.items():
             by_deviation = derivative @ self.system.frame_poses[moved].motion
             variations.append((self.discrete.deviation(moved), by_deviation))
-        return variations
-
-    def _reaction_variations(
-        self, placed: PlacedConstraint, by_motion: dict[FrameName, Matrix]
-    ) -> list[tuple[slice, Matrix]]:
-        """Variation of a constraint's reaction with multipliers and strains; that with frames goes into by_motion."""
-        constraint = placed.constraint
-        variations, by_poses = self._wrench_on_frame(placed, constraint.reaction_variation, by_motion)
-        # The wrench acts at the joint of the frame, but for a slide: there it acts at the section, wherever that is.
-        if constraint.held.slides and placed.carried is None:
-            strains = self.discrete.unknowns.strain(placed.rod)
-            by_strain = by_poses.section @ self._section_motion(placed)
-            variations.append((strains, by_strain))
         return variations
 
     def _wrench_on_frame(
@@ -456,25 +442,19 @@ class Assembly:
         to_world = ca.diagcat(rotation, rotation)
         by_strain = ca.vertcat(reaction.moment_with_strain, reaction.force_with_strain)
         variations = [(self.discrete.unknowns.strain(rod), -to_world @ by_strain)]
-        by_turn, by_shift = self._base_motion(rod)
-        in_base_axes = ca.horzcat(by_turn @ rotation.T, by_shift @ rotation.T)
-        by_motion[name] = by_motion[name] - to_world @ in_base_axes
-        constraints = self.discrete.constraints_on(rod)
-        for placed in constraints:
-            variations += self._passed_on(placed, to_world, by_motion)
-        return variations
-
-    def _base_motion(self, rod: str) -> tuple[Matrix, Matrix]:
-        """Derivative of the base wrench [moment; force] with a turn and with a shift of the base, base axes, 6×3."""
         statics = self.system.rods[rod].statics
-        reaction = self._reactions[rod]
         _, force, moment = reaction.with_turn
         # In the axes of the base, dead loads turn back; the base wrench itself turns with the base.
         by_turn = ca.vertcat(moment - hat(statics.base_moment), force - hat(statics.base_force))
-        if reaction.with_shift is None:
-            return by_turn, ca.DM(6, 3)
-        _, force, moment = reaction.with_shift
-        return by_turn, ca.vertcat(moment, force)
+        by_shift: Matrix = ca.DM(6, 3)
+        if reaction.with_shift is not None:
+            _, force, moment = reaction.with_shift
+            by_shift = ca.vertcat(moment, force)
+        in_base_axes = ca.horzcat(by_turn @ rotation.T, by_shift @ rotation.T)
+        by_motion[name] = by_motion[name] - to_world @ in_base_axes
+        for placed in self.discrete.constraints_on(rod):
+            variations += self._passed_on(placed, to_world, by_motion)
+        return variations
 
     def _passed_on(
         self, placed: PlacedConstraint, to_world: Matrix, by_motion: dict[FrameName, Matrix]
@@ -532,14 +512,6 @@ class Assembly:
         blocks.add(tension, tension, column_at(equation.tension_column, self.load_factor))
 
     # From the unloaded scene to the scene
-
-    def _add_springs(self, blocks: BlockMatrix) -> None:
-        """Derivatives of the springs that constraints, frames and cables are on the way to the scene."""
-        for entries, compliance in self._compliances():
-            size = entries.stop - entries.start
-            block = spring(size, compliance, self._closing(compliance))
-            if block is not None:
-                blocks.add(entries, entries, block)
 
     def _compliances(self) -> Iterator[tuple[slice, Compliance]]:
         """The blocks of unknowns that a spring acts on, with its compliance (model/homotopy.py)."""

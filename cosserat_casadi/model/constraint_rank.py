@@ -5,24 +5,35 @@ Over-constraining joints show in the rank of the linearised constraint residuals
 Rods hold a body as far as their strains allow. Where the constraint residuals depend on each other for every
 shape of the rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch,
 clamped in one body, or planar rods of different planes. A few modes and a random shape show it.
+
+Bodies turn freely where their joints are spherical and lie on one line, and nothing has a lever about it. Turning such
+a body about the line strains no rod and moves no force, in every pose: its orientation is not determined and the
+equations are singular. A force that keeps its direction, or weight, holds it where it acts off the line. Forces that
+turn with the body and moments cannot: they have no potential. What hangs from one joint is let through: its weight
+holds it but for a turn about the vertical, and the solution says that it is neutral.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.held_directions import FLAT
+from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.body_loads import BodyLoads
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.scene_equations import SceneEquations
-from cosserat_casadi.model.spinning_bodies import free_spins
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.unknowns import BlockKind
 
@@ -65,27 +76,23 @@ def _problems(scene: scenes.Scene) -> tuple[tuple[Problem, ...], Problem | None]
     loads = [load for load in scene.loads if layout.of_load(load.name or "", EFFECTS[load.kind].nodal) is None]
     without_nodal = scene.model_copy(update={"loads": tuple(loads)})
     probe = discrete_scene(without_nodal, layout, discretise(scene, MODES, NODES, "magnus4"))
-    system = _at_a_random_shape(probe)
-    spins = tuple(free_spins(system))
+    # A shape that has nothing special.
+    x = np.zeros(probe.size)
+    strains = probe.unknowns.count(BlockKind.STRAIN)
+    x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains) * _own_units(probe)
+    # Numbers throughout: to write expressions first takes several times as long.
+    system = System(probe, Arguments(ca.DM(x), ca.DM(layout.pack())))
+    spins = tuple(_free_spins(system))
     rows = _constraint_rows(system)
     if _rank(rows) == len(rows):
         return spins, None
     remedy = "admit more strains of the rods, hold the tip by a spherical joint, or lay planar rods into one plane"
     for placed in probe.constraints:
-        upper = rows[: probe.multipliers(placed).stop - probe.unknowns.count(BlockKind.STRAIN)]
+        upper = rows[: probe.multipliers(placed).stop - strains]
         if _rank(upper) < len(upper):
             problem = f"over-constrains: {placed.what} is held already in a direction in which its rods cannot give"
             return spins, Problem(placed.where, problem, remedy)
     return spins, None
-
-
-def _at_a_random_shape(probe: DiscreteScene) -> System:
-    """The equations at a shape that has nothing special, at the scene's inputs."""
-    x = np.zeros(probe.size)
-    strains = probe.unknowns.count(BlockKind.STRAIN)
-    x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains) * _own_units(probe)
-    # Numbers throughout: to write expressions first takes several times as long.
-    return System(probe, Arguments(ca.DM(x), ca.DM(probe.layout.pack())))
 
 
 def _own_units(probe: DiscreteScene) -> FloatArray:
@@ -117,3 +124,61 @@ def _rank(rows: FloatArray) -> int:
     if not singular.size:
         return 0
     return int(np.sum(singular > RANK * singular[0]))
+
+
+def _free_spins(system: System) -> Iterator[Problem]:
+    """A problem for every body whose orientation nothing holds."""
+    remedy = "hold a tip by a fixed joint, or by a spherical one off that line"
+    for i, body in enumerate(system.discrete.scene.bodies):
+        if body.name in system.discrete.unloaded.riding:
+            continue
+        joints = _joints(system, body)
+        if joints is None:
+            continue
+        dimension = _dimension(joints)
+        with_forces = _dimension(np.vstack([joints, _forces(system, body)]))
+        if dimension > 1 or with_forces > dimension:
+            continue
+        about = "the line through its joints" if dimension else "its joint"
+        problem = f"nothing holds the orientation of {body.name!r}: it turns freely about {about}"
+        yield Problem(f"bodies[{i}]", problem, remedy)
+
+
+def _joints(system: System, body: scenes.Body) -> FloatArray | None:
+    """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
+    points = []
+    for i, joint in enumerate(system.discrete.scene.joints):
+        # Its end in the body, be it the one that carries or the one that is carried.
+        ends = [end for end, name in _ends(joint) if name == body.name]
+        for place in map(place_of, ends):
+            points.append(place.position)
+            about = system.discrete.constraint(f"joints[{i}]").held.rotations
+            if about.shape[1] == 2:
+                # All but the turn about one axis is held: the body may turn about that line alone.
+                axis = place.rotation @ np.cross(about[:, 0], about[:, 1])
+                points.append(place.position + axis)
+            elif about.size:
+                return None
+    return np.array(points)
+
+
+def _ends(joint: scenes.Joint) -> Iterator[tuple[scenes.Joint | scenes.CarriedBody, str | None]]:
+    """The records that place a joint, with the bodies that they place it in."""
+    yield joint, joint.body
+    if joint.carries is not None:
+        yield joint.carries, joint.carries.body
+
+
+def _forces(system: System, body: scenes.Body) -> FloatArray:
+    """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
+    frame = system.frame(FrameName("body", body.name))
+    loads = BodyLoads(system.discrete, body, frame.position, frame.rotation, system.arguments.inputs).all()
+    points = [known(as_vector(load.position)) for load in loads if load.aligns]
+    return np.reshape(points, (-1, 3))
+
+
+def _dimension(points: FloatArray) -> int:
+    """Dimension of what points span: 0 for one point, 1 for a line."""
+    differences = points - points[0]
+    size = max(float(np.abs(points).max(initial=0.0)), np.finfo(float).tiny)
+    return int(np.linalg.matrix_rank(differences / size, tol=FLAT))

@@ -35,7 +35,14 @@ def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
 
 def _depth(system: System, layer: ContactLayer) -> Matrix:
     if layer.at is not None:
-        of_disk: Matrix = -_gap_of_disk(system, layer) / layer.obstacle.width
+        assert layer.rod is not None, "a disk is on a rod"
+        shape = system.shapes[layer.rod]
+        rotation = quaternion_to_matrix(system.base(layer.rod).quaternion) @ shape.rotation_at(
+            shape.rod.grid.node_at(layer.at)
+        )
+        size = ca.vertcat(layer.radius, layer.thickness)
+        gap, _ = push_on_disk(layer)(positions_before(system, layer), rotation, size)
+        of_disk: Matrix = -ca.MX(gap) / layer.obstacle.width
         return of_disk
     radii: Matrix | float = layer.radius
     if layer.body is None:
@@ -51,32 +58,16 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
     return depth
 
 
-def _gap_of_disk(system: System, layer: ContactLayer) -> Matrix:
-    """Gap of a disk, m."""
-    assert layer.rod is not None, "a disk is on a rod"
-    shape = system.shapes[layer.rod]
-    node = shape.rod.grid.node_at(layer.at)
-    rotation = quaternion_to_matrix(system.base(layer.rod).quaternion) @ shape.rotation_at(node)
-    size = ca.vertcat(layer.radius, layer.thickness)
-    gap, _ = push_on_disk(layer)(positions_before(system, layer), rotation, size)
-    return ca.MX(gap)
-
-
 def positions_before(system: System, layer: ContactLayer) -> Matrix:
     """Positions of what a layer pushes in the axes of its obstacle, m: nodes of a rod, 3×M, a disk or a body, 3×1."""
     if layer.body is not None:
         return system.frame(FrameName("body", layer.body)).position
     assert layer.rod is not None, "a layer is in front of a rod or a body"
-    positions = system.seen_from(layer.obstacle.body, _node_positions(system, layer.rod))
+    base, shape = system.base(layer.rod), system.shapes[layer.rod]
+    from_base = quaternion_to_matrix(base.quaternion) @ shape.position
+    nodes = ca.repmat(ca.MX(base.position), 1, shape.rod.grid.size) + from_base
+    positions = system.seen_from(layer.obstacle.body, nodes)
     if layer.at is None:
         return positions
-    of_disk: Matrix = positions[:, system.discrete.rods[layer.rod].grid.node_at(layer.at)]
+    of_disk: Matrix = positions[:, shape.rod.grid.node_at(layer.at)]
     return of_disk
-
-
-def _node_positions(system: System, rod: str) -> Matrix:
-    """World positions of the nodes of a rod, 3×M, m."""
-    base = system.base(rod)
-    rod_shape = system.shapes[rod]
-    from_base = quaternion_to_matrix(base.quaternion) @ rod_shape.position
-    return ca.repmat(ca.MX(base.position), 1, rod_shape.rod.grid.size) + from_base

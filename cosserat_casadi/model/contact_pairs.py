@@ -16,6 +16,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, entries, known, largest, least
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.scene_rods import rod_properties
@@ -45,6 +46,10 @@ MOST_SECTIONS = 2000
 
 LOOKED_AT = np.linspace(0.0, 1.0, 201)
 """Abscissae whose radii are looked at."""
+
+
+POSE = 12
+"""Numbers of a pose at a node: position, m, and rotation matrix, column after column."""
 
 
 @dataclass(frozen=True)
@@ -201,3 +206,56 @@ def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
         raise SceneError(Problem("rod_contacts", problem, "give it more width, or leave thin and long rods out"))
     intervals = len(rod.grid.left_ends)
     return ceil(wanted + intervals)
+
+
+@dataclass(frozen=True)
+class PairHistory:
+    """The history of friction of a pair: where sections were at the last point of a path, and how far dragged.
+
+    The way of two sections past each other is that of the points that touch since the last point of the path, and how
+    far the section of the first rod was dragged then. So a section that comes to touch another one keeps its drag.
+
+    Attributes:
+        drag: how far the sections of the first rod are dragged, 3×k, m, world axes.
+        poses: of each rod at the nodes of its grid, POSE×M, world axes; zeros before anything is known.
+    """
+
+    drag: Matrix
+    poses: Mapping[str, Matrix]
+
+    @classmethod
+    def of_column(cls, column: Matrix, pair: ContactPair, grids: Mapping[str, Grid]) -> PairHistory:
+        """From the input, whose sections may be others than those of the pair are now.
+
+        Args:
+            column: the input, h×1.
+            pair: the pair.
+            grids: of the rods, when it was remembered.
+        """
+        poses = {}
+        for name in dict.fromkeys(pair.rods):
+            count = POSE * grids[name].size
+            poses[name] = ca.reshape(column[:count], POSE, grids[name].size)
+            column = column[count:]
+        return cls(ca.reshape(column, 3, column.shape[0] // 3), poses)
+
+    @property
+    def column(self) -> Matrix:
+        """As the input, h×1."""
+        return ca.vertcat(*[ca.vec(poses) for poses in self.poses.values()], ca.vec(self.drag))
+
+    @property
+    def is_known(self) -> Matrix:
+        """One where there is a history, zero before there is one, 1×1: rotations are none then."""
+        return ca.sumsqr(next(iter(self.poses.values()))[3:, 0]) / 3
+
+    def drag_at(self, coordinates: FloatArray) -> Matrix:
+        """Drag at sections at these coordinates from 0 to 1, 3×S."""
+        count = self.drag.shape[1]
+        chosen = np.minimum((coordinates * count).astype(int), count - 1)
+        return self.drag[:, chosen.tolist()]
+
+
+def history_size(pair: ContactPair, grids: Mapping[str, Grid]) -> int:
+    """Numbers that friction of a pair remembers, of rods on these grids."""
+    return 3 * pair.sections[0] + POSE * sum(grids[name].size for name in set(pair.rods))

@@ -24,13 +24,12 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import contact_layers
-from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs
+from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import HISTORY, Input, InputLayout
-from cosserat_casadi.model.pair_memory import history_size
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.registry import EFFECTS, remembering
 from cosserat_casadi.model.required_modes import signal_modes
@@ -42,10 +41,8 @@ from cosserat_casadi.model.scene_constraints import (
 )
 from cosserat_casadi.model.scene_rods import fixed_masses, rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
-from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.straight_cable import HoleRouting
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
 from cosserat_casadi.scene.input_fields import InputField
@@ -81,18 +78,6 @@ class CableOfLength:
         if self.may_go_slack:
             return Compliance(power=1, scale=self.softness)
         return Compliance(power=1, scale=-self.softness)
-
-
-def _softness(rod: DiscreteRod, routing: Routing | HoleRouting) -> float:
-    """Length, relative to the rod's, that a unit of tension takes from a cable: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
-
-    One where the unloaded rod does not yield at all, as to a cable along the axis of a rod that does not stretch.
-    """
-    unloaded = shape(rod, ca.MX.zeros(rod.size))
-    gradient = ca.evalf(ca.MX(routing.on(unloaded).gradient)).full()[:, 0]
-    pull = gradient / rod.properties.length
-    softness = float(pull @ np.linalg.solve(known(rod.stiffness), pull))
-    return softness if softness > NO_SOFTNESS else 1.0
 
 
 @dataclass(frozen=True)
@@ -270,11 +255,6 @@ class DiscreteScene:
                 frames[name] = replace(frame, body=self.bodies[name.name])
         return frames
 
-    @property
-    def riding(self) -> dict[str, int]:
-        """Joints of the bodies that ride on sections, by body: their places in the scene's list."""
-        return self.unloaded.riding
-
     @cached_property
     def constraints(self) -> list[PlacedConstraint]:
         """Supports, bases of carried rods and joints, in the order of their multipliers."""
@@ -292,11 +272,19 @@ class DiscreteScene:
         ]
 
     def _softness(self, actuator: scenes.Actuator) -> float:
-        """Softness of a rod to a cable, by the numbers that scale the equations."""
+        """Length, over the rod's, that a unit of tension takes from a cable: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
+
+        By the numbers that scale the equations. One where the unloaded rod does not yield at all, as to a cable along
+        the axis of a rod that does not stretch.
+        """
         nominal = self.nominal
         rod = nominal.rods[actuator.rod]
         (tendon,) = [other for other in nominal.scene.actuators if other.name == actuator.name]
-        return _softness(rod, EFFECTS[tendon.kind].quantity(tendon, rod.grid))
+        unloaded = shape(rod, ca.MX.zeros(rod.size))
+        gradient = EFFECTS[tendon.kind].quantity(tendon, rod.grid).on(unloaded).gradient
+        pull = ca.evalf(ca.MX(gradient)).full()[:, 0] / rod.properties.length
+        softness = float(pull @ np.linalg.solve(known(rod.stiffness), pull))
+        return softness if softness > NO_SOFTNESS else 1.0
 
     def constraint(self, where: str) -> SectionConstraint:
         """The constraint of a table of the scene, by its path.
@@ -437,14 +425,10 @@ class DiscreteScene:
             name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
             for name, rod in self.rods.items()
         }
-        return Richer(self, self._on(discretisation))
-
-    def _on(self, discretisation: Mapping[str, Discretisation]) -> DiscreteScene:
-        """The same scene on another discretisation of its rods."""
-        discrete = discrete_scene(self.nominal.scene, self.layout, discretisation, self.moving)
+        discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        return replace(discrete, memory=self.remembered)
+        return Richer(self, replace(discrete, memory=self.remembered))
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """Unit of contact forces on a rod, or on a body, N."""

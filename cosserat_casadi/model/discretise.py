@@ -62,7 +62,7 @@ def discretise(
     for rod in scene.rods:
         fixed = scene.accuracy.of_rod(rod.name)
         wanted_modes = modes or fixed.modes or DEFAULT_MODES
-        modes_of_rod = _per_strain(wanted_modes, len(rod.admitted))
+        modes_of_rod = (wanted_modes,) * len(rod.admitted) if isinstance(wanted_modes, int) else tuple(wanted_modes)
         intervals = nodes or fixed.nodes or nodes_for(max(modes_of_rod))
         breaks = element_ends(scene, rod.name)
         check_places(rod.name, breaks)
@@ -100,13 +100,6 @@ def _described(chosen: Discretisation) -> dict[str, Any]:
     """A discretisation in the words of the scene format: one number of modes where all strains have as many."""
     modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
     return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport}
-
-
-def _per_strain(modes: int | Sequence[int], strains: int) -> tuple[int, ...]:
-    """Modes of every admitted strain."""
-    if isinstance(modes, int):
-        return (modes,) * strains
-    return tuple(modes)
 
 
 def nodes_for(modes: int) -> int:

@@ -22,7 +22,7 @@ from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import place_of
 from cosserat_casadi.maths.pose import IDENTITY, POSE_SIZE, NumericPose, Pose, numeric
 from cosserat_casadi.maths.rotation import cross_matrix, matrix_to_quaternion, quaternion_product
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.scene_rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -69,6 +69,53 @@ class FloatingFrame:
 
     SIZE = POSE_SIZE
     """Number of unknowns."""
+
+
+@dataclass(frozen=True)
+class FramePose:
+    """World pose of a floating frame from its unknowns (p − p₀)/ℓ and Q − Q₀, and how it moves with them.
+
+    The quaternion is not held to norm 1, only its direction counts: an equation of the balance makes its norm one.
+
+    Attributes:
+        frame: the frame.
+        deviation: its unknowns, 7×1.
+    """
+
+    frame: FloatingFrame
+    deviation: Matrix
+
+    @cached_property
+    def position(self) -> Matrix:
+        """Position p, 3×1, m."""
+        start = ca.DM(self.frame.start.position)
+        return start + self.frame.length * self.deviation[:3]
+
+    @cached_property
+    def quaternion(self) -> Matrix:
+        """Quaternion Q, 4×1, not zero and of any norm."""
+        start = ca.DM(self.frame.start.quaternion)
+        return start + self.deviation[3:]
+
+    @cached_property
+    def pose(self) -> Pose:
+        """The pose, with the quaternion of norm 1."""
+        norm = ca.sqrt(ca.sumsqr(self.quaternion))
+        return Pose(self.position, self.quaternion / norm)
+
+    @property
+    def motion(self) -> Matrix:
+        """B: motion [δθ; δr] of the frame with its unknowns, 6×7, world axes."""
+        turn = turn_matrix(self.quaternion)
+        rotation_rows = ca.horzcat(ca.DM(3, 3), turn)
+        position_rows = ca.horzcat(self.frame.length * ca.DM.eye(3), ca.DM(3, 4))
+        return ca.vertcat(rotation_rows, position_rows)
+
+
+def turn_matrix(quaternion: Matrix) -> Matrix:
+    """Matrix T from δQ to δθ in world axes, 3×4: δθ = 2 vec(δQ ⊗ Q*) / Q·Q."""
+    w, x, y, z = ca.vertsplit(2 * quaternion / ca.sumsqr(quaternion))
+    return ca.blockcat([[-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]])
 
 
 class _Seat(NamedTuple):
@@ -175,23 +222,16 @@ class UnloadedScene:
     def section(self, rod: str, at: float) -> NumericPose:
         """World pose of a section of a rod, kept: bodies and joints ask for the same ones."""
         if (rod, at) not in self._sections:
-            self._sections[rod, at] = self._new_section(rod, at)
-        return self._sections[rod, at]
-
-    def _new_section(self, rod: str, at: float) -> NumericPose:
-        node = self.rods[rod].grid.node_at(at)
-        rod_shape = self._shape(rod)
-        in_base = numeric(Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node]))
-        unit_quaternion = in_base.quaternion / np.linalg.norm(in_base.quaternion)
-        return self.base(rod).then(NumericPose(in_base.position, unit_quaternion))
-
-    def _shape(self, rod: str) -> Shape:
-        """Shape of an unloaded rod in its base, kept: several sections of a rod are asked for."""
-        if rod not in self._shapes:
             discrete_rod = self.rods[rod]
-            unknowns = ca.DM.zeros(discrete_rod.size)
-            self._shapes[rod] = shape(discrete_rod, unknowns, discrete_rod.properties.ratio)
-        return self._shapes[rod]
+            if rod not in self._shapes:
+                unknowns = ca.DM.zeros(discrete_rod.size)
+                self._shapes[rod] = shape(discrete_rod, unknowns, discrete_rod.properties.ratio)
+            node = discrete_rod.grid.node_at(at)
+            rod_shape = self._shapes[rod]
+            in_base = numeric(Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node]))
+            unit_quaternion = in_base.quaternion / np.linalg.norm(in_base.quaternion)
+            self._sections[rod, at] = self.base(rod).then(NumericPose(in_base.position, unit_quaternion))
+        return self._sections[rod, at]
 
     def plane(self, rod: str) -> NumericPose | None:
         """Base of a rod that never leaves its x–z plane; None where the rod or what carries it may."""
@@ -200,8 +240,14 @@ class UnloadedScene:
         if record.base.free or not stays_in_plane(self.rods[rod].properties):
             return None
         own = self.base(rod)
-        if rod in self.scene.jointed_bases and not self._base_keeps_plane(rod):
-            return None
+        if rod in self.scene.jointed_bases:
+            # The joint, in the world or on another rod, has to keep its rod in the x–z plane of the base.
+            at_base = self.base_joint(rod)
+            if at_base is None:
+                return None
+            joint = self.scene.joints[at_base[0]]
+            if not confines(JOINT_KINDS[joint.kind].held(joint, at_base[1])):
+                return None
         carrier = record.base.rod
         if carrier is None:
             return own
@@ -435,7 +481,10 @@ class UnloadedScene:
                 in_body = NumericPose(np.zeros(3), place.quaternion)
                 wanted = section.then(in_body.inverse)
                 correlation = correlation + length**2 * wanted.rotation
-        rotation = _nearest_rotation(correlation)
+        left, _, right = np.linalg.svd(correlation)
+        # The sign makes it a rotation where the nearest orthogonal matrix is a reflection.
+        sign = np.sign(np.linalg.det(left @ right))
+        rotation = left @ np.diag([1.0, 1.0, sign]) @ right
         position = mean_point - rotation @ mean_arm
         return NumericPose(position, matrix_to_quaternion(rotation))
 
@@ -479,11 +528,3 @@ def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted
 def _axial(matrix: FloatArray) -> FloatArray:
     """The vector of which an antisymmetric matrix is the cross product, shape (3,)."""
     return np.array([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
-
-
-def _nearest_rotation(matrix: FloatArray) -> FloatArray:
-    """The rotation R with the largest trace of Rᵀ M."""
-    left, _, right = np.linalg.svd(matrix)
-    # The sign makes it a rotation where the nearest orthogonal matrix is a reflection.
-    sign = np.sign(np.linalg.det(left @ right))
-    return np.asarray(left @ np.diag([1.0, 1.0, sign]) @ right)

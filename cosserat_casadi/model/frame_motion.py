@@ -15,8 +15,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.floating_frames import FloatingFrame
-from cosserat_casadi.model.frame_pose import turn_matrix
+from cosserat_casadi.model.floating_frames import FloatingFrame, turn_matrix
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
 from cosserat_casadi.rod.rod_motion import FrameMotion
 

@@ -14,7 +14,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation
-from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, WrenchAt
+from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad
 
 LoadFactor = Matrix | None
 """λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
@@ -51,17 +51,8 @@ def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
     if isinstance(load, PoseWrench):
         growth = 1 if load.growth is None else load.growth()
         return replace(load, scale=load_factor**growth * load.scale)
-    return _scaled_wrench(load, load_factor)
-
-
-def _scaled_wrench(load: WrenchAt | LineWrench, load_factor: Matrix) -> WrenchAt | LineWrench:
-    force = load.force
-    moment = load.moment
     # An absent force or moment stays absent, so that it adds no instruction.
-    if force is not None:
-        force = load_factor * force
-    if moment is not None:
-        moment = load_factor * moment
+    force, moment = (None if part is None else load_factor * part for part in (load.force, load.moment))
     return replace(load, force=force, moment=moment)
 
 

@@ -109,11 +109,7 @@ class RodLoads:
         at = member.abscissa(load)
         if at is not None:
             return [WrenchAt(at, force, moment, kernel.follower)]
-        # Profiles of force and of moment may differ: a line wrench for each.
-        force_line = self._line_wrench(kernel, site, force, None)
-        moment_line = self._line_wrench(kernel, site, None, moment)
-        lines: list[RodLoad] = [line for line in (force_line, moment_line) if line is not None]
-        return [*lines, *self._on_fixed_masses(kernel, force)]
+        return [*self._line_wrenches(kernel, site, force, moment), *self._on_fixed_masses(kernel, force)]
 
     def seen_in_motion(self, load: scenes.LoadRecord, motion: SeenMotion) -> PoseWrench | None:
         """A load that a body sees in motion; None where it does not act on the rod, or does not feel motion."""
@@ -160,26 +156,24 @@ class RodLoads:
         for fixed in self.discrete.rods[self.rod].properties.fixed_masses:
             yield WrenchAt(fixed.at, fixed.mass * force, None, kernel.follower)
 
-    def _line_wrench(
+    def _line_wrenches(
         self, kernel: TracedLoad, site: Site, force: Matrix | None, moment: Matrix | None
-    ) -> LineWrench | None:
-        """Coefficients of a force or of a moment per length, times their profiles; None where there is nothing."""
-        coefficients = force
-        if coefficients is None:
-            coefficients = moment
-        if coefficients is None:
-            return None
+    ) -> Iterator[LineWrench]:
+        """Coefficients of a force and of a moment per length, times their profiles; none where there is nothing."""
         grid = self.discrete.rods[self.rod].grid
-        # Zero outside the span.
         nodes = grid.nodes_in(*kernel.member.span(kernel.load))
-        within = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
-        profiles = among(within, nodes, grid.size)
-        if is_zero(profiles):
-            return None
-        scaled = per_reference_length(coefficients, self.ratio)
-        if force is None:
-            return LineWrench(None, scaled, profiles, kernel.follower)
-        return LineWrench(scaled, None, profiles, kernel.follower)
+        # Profiles of force and of moment may differ: a line wrench for each.
+        for is_force, coefficients in ((True, force), (False, moment)):
+            if coefficients is None:
+                continue
+            within = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
+            # Zero outside the span.
+            profiles = among(within, nodes, grid.size)
+            if is_zero(profiles):
+                continue
+            scaled = per_reference_length(coefficients, self.ratio)
+            of_force, of_moment = (scaled, None) if is_force else (None, scaled)
+            yield LineWrench(of_force, of_moment, profiles, kernel.follower)
 
     def _pose_wrench(self, kernel: TracedLoad, site: Site, motion: RodMotion | SeenMotion | None) -> PoseWrench:
         """A load that depends on the pose of its sections or on their motion: its kernel, evaluated at each of them."""
@@ -310,16 +304,14 @@ def check_loads(discrete: DiscreteScene) -> None:
     Raises:
         SceneError: with the faults of all loads.
     """
-    refuse(_problems(discrete))
-
-
-def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
+    problems: list[Problem] = []
     for load in discrete.loads:
         member = EFFECTS[load.kind]
         for rod, discrete_rod in discrete.rods.items():
             if member.acts_on(load, rod):
                 site = Site(discrete_rod.properties, LOOKED_AT, partial(_unloaded_poses, discrete, rod))
-                yield from member.faults(load, site)
+                problems += member.faults(load, site)
+    refuse(problems)
 
 
 def _unloaded_poses(discrete: DiscreteScene, rod: str) -> UnloadedPoses:

@@ -190,13 +190,13 @@ def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
     """
     ends = ends_by_column(ranges, layout)
     cases = np.tile(layout.default, (count, 1))
-    shares = _additive_recurrence(count, len(ends))
+    shares = additive_recurrence(count, len(ends))
     for (column, (low, high)), share in zip(ends.items(), shares.T, strict=True):
         cases[:, layout.columns[column]] = low + share * (high - low)
     return cases
 
 
-def _additive_recurrence(count: int, dimension: int) -> FloatArray:
+def additive_recurrence(count: int, dimension: int) -> FloatArray:
     """Points in the unit box, shape (count, dimension), the corner of all ones first."""
     # The generalised golden ratio is the fixed point of this iteration.
     root = 2.0

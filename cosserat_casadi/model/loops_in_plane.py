@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import FLAT, confines, keeps_plane, stays_in_plane
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import HeldDirections
@@ -115,15 +114,12 @@ def _links_of_rods(unloaded: UnloadedScene) -> Iterator[_Link]:
         section = unloaded.section(joint.rod, joint.at)
         # The section turns in its plane; what matters is its normal.
         in_body = _start(unloaded, joint.body).then(place_of(joint))
+        if not held.rotations.size:
+            # The joint leaves the axes free: they are those of the section.
+            in_body = NumericPose(in_body.position, section.quaternion)
         # No body has a name with a blank.
         rod = f"rod {joint.rod}" if starts_on_body else None
-        yield _Link(number, (rod, joint.body), _turned_free(in_body, section, joint), section, held)
-
-
-def _turned_free(in_body: NumericPose, section: NumericPose, joint: scenes.Joint) -> NumericPose:
-    """The place of a rod's joint in its body, with the axes of the section where the joint leaves these free."""
-    free = not JOINT_KINDS[joint.kind].directions(joint).rotations.size
-    return NumericPose(in_body.position, section.quaternion) if free else in_body
+        yield _Link(number, (rod, joint.body), in_body, section, held)
 
 
 def _start(unloaded: UnloadedScene, body: str) -> NumericPose:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Generic, TypeVar, final
+from typing import ClassVar, Generic, TypeVar, final
 
 import casadi as ca
 import numpy as np
@@ -61,7 +61,10 @@ class LawOfRod:
 
         def data(X: Numbers) -> Numbers:
             count = X.shape[0]
-            constant = [_everywhere(number, count) for number in numbers]
+            constant = [
+                ca.repmat(number, count, 1) if is_symbolic(number) else np.full(count, float(number))
+                for number in numbers
+            ]
             return side_by_side([*constant, *(field(X) for field in fields)])
 
         return data
@@ -80,13 +83,6 @@ class LawOfRod:
         section = self.rod.section
         assert section is not None, "a material stands beside a section"
         return lambda X: sizes_along(section, X)[key]
-
-
-def _everywhere(number: Any, count: int) -> Numbers:
-    """A number, or an expression, at every abscissa."""
-    if is_symbolic(number):
-        return ca.repmat(number, count, 1)
-    return np.full(count, float(number))
 
 
 class Law(Kind, ABC, Generic[RecordType]):
@@ -248,19 +244,16 @@ class SuperelasticLaw(Law[records.Superelastic]):
             # Corners lie off zero: the root is not evaluated near it.
             first_rounded = ROUNDED * ca.fmin(begin, end - begin)
             second_rounded = ROUNDED * (end - begin)
-            strain = _fibre_strain(change, bent, radius, begin - first_rounded)
+            # Strain of the outermost fibre; never below the first corner, so that its root has derivatives.
+            squared = _sum([(radius * change[component]) ** 2 for component in bent])
+            least = (begin - first_rounded) ** 2
+            strain = ca.sqrt(ca.if_else(squared > least, squared, least))
             first = _corner_energy(strain - begin, first_rounded)
             second = _corner_energy(strain - end, second_rounded)
             per_strain = stiffness / radius**2
             return per_strain * ((plateau - 1) * first + (beyond - plateau) * second)
 
         return EnergyBeyondHooke(density, data)
-
-
-def _fibre_strain(change: Matrix, bent: Sequence[int], radius: Matrix, least: Matrix) -> Matrix:
-    """Strain of the outermost fibre of a round section; never below ``least``, so that its root has derivatives."""
-    squared = _sum([(radius * change[component]) ** 2 for component in bent])
-    return ca.sqrt(ca.if_else(squared > least**2, squared, least**2))
 
 
 def _corner_energy(beyond: Matrix, rounded: Matrix) -> Matrix:

@@ -12,7 +12,7 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_depth import contact_depths
-from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import (
     PARAMETERS,
@@ -215,10 +215,12 @@ class ModelFunctions:
         function gives them. See docs/theory.md, section 10.
         """
         richer = written.discrete.richer
-        known = written["x"] + written["correction"]
-        system = _enriched(written, richer, known, written["missing"])
-        residual, _ = richer.split(SceneEquations(system).residual)
-        return [ca.densify(ca.vertcat(*_elastic_steps(richer, system), residual, watched(system).column))]
+        corrected = richer.joined(written["x"] + written["correction"], written["missing"])
+        system = System(richer.discrete, Arguments(corrected, written["inputs"]))
+        residual, lacking = richer.split(SceneEquations(system).residual)
+        # By which elasticity alone would take up the lacking balance.
+        steps = richer.split(richer.elastic_step(lacking))
+        return [ca.densify(ca.vertcat(*steps, residual, watched(system).column))]
 
     @scene_function(Output("poses"), kernel="watched", judges_answers=True)
     def watched(self, written: Expressions) -> list[Matrix]:
@@ -418,17 +420,6 @@ def _nodal_poses(written: Expressions) -> tuple[Matrix, Matrix]:
     positions = ca.repmat(base.position, 1, count) + quaternion_to_matrix(base.quaternion) @ shape.position
     quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
     return positions, quaternion_product(quaternions, ca.densify(shape.quaternion))
-
-
-def _enriched(written: Expressions, richer: Richer, known: Matrix, missing: Matrix) -> System:
-    """The equations with modes and intervals added, at these unknowns and missing coordinates."""
-    return System(richer.discrete, Arguments(richer.joined(known, missing), written["inputs"]))
-
-
-def _elastic_steps(richer: Richer, system: System) -> tuple[Matrix, Matrix]:
-    """Steps of unknowns and missing coordinates by which elasticity alone would take up the lacking balance."""
-    _, lacking = richer.split(SceneEquations(system).residual)
-    return richer.split(richer.elastic_step(lacking))
 
 
 def resolution_index(written: Expressions) -> Matrix:

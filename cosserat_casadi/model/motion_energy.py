@@ -30,7 +30,7 @@ from cosserat_casadi.rod.inertia import RodInertia, masses_along
 from cosserat_casadi.rod.pose_load import LoadedSections
 from cosserat_casadi.rod.rod_motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, Wrench
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,8 @@ class MotionEnergy:
     @cached_property
     def load_is_dead(self) -> FloatArray:
         """One for every load whose energy is told, else zero, shape (loads,): dead forces and smooth contact."""
-        flags = [_is_contact(load) or is_dead_force(self.system.discrete, load) for load in self._loads]
+        discrete = self.system.discrete
+        flags = [isinstance(load, ContactLayer) or is_dead_force(discrete, load) for load in self._loads]
         return np.asarray(flags, dtype=float)
 
     @cached_property
@@ -73,7 +74,7 @@ class MotionEnergy:
         energies = []
         for load, dead in zip(self._loads, self.load_is_dead, strict=True):
             energy = ca.DM(1, 1)
-            if _is_contact(load):
+            if isinstance(load, ContactLayer):
                 energy = self._contact_energy(load)
             elif dead:
                 energy = self._energy_of(load)
@@ -199,12 +200,10 @@ class MotionEnergy:
         of_load = self.system.resting_loads_of if resting else self.system.loads_of
         for rod in self.system.discrete.rods:
             for wrench in of_load(load, rod):
-                yield rod, self._frozen(rod, wrench)
-
-    def _frozen(self, rod: str, load: RodLoad) -> Wrench:
-        if isinstance(load, PoseWrench):
-            return LoadedSections(load, self.system.shapes[rod]).frozen
-        return load
+                if isinstance(wrench, PoseWrench):
+                    yield rod, LoadedSections(wrench, self.system.shapes[rod]).frozen
+                else:
+                    yield rod, wrench
 
     def _on_bodies(self, load: scenes.LoadRecord) -> Iterator[tuple[Pose, FrameMotion, BodyLoad]]:
         """The bodies that a load acts on, where they are and how they move, world axes."""
@@ -310,11 +309,6 @@ class MotionEnergy:
             inertia = RodInertia(self.system.motions[rod], masses)
             powers.append(inertia.kinetic_energy / inertia.ratio * rates.ratio_rate)
         return _sum(powers)
-
-
-def _is_contact(load: scenes.LoadRecord) -> bool:
-    """Whether a load is the push of an obstacle with a width."""
-    return isinstance(load, ContactLayer)
 
 
 def _is_damped(load: scenes.LoadRecord) -> bool:

@@ -46,14 +46,19 @@ def prices_of_effects(scene: scenes.Scene, progress: StageProgress | None = None
         progress: told which effect is left out, how many were, and of how many.
     """
     scene = scene.baked()
-    without = {cause.name: without_load for cause in scene.causes}
-    without |= {obstacle.name: without_obstacle for obstacle in scene.obstacles if obstacle.is_smooth}
-    without |= {contact.label: without_rod_contact for contact in scene.rod_contacts}
+    without = {cause.name: without_load(scene, cause.name) for cause in scene.causes}
+    for obstacle in scene.obstacles:
+        if obstacle.is_smooth:
+            others = tuple(other for other in scene.obstacles if other is not obstacle)
+            without[obstacle.name] = scene.model_copy(update={"obstacles": others})
+    for contact in scene.rod_contacts:
+        left = tuple(other for other in scene.rod_contacts if other is not contact)
+        without[contact.label] = scene.model_copy(update={"rod_contacts": left})
     residuals = [build(scene).residual]
     for done, (name, bare) in enumerate(without.items()):
         if progress is not None:
             progress(f"Counting the operations of {name}", done, len(without))
-        residuals.append(build(bare(scene, name)).residual)
+        residuals.append(build(bare).residual)
     whole, *others = counts(residuals)
     return {name: whole - other for name, other in zip(without, others, strict=True)}
 
@@ -109,15 +114,3 @@ def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
             "motions": tuple(motion for motion in scene.motions if is_other(motion.input)),
         }
     )
-
-
-def without_obstacle(scene: scenes.Scene, name: str) -> scenes.Scene:
-    """The scene without one of its obstacles."""
-    obstacles = tuple(obstacle for obstacle in scene.obstacles if obstacle.name != name)
-    return scene.model_copy(update={"obstacles": obstacles})
-
-
-def without_rod_contact(scene: scenes.Scene, name: str) -> scenes.Scene:
-    """The scene without one of its contacts of rods."""
-    contacts = tuple(contact for contact in scene.rod_contacts if contact.label != name)
-    return scene.model_copy(update={"rod_contacts": contacts})

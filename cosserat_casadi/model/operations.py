@@ -52,7 +52,9 @@ class Count:
     def __str__(self) -> str:
         if self.exact:
             return f"{self.number:,}"
-        return f"at most {_rounded_up(self.number):,}"
+        # The least number of two digits and zeros that is not below it.
+        unit = 10 ** max(len(str(abs(self.number))) - 2, 0)
+        return f"at most {-(-self.number // unit) * unit:,}"
 
     def __sub__(self, other: Count) -> Count:
         return Count(self.number - other.number, self.exact and other.exact)
@@ -66,12 +68,20 @@ def operations(function: ca.Function) -> int:
     return _scalar_operations(in_scalars(function, "scalar"))
 
 
-def most_operations(function: ca.Function) -> int:
+def most_operations(function: ca.Function, known: dict[int, int] | None = None) -> int:
     """A bound of the scalar operations of a function, from its instructions on matrices: nothing is expanded.
 
     Terms that only expansion shows to be common, zero or one are counted: the bound is 1.2 to 5 times the operations.
+
+    Args:
+        function: the function.
+        known: bounds of functions that it may call, by their hash; its own and theirs are added.
     """
-    return _most_operations(function, {})
+    known = {} if known is None else known
+    key = hash(function)
+    if key not in known:
+        known[key] = _bound(function, known)
+    return known[key]
 
 
 def counts(functions: Sequence[ca.Function]) -> list[Count]:
@@ -88,25 +98,17 @@ def count(function: ca.Function) -> Count:
     return of_function
 
 
-def _most_operations(function: ca.Function, known: dict[int, int]) -> int:
-    """The bound of a function; those of the functions that it calls are kept by their hash."""
-    key = hash(function)
-    if key not in known:
-        known[key] = _bound(function, known)
-    return known[key]
-
-
 def _bound(function: ca.Function, known: dict[int, int]) -> int:
     kind = function.class_name()
     if kind == "SXFunction":
         return _scalar_operations(function)
     if kind == "Map":
         parts = function.info()
-        return int(parts["n"]) * _most_operations(parts["f"], known)
+        return int(parts["n"]) * most_operations(parts["f"], known)
     if kind == "Switch":
         # One of its functions is called, whose operations are bounded by those of the longest.
         parts = function.info()
-        return max(_most_operations(part, known) for part in (*parts["f"], parts["f_def"]))
+        return max(most_operations(part, known) for part in (*parts["f"], parts["f_def"]))
     total = 0
     for k in range(function.n_instructions()):
         instruction = function.instruction_id(k)
@@ -118,7 +120,7 @@ def _bound(function: ca.Function, known: dict[int, int]) -> int:
 def _operations_of_node(instruction: int, node: ca.MX, known: dict[int, int]) -> int:
     """Scalar operations of one instruction on matrices."""
     if instruction == ca.OP_CALL:
-        return _most_operations(node.which_function(), known)
+        return most_operations(node.which_function(), known)
     if instruction == ca.OP_MTIMES:
         # A sum, to which the product of the second and third matrix is added.
         columns = _entries_of_columns(node.dep(1))
@@ -128,13 +130,8 @@ def _operations_of_node(instruction: int, node: ca.MX, known: dict[int, int]) ->
     powers = (ca.OP_POW, ca.OP_CONSTPOW)
     if instruction not in powers and (node.is_unary() or node.is_binary()):
         return int(node.nnz())
-    return _expanded_alone(node)
-
-
-def _expanded_alone(node: ca.MX) -> int:
-    """Operations of an instruction of some other kind, such as a scalar product, expanded with symbols before it."""
-    terms = [node.dep(i) for i in range(node.n_dep())]
-    before = [term for term in terms if not term.is_constant()]
+    # Of some other kind, such as a scalar product: expanded with symbols before it.
+    before = [node.dep(i) for i in range(node.n_dep()) if not node.dep(i).is_constant()]
     symbols = [ca.MX.sym(f"before{i}", term.sparsity()) for i, term in enumerate(before)]
     (alone,) = ca.graph_substitute([node], before, symbols)
     return operations(ca.Function("node", symbols, [alone]))
@@ -158,9 +155,3 @@ def _scalar_operations(scalar: ca.Function) -> int:
         elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
             total += 1
     return total
-
-
-def _rounded_up(number: int) -> int:
-    """The least number of two digits and zeros that is not below a number."""
-    unit: int = 10 ** max(len(str(abs(number))) - 2, 0)
-    return -(-number // unit) * unit

@@ -23,10 +23,9 @@ from cosserat_casadi.loads.rod_contact import PANEL, STILL, SectionPairs, Sectio
 from cosserat_casadi.maths.numbers import as_matrix, known, repeated
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.contact_pairs import ContactPair
+from cosserat_casadi.model.contact_pairs import ContactPair, PairHistory
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.inputs import HISTORY
-from cosserat_casadi.model.pair_memory import PairHistory
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.wrenches import LineWrench
 

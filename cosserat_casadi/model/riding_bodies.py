@@ -52,7 +52,7 @@ class RidingBody:
     @cached_property
     def joint(self) -> scenes.Joint:
         """The joint that carries it."""
-        return self.discrete.scene.joints[self.discrete.riding[self.body.name]]
+        return self.discrete.scene.joints[self.discrete.unloaded.riding[self.body.name]]
 
     @property
     def rod(self) -> str:

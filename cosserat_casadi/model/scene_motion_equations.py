@@ -6,9 +6,9 @@ of the rods. So the derivative with x at fixed inertia is the Jacobian of static
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import casadi as ca
 
@@ -23,22 +23,6 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.motion_load import motion_matrices
 from cosserat_casadi.rod.motion_matrices import Jet, MotionMatrices
 from cosserat_casadi.rod.motion_tangent import MotionTangent
-
-
-class _Resisted(NamedTuple):
-    """A joint with a damper or friction.
-
-    Attributes:
-        placed: the joint.
-        entries: of its coordinate.
-        rows: what the resistance adds to the equation of the coordinate, without unit, 1×1.
-        damping: derivative of that with the rate of the entry, s, 1×1.
-    """
-
-    placed: PlacedConstraint
-    entries: slice
-    rows: Matrix
-    damping: Matrix
 
 
 @dataclass(frozen=True)
@@ -73,63 +57,60 @@ class SceneMotionEquations:
         for name, frame_motion in self.system.frame_motions.items():
             number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
             added[number] = frame_motion.norm_rows
-        for resisted in self._resisted_coordinates:
-            number = list(unknowns.slices).index((BlockKind.COORDINATE, resisted.placed.where))
-            added[number] = resisted.rows
+        for placed, resistance, _ in self._resisted_coordinates:
+            number = list(unknowns.slices).index((BlockKind.COORDINATE, placed.where))
+            added[number] = resistance
         return self._at_rest.residual + ca.vertcat(*added)
 
     @cached_property
     def matrices(self) -> MotionMatrices:
         """∂F/∂x, ∂F/∂v and ∂F/∂a, size×size each, sparse by blocks."""
-        stiffness = self._blocks()
-        damping = self._blocks()
-        mass = self._blocks()
-        for rod in self._rods_with_rates:
-            for rows, columns, part in self._rod_blocks(rod):
-                stiffness.add(rows, columns, part.stiffness)
-                damping.add(rows, columns, part.damping)
-                mass.add(rows, columns, part.mass)
-        for name, frame_motion in self.system.frame_motions.items():
-            frame = self.system.discrete.frames[name]
-            entries = self.system.discrete.deviation(name)
-            inertia = self.system.body_inertias.get(name.name)
+        system, unknowns = self.system, self.system.discrete.unknowns
+        stiffness, damping, mass = (BlockMatrix(unknowns.ends) for _ in range(3))
+
+        def add(rows: slice, columns: slice, orders: Iterable[Matrix]) -> None:
+            for matrix, block in zip((stiffness, damping, mass), orders, strict=True):
+                matrix.add(rows, columns, block)
+
+        for rod in system.motions:
+            # Equations depend on the rates of the fields of a rod by its mass, or by a load.
+            loads = system.rods[rod].statics.pose_loads
+            if rod in system.inertias or any(load.load.kernel.rates for load in loads):
+                for rows, columns, orders in self._rod_blocks(rod):
+                    add(rows, columns, orders)
+        for name, frame_motion in system.frame_motions.items():
+            frame = system.discrete.frames[name]
+            entries = system.discrete.deviation(name)
+            inertia = system.body_inertias.get(name.name)
             if frame.body is not None and inertia is not None:
-                part = inertia.matrices.along(frame_motion.motion_jet())
-                stiffness.add(entries, entries, part.stiffness / frame.unit)
-                damping.add(entries, entries, part.damping / frame.unit)
-                mass.add(entries, entries, part.mass / frame.unit)
-            stiffness.add(entries, entries, frame_motion.norm_matrices.stiffness)
-            damping.add(entries, entries, frame_motion.norm_matrices.damping)
-            mass.add(entries, entries, frame_motion.norm_matrices.mass)
-        for rod, viscosity in self.system.viscosities.items():
-            entries = self.system.discrete.unknowns.strain(rod)
+                of_body = inertia.matrices.along(frame_motion.motion_jet())
+                add(entries, entries, [matrix / frame.unit for matrix in of_body.orders])
+            add(entries, entries, frame_motion.norm_matrices.orders)
+        for rod, viscosity in system.viscosities.items():
+            entries = unknowns.strain(rod)
             stiffness.add(entries, entries, viscosity.stiffness)
             damping.add(entries, entries, viscosity.damping)
-        for rod, relaxation in self.system.relaxations.items():
-            strains = self.system.discrete.unknowns.strain(rod)
-            flows = self.system.discrete.unknowns.slice_of(BlockKind.FLOW, rod)
+        for rod, relaxation in system.relaxations.items():
+            strains = unknowns.strain(rod)
+            flows = unknowns.slice_of(BlockKind.FLOW, rod)
             damping.add(strains, flows, relaxation.matrices.force_by_rate)
             stiffness.add(flows, strains, relaxation.matrices.by_strain)
             damping.add(flows, strains, relaxation.matrices.by_strain_rate)
             damping.add(flows, flows, relaxation.matrices.by_rate)
             mass.add(flows, flows, relaxation.matrices.by_acceleration)
-        for resisted in self._resisted_coordinates:
-            damping.add(resisted.entries, resisted.entries, resisted.damping)
-        by_friction = self._by_friction
+        for placed, _, by_rate in self._resisted_coordinates:
+            entries = system.discrete.coordinate(placed)
+            damping.add(entries, entries, by_rate)
+        # Friction between rods, and drag on bodies, change with x and v both.
+        by_x: Matrix = ca.DM(unknowns.size, unknowns.size)
+        by_v: Matrix = ca.DM(unknowns.size, unknowns.size)
+        if system.rubbing and is_symbolic(self._velocity):
+            by_x, by_v = by_friction(system, [system.arguments.x, self._velocity])
         return MotionMatrices(
-            stiffness=self._at_rest.jacobian + stiffness.matrix() + by_friction[0],
-            damping=damping.matrix() + by_friction[1],
+            stiffness=self._at_rest.jacobian + stiffness.matrix() + by_x,
+            damping=damping.matrix() + by_v,
             mass=mass.matrix(),
         )
-
-    @property
-    def _by_friction(self) -> tuple[Matrix, Matrix]:
-        """Derivatives with x and v by the change of friction between rods, and of drag on bodies, with both."""
-        size = self.system.discrete.size
-        if not self.system.rubbing or not is_symbolic(self._velocity):
-            return ca.DM(size, size), ca.DM(size, size)
-        by_x, by_v = by_friction(self.system, [self.system.arguments.x, self._velocity])
-        return by_x, by_v
 
     @property
     def _velocity(self) -> Matrix:
@@ -138,37 +119,20 @@ class SceneMotionEquations:
         return motion.v
 
     @property
-    def _resisted_coordinates(self) -> list[_Resisted]:
-        """Joints with a damper or friction."""
+    def _resisted_coordinates(self) -> Iterator[tuple[PlacedConstraint, Matrix, Matrix]]:
+        """Joints with a damper or friction: what that adds to their equation, and its derivative with the rate, s."""
         discrete = self.system.discrete
-        found = []
         for placed in discrete.free_coordinates:
             effort = self.system.joint_effort(placed)
             if not effort.resists:
                 continue
-            entries = discrete.coordinate(placed)
             scale = placed.coordinate_scale
-            rate = scale * self._velocity[entries]
+            rate = scale * self._velocity[discrete.coordinate(placed)]
             rows = scale / placed.constraint.unit * effort.resistance(rate)
-            damping = scale**2 / placed.constraint.unit * effort.resistance_slope(rate)
-            found.append(_Resisted(placed, entries, as_matrix(rows), as_matrix(damping)))
-        return found
+            by_rate = scale**2 / placed.constraint.unit * effort.resistance_slope(rate)
+            yield placed, as_matrix(rows), as_matrix(by_rate)
 
-    @property
-    def _rods_with_rates(self) -> list[str]:
-        """Rods whose equations depend on the rates of their fields: by their mass, or by a load."""
-        rods = []
-        for name in self.system.motions:
-            loads = self.system.rods[name].statics.pose_loads
-            if name in self.system.inertias or any(load.load.kernel.rates for load in loads):
-                rods.append(name)
-        return rods
-
-    def _blocks(self) -> BlockMatrix:
-        ends = [entries.stop for entries in self.system.discrete.unknowns.slices.values()]
-        return BlockMatrix(ends)
-
-    def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
+    def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, Sequence[Matrix]]]:
         """Blocks of a rod's inertia and of loads of its motion in the rows of its strains, and of a floating base."""
         discrete = self.system.discrete
         base = discrete.unloaded.floating_base(rod)
@@ -178,7 +142,7 @@ class SceneMotionEquations:
         matrices = motion_matrices(tangent, self.system.rods[rod].statics.pose_loads)
         strains = discrete.unknowns.strain(rod)
         if base is None:
-            return [(strains, strains, matrices)]
+            return [(strains, strains, matrices.orders)]
         whole = matrices.along(self._to_unknowns(rod, base))
         deviation = discrete.deviation(base)
         count = discrete.rods[rod].size
@@ -186,17 +150,11 @@ class SceneMotionEquations:
         places = {"strain": strains, "base": deviation}
         # Rows of a frame have a unit of their own.
         factors = {"strain": 1.0, "base": unit / discrete.frames[base].unit}
-        blocks = []
-        for row, rows in places.items():
-            for column, columns in places.items():
-                factor = factors[row]
-                part = MotionMatrices(
-                    stiffness=factor * whole.stiffness[ranges[row], ranges[column]],
-                    damping=factor * whole.damping[ranges[row], ranges[column]],
-                    mass=factor * whole.mass[ranges[row], ranges[column]],
-                )
-                blocks.append((rows, columns, part))
-        return blocks
+        return [
+            (rows, columns, [factors[row] * matrix[ranges[row], ranges[column]] for matrix in whole.orders])
+            for row, rows in places.items()
+            for column, columns in places.items()
+        ]
 
     def _to_unknowns(self, rod: str, base: FrameName) -> Jet:
         """From the unknowns of a rod and of its base to strains and the motion of the base in its axes, with rates."""

@@ -21,7 +21,7 @@ from cosserat_casadi.maths.numbers import (
     side_by_side,
 )
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.materials import LAWS, LawOfRod, coupled_stiffness
 from cosserat_casadi.model.sections import SHAPES, along, linear, sizes_along, sizes_of
 from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field, FixedMass, MaxwellBranch, RodProperties
@@ -47,6 +47,9 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
     """
     hooke = _hooke(rod)
+    ratio = None
+    if nominal is not None and (is_symbolic(rod.length) or rod.length != nominal.length):
+        ratio = ca.MX(rod.length) / nominal.length
     properties = RodProperties(
         name=rod.name,
         length=rod.length if nominal is None else nominal.length,
@@ -63,7 +66,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         area=_area(rod),
         diameter=_diameter(rod),
         plane_sections=rod.rotary_inertia is None,
-        ratio=None if nominal is None else _ratio(rod.length, nominal.length),
+        ratio=ratio,
         nominal=nominal,
     )
     if nominal is None:
@@ -97,19 +100,10 @@ def _refuse_out_of_range(properties: RodProperties) -> None:
     raise SceneError(Problem(properties.name, problem, "give lengths in m, moduli in Pa, stiffnesses in N m² and N"))
 
 
-def _ratio(length: Scalar, nominal: float) -> Matrix | None:
-    """Length of a rod relative to the one that scales its equations; None where it is that one."""
-    if not is_symbolic(length) and length == nominal:
-        return None
-    return ca.MX(length) / nominal
-
-
 def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
     """World position (3,) and quaternion (4,) of the rod's base."""
-    position = np.asarray(rod.base.position, dtype=float)
-    if rod.base.tangent is not None:
-        return position, quaternion_from_tangent(rod.base.tangent)
-    return position, np.asarray(rod.base.quaternion, dtype=float)
+    position, quaternion = written_base_pose(rod)
+    return known(position), known(quaternion)
 
 
 def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:

@@ -59,7 +59,8 @@ class SectionPoses:
         """Unit quaternions world_Q_section, 4×k."""
         # Between nodes an interpolated quaternion is of unit length to the accuracy of the grid only.
         unit = self._interpolated / ca.repmat(self._lengths, 4, 1)
-        return quaternion_product(self._base_quaternions, unit)
+        base_quaternions = ca.repmat(self.system.base(self.rod).quaternion, 1, self.count)
+        return quaternion_product(ca.densify(base_quaternions), unit)
 
     @cached_property
     def by_unknowns(self) -> Matrix:
@@ -74,10 +75,6 @@ class SectionPoses:
         before = ca.DM(7 * self.count, strains.start)
         after = ca.DM(7 * self.count, discrete.size - strains.stop)
         return ca.densify(ca.horzcat(before, self._by_strains(), after))
-
-    @property
-    def _base_quaternions(self) -> Matrix:
-        return ca.densify(ca.repmat(self.system.base(self.rod).quaternion, 1, self.count))
 
     @cached_property
     def _interpolated(self) -> Matrix:

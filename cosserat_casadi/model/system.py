@@ -25,9 +25,8 @@ from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene, JointStop
 from cosserat_casadi.model.drag_terms import BodyDrag, RodDrag, drags_of
-from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.floating_frames import FrameName, FramePose
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
-from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled
 from cosserat_casadi.model.inputs import input_value
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads
@@ -133,7 +132,7 @@ class System:
     @cached_property
     def riding(self) -> dict[str, RidingBody]:
         """Bodies that ride on sections."""
-        return {name: RidingBody(self.discrete, self.discrete.bodies[name]) for name in self.discrete.riding}
+        return {name: RidingBody(self.discrete, self.discrete.bodies[name]) for name in self.discrete.unloaded.riding}
 
     @cached_property
     def frame_poses(self) -> dict[FrameName, FramePose]:
@@ -218,20 +217,16 @@ class System:
         for name, motion in self.motions.items():
             branches = len(motion.rod.properties.branches)
             if branches:
+                given = self.arguments.motion
+                assert given is not None, "asked for in motion"
+                if not self.discrete.moving:
+                    problem = "has stress that relaxes, and this model is of the scene at rest"
+                    raise SceneError(Problem(f"{name}.damping.prony", problem, "build the model with moving=True"))
+                flows = self.discrete.unknowns.slice_of(BlockKind.FLOW, name)
                 size = (motion.rod.size, branches)
-                velocity, acceleration = (ca.reshape(rate, *size) for rate in self._flow_rates(name))
+                velocity, acceleration = (ca.reshape(rate[flows], *size) for rate in (given.v, given.a))
                 relaxations[name] = Relaxation(Viscosity(motion.shape, motion.rates), velocity, acceleration)
         return relaxations
-
-    def _flow_rates(self, rod: str) -> tuple[Matrix, Matrix]:
-        """First and second rates of the flows of a rod whose stress relaxes."""
-        motion = self.arguments.motion
-        assert motion is not None, "asked for in motion"
-        if not self.discrete.moving:
-            problem = "has stress that relaxes, and this model is of the scene at rest"
-            raise SceneError(Problem(f"{rod}.damping.prony", problem, "build the model with moving=True"))
-        flows = self.discrete.unknowns.slice_of(BlockKind.FLOW, rod)
-        return motion.v[flows], motion.a[flows]
 
     @cached_property
     def frame_motions(self) -> dict[FrameName, FloatingFrameMotion]:
@@ -330,19 +325,12 @@ class System:
 
     def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that a constraint reads."""
-        base = self._held_base(placed)
-        return ConstraintPoses(self._held_section(placed), base, self._frame_of(placed), self.coordinate(placed))
-
-    def _held_section(self, placed: PlacedConstraint) -> Pose:
-        """Pose of what a constraint holds, in the base of its rod or in its body."""
         if placed.carried is None:
-            return self.section(placed.rod, placed.node)
-        place = placed.carried.pose
-        return place if isinstance(place, Pose) else place.pose
-
-    def _held_base(self, placed: PlacedConstraint) -> Pose:
-        """World pose of the base of its rod, or of its body."""
-        return self.base(placed.rod) if placed.carried is None else self.frame(placed.carried.frame)
+            held = self.section(placed.rod, placed.node)
+        else:
+            place = placed.carried.pose
+            held = place if isinstance(place, Pose) else place.pose
+        return self._poses_but_section(placed)._replace(section=held)
 
     def _frame_of(self, placed: PlacedConstraint) -> Pose:
         """World pose of the frame on the other side of a constraint; the world's own for a support."""
@@ -462,17 +450,13 @@ class System:
         velocity = motion.v[strains]
         acceleration = motion.a[strains]
         if length is None:
-            return StrainRates(velocity, acceleration, *self._fixed_ratio(rod))
+            # None of a length that is fixed, zeros of one that a parameter sets.
+            still = None if self.discrete.rods[rod].properties.ratio is None else ca.DM(1, 1)
+            return StrainRates(velocity, acceleration, still, still)
         reference = self.discrete.rods[rod].properties.length
         ratio_rate = motion.inputs_rate[length] / reference
         ratio_acceleration = motion.inputs_acceleration[length] / reference
         return StrainRates(velocity, acceleration, ratio_rate, ratio_acceleration)
-
-    def _fixed_ratio(self, rod: str) -> tuple[Ratio, Ratio]:
-        """Rates of a length that is no input: none, or zeros for one that a parameter sets."""
-        if self.discrete.rods[rod].properties.ratio is None:
-            return None, None
-        return ca.DM(1, 1), ca.DM(1, 1)
 
     def _rod_input(self, rod: str, field: str) -> Matrix | None:
         """An input of a rod's own geometry; None where the scene fixes it."""
@@ -584,7 +568,8 @@ class System:
 
         The pose of the section follows from the wrench: the balance of the rod cannot be written in it.
         """
-        return ConstraintPoses(IDENTITY.pose, self._held_base(placed), self._frame_of(placed), self.coordinate(placed))
+        base = self.base(placed.rod) if placed.carried is None else self.frame(placed.carried.frame)
+        return ConstraintPoses(IDENTITY.pose, base, self._frame_of(placed), self.coordinate(placed))
 
     @cached_property
     def _base_R_world(self) -> dict[str, Matrix]:

@@ -88,6 +88,11 @@ class Unknowns:
             start = stop
         return slices
 
+    @cached_property
+    def ends(self) -> list[int]:
+        """Last entry of each block in x, plus one."""
+        return [entries.stop for entries in self.slices.values()]
+
     def of_kind(self, *kinds: BlockKind) -> Iterator[tuple[UnknownBlock, slice]]:
         """The blocks of some kinds with their slices of x."""
         for block, entries in zip(self.blocks, self.slices.values(), strict=True):

@@ -35,6 +35,11 @@ class MotionMatrices:
     damping: Matrix
     mass: Matrix
 
+    @property
+    def orders(self) -> tuple[Matrix, Matrix, Matrix]:
+        """Stiffness, damping and mass."""
+        return self.stiffness, self.damping, self.mass
+
     def along(self, jet: Jet) -> MotionMatrices:
         """The same in other coordinates u with δz = P δu: the jet of P, n×k. Forces at fixed z̈ are left out.
 

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.model.floating_frames import turn_matrix
 from cosserat_casadi.model.frame_motion import NORM_ROWS, BodyInertia, QuaternionMotion
-from cosserat_casadi.model.frame_pose import turn_matrix
 from cosserat_casadi.rod.motion_tangent import Jet
 from cosserat_casadi.rod.rod_motion import FrameMotion
 from tests.moving_scenes import drawn_state, joint, rod, scene
