@@ -263,9 +263,14 @@ def _searched(model: TubeModel, inputs: FloatArray) -> Search:
     if model.tube_count == 1:
         # One tube does not twist.
         return [model.robot.rotations(inputs).copy()], True
-    if model.tube_count == PAIR:
-        return _of_two_tubes(model, inputs)
-    return _of_more_tubes(model, inputs)
+    if model.tube_count > PAIR:
+        return _of_more_tubes(model, inputs)
+    pair = _Pair(model, inputs)
+    readings, settled = _readings(pair)
+    found: list[FloatArray] = []
+    for before, after in itertools.pairwise(readings):
+        found += [pair.tips(angle) for angle in _roots(pair, before, after)]
+    return found, settled
 
 
 # Two tubes
@@ -305,15 +310,6 @@ class _Pair:
         together = np.array([0.0, angle])
         residual = np.ravel(self.model.residual(together, self.inputs).full())
         return np.asarray(together - residual[0])
-
-
-def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> Search:
-    pair = _Pair(model, inputs)
-    readings, settled = _readings(pair)
-    found: list[FloatArray] = []
-    for before, after in itertools.pairwise(readings):
-        found += [pair.tips(angle) for angle in _roots(pair, before, after)]
-    return found, settled
 
 
 def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:

@@ -348,7 +348,9 @@ class TubeFunctions(WithParameters, Shown):
         ends = self._changing(directions)
         plate, plate_changes = ends[-1]
         fixed = dict(enumerate([directions.of_x, *directions.of_given], start=1))
-        _, missed = with_changes(self._of_plate, directions, fixed)(plate, x, *given, plate_changes)
+        state = ca.MX.sym("plate", self._staged.width)
+        of_plate = ca.Function("of_plate", [state, x, *given], [self._missed(state)])
+        _, missed = with_changes(of_plate, directions, fixed)(plate, x, *given, plate_changes)
         # A rotation turns its drive, and changes nothing else.
         by_rotations = ca.vertcat(-ca.DM.eye(self.tube_count), ca.DM(self.size - self.tube_count, self.tube_count))
         poses: list[Matrix] = []
@@ -402,12 +404,6 @@ class TubeFunctions(WithParameters, Shown):
             ends.append((state, changes))
         return [(state[: staged.width], changes[: staged.width, :]) for state, changes in ends]
 
-    @property
-    def _of_plate(self) -> ca.Function:
-        """(state at the plate, x, inputs) ↦ residual."""
-        plate = ca.MX.sym("plate", self._staged.width)
-        return ca.Function("of_plate", [plate, *self._symbols.values()], [self._missed(plate)])
-
     def _of_tip(self, index: int) -> ca.Function:
         """(state at the plate, state at the tip of a tube, x) ↦ its pose in base axes, position and quaternion."""
         x, _, _ = self._arguments
@@ -426,7 +422,7 @@ class TubeFunctions(WithParameters, Shown):
         columns = [self._state(column) for column in reversed(ca.horzsplit(self._whole.stations))]
         poses = [self._in_base(column.pose) for column in columns]
         outputs = {
-            "distance": ca.horzcat(0, ca.cumsum(-_reversed(self._lengths), 1)),
+            "distance": ca.horzcat(0, ca.cumsum(-ca.horzcat(*reversed(ca.horzsplit(self._lengths))), 1)),
             "position": ca.horzcat(*[pose.position for pose in poses]),
             "quaternion": ca.horzcat(*[pose.quaternion for pose in poses]),
             "angles": ca.horzcat(*[column.angles for column in columns]),
@@ -612,11 +608,6 @@ class TubeFunctions(WithParameters, Shown):
         _, _, load_factor = self._arguments
         arguments = {**self._symbols, "load_factor": load_factor, **(further or {})}
         return ca.Function(name, list(arguments.values()), list(outputs.values()), list(arguments), list(outputs))
-
-
-def _reversed(row: ca.MX) -> ca.MX:
-    """A row from its end to its start."""
-    return ca.horzcat(*reversed(ca.horzsplit(row)))
 
 
 def _selected(rank: ca.MX, columns: list[Matrix]) -> Matrix:

@@ -15,7 +15,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.tubes.stages import March, Staged
 from cosserat_casadi.tubes.tube_flow import START, FlowState, twist_step, whole_stages, whole_step
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
-from cosserat_casadi.tubes.variations import TipVariations, of_angles
+from cosserat_casadi.tubes.variations import TipVariations
 
 
 class TubeModel(TubeFunctions):
@@ -28,8 +28,15 @@ class TubeModel(TubeFunctions):
 
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
         """How the angles and torques change along the robot."""
-        along, of_steps = self.variations(x, inputs)
-        return of_angles(self.tube_count, along.full(), of_steps.full())
+        along, of_steps = (part.full() for part in self.variations(x, inputs))
+        size = self.tube_count
+        # Of each station the changes of angles, then those of torques.
+        changes = along.reshape(-1, 2 * size, size)
+        return TipVariations(
+            configuration=changes[:, :size],
+            at_plate=changes[-1, size:],
+            of_steps=of_steps.reshape(size, -1, size).transpose(1, 0, 2),
+        )
 
     @cached_property
     def variations(self) -> ca.Function:

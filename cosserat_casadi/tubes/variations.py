@@ -35,23 +35,6 @@ class TipVariations:
     of_steps: FloatArray
 
 
-def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> TipVariations:
-    """Variations of a robot without loads.
-
-    Args:
-        size: number n of tubes.
-        along: angles and torques at all stations with the angles at the tips, shape (2 n k, n).
-        of_steps: angles at the end of each step with the torques at its start, shape (n, n (k − 1)).
-    """
-    # Of each station the changes of angles, then those of torques.
-    changes = along.reshape(-1, 2 * size, size)
-    return TipVariations(
-        configuration=changes[:, :size],
-        at_plate=changes[-1, size:],
-        of_steps=of_steps.reshape(size, -1, size).transpose(1, 0, 2),
-    )
-
-
 def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> TipVariations:
     """Variations of a robot under loads that have an energy.
 
