@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -20,7 +20,6 @@ from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_o
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.continuation import Path, follow
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
@@ -83,47 +82,39 @@ class Equilibria:
         self.sought: Flags = np.ones(cases, dtype=bool) if unloaded is None else ~unloaded
         self.barred: Flags = np.zeros(cases, dtype=bool)
         self._tolerance = NewtonSettings()
-        self._barriers_at = None if isinstance(model, TubeFunctions) else _barriers_of(model)
+        self._mapped: dict[str, ca.Function] = {}
+        self._barriers_at: Callable[[bytes], SmoothBarriers] | None = None
+        """Smooth bars, balls and rods at given parameters, as bytes; None in a scene that has none."""
+        if not isinstance(model, TubeFunctions) and SmoothBarriers(model).any:
+            # A step leads between two sets of parameters.
+            self._barriers_at = lru_cache(maxsize=2)(lambda p: SmoothBarriers(model.at(np.frombuffer(p))))
 
-    @cached_property
-    def _residual(self) -> ca.Function:
-        return self._mapped(self.model.residual)
-
-    @cached_property
-    def _jacobian(self) -> ca.Function:
-        return self._mapped(self.model.jacobian)
-
-    @cached_property
-    def _input_jacobian(self) -> ca.Function:
-        return self._mapped(self.model.input_jacobian)
-
-    @cached_property
-    def _parameter_jacobian(self) -> ca.Function:
-        return self._mapped(self.model.parameter_jacobian)
-
-    def _mapped(self, function: ca.Function) -> ca.Function:
-        """A function of x and inputs, and perhaps of p, for all cases that share p."""
-        return mapped(function, self.cases, has_parameters=self.model.parameters.size > 0)
+    def _over_cases(self, name: str, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ca.DM:
+        """A function of the model at all cases, side by side; it is mapped when it is first asked for."""
+        if name not in self._mapped:
+            shared = [2] if self.model.parameters.size else []
+            self._mapped[name] = getattr(self.model, name).map("mapped", "serial", self.cases, shared, [])
+        parameters = [p] if self.model.parameters.size else []
+        # A Jacobian comes with the residual behind it.
+        first: ca.DM = self._mapped[name].call([x.T, inputs.T, *parameters])[0]
+        return first
 
     def residuals(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
         """Residuals of all cases, shape (cases, size)."""
-        residuals: FloatArray = self._residual(*self._arguments(x, inputs, p)).full().T
+        residuals: FloatArray = self._over_cases("residual", x, inputs, p).full().T
         return residuals
 
     def jacobians(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
         """Jacobians of all cases, shape (cases, size, size)."""
-        return split(self._jacobian(*self._arguments(x, inputs, p))[0], self.cases)
+        return split(self._over_cases("jacobian", x, inputs, p), self.cases)
 
     def by_inputs(self, point: Point) -> FloatArray:
         """Derivatives of the residuals with the inputs, shape (cases, size, size of the inputs)."""
-        return split(self._input_jacobian(*self._arguments(point.x, point.inputs, point.p)), self.cases)
+        return split(self._over_cases("input_jacobian", point.x, point.inputs, point.p), self.cases)
 
     def by_parameters(self, point: Point) -> FloatArray:
         """Derivatives of the residuals with the parameters, shape (cases, size, size of the parameters)."""
-        return split(self._parameter_jacobian(*self._arguments(point.x, point.inputs, point.p)), self.cases)
-
-    def _arguments(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
-        return [x.T, inputs.T, p] if self.model.parameters.size else [x.T, inputs.T]
+        return split(self._over_cases("parameter_jacobian", point.x, point.inputs, point.p), self.cases)
 
     def started(
         self, inputs: FloatArray, wanted: FloatArray, first_p: FloatArray, p: FloatArray
@@ -333,24 +324,10 @@ class Equilibria:
         return barred
 
 
-def _barriers_of(model: Model) -> Callable[[bytes], SmoothBarriers] | None:
-    """Smooth bars, balls and rods at given parameters, as bytes; None in a scene that has none."""
-    if not SmoothBarriers(model).any:
-        return None
-    # A step leads between two sets of parameters.
-    return lru_cache(maxsize=2)(lambda p: SmoothBarriers(model.at(np.frombuffer(p))))
-
-
 def resolution_index(model: AnyModel, x: FloatArray, inputs: FloatArray, p: FloatArray) -> float:
     """Resolution index, which is above 1 where the nodes do not resolve the rods, or the steps the tubes."""
     parameters: list[FloatArray] = [p] if model.parameters.size else []
     return float(model.resolution_index(x, inputs, *parameters))
-
-
-def mapped(function: ca.Function, cases: int, *, has_parameters: bool) -> ca.Function:
-    """A function of x, inputs and perhaps p, and of more, for all cases, whose columns stand side by side."""
-    shared = [2] if has_parameters else []
-    return function.map("mapped", "serial", cases, shared, [])
 
 
 def split(columns: ca.DM, cases: int) -> FloatArray:

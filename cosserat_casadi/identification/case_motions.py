@@ -209,7 +209,8 @@ class Motions:
         moved = np.empty((len(run.times), *position.shape))
         numbers = np.array([run.history.number_at(float(time)) for time in run.times])
         for number, ((_, step), response) in enumerate(zip(run.history.steps, propagated, strict=True)):
-            stages = response.of(position, velocity)
+            by_position, by_velocity, direct = np.split(response, [self.model.size, 2 * self.model.size], axis=2)
+            stages = by_position @ position + by_velocity @ velocity + direct
             accelerations = np.where(differential[:, None], stages, 0.0)
             for row in np.flatnonzero(numbers == number):
                 share = (run.times[row] - step.start.time) / step.size
@@ -222,7 +223,7 @@ class Motions:
             velocity = velocity + step.size * np.tensordot(method.weights, accelerations, 1)
         return moved[:, : self.unknowns], by_inputs
 
-    def _stage_responses(self, run: Run, inputs: FloatArray, p: FloatArray) -> list[_StageResponse]:
+    def _stage_responses(self, run: Run, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
         """How the unknowns of the stages of every step follow from its start and from the numbers themselves."""
         assert run.history is not None
         steps = run.history.steps
@@ -279,25 +280,6 @@ class Motions:
         return function
 
 
-@dataclass(frozen=True)
-class _StageResponse:
-    """Derivatives of the unknowns of the stages of a step.
-
-    Attributes:
-        by_position: with x at its start, shape (s, n, n).
-        by_velocity: with v there, shape (s, n, n), s.
-        direct: with m numbers, by inputs and parameters, shape (s, n, m).
-    """
-
-    by_position: FloatArray
-    by_velocity: FloatArray
-    direct: FloatArray
-
-    def of(self, position: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Outputs at states with m numbers that the start depends on, shape (s, n, m)."""
-        return np.asarray(self.by_position @ position + self.by_velocity @ velocity + self.direct)
-
-
 def _stage_response(
     step: TimeStep,
     method: Collocation,
@@ -306,8 +288,10 @@ def _stage_response(
     damping: FloatArray,
     mass: FloatArray,
     change: FloatArray,
-) -> _StageResponse:
-    """The linear equations of the stages of one step, solved.
+) -> FloatArray:
+    """Derivatives of the unknowns of the stages of a step with x and v at its start and with m numbers.
+
+    The linear equations of the stages are solved for them.
 
     Args:
         step: the step.
@@ -316,7 +300,10 @@ def _stage_response(
         stiffness: ∂F/∂x at each stage, shape (s, n, n).
         damping: ∂F/∂v, likewise.
         mass: ∂F/∂a, likewise.
-        change: of F with the numbers themselves, shape (s, n, m).
+        change: of F with the numbers themselves, by inputs and parameters, shape (s, n, m).
+
+    Returns:
+        side by side, shape (s, n, 2 n + m).
     """
     count, size, _ = stiffness.shape
     h = step.size
@@ -330,5 +317,4 @@ def _stage_response(
     by_velocity = np.where(differential, h * method.nodes[:, None, None] * stiffness + damping, 0.0)
     right = np.concatenate([by_position, by_velocity, change], axis=2).reshape(count * size, -1)
     whole = matrix.reshape(count * size, count * size)
-    solved = -np.linalg.solve(whole, right).reshape(count, size, -1)
-    return _StageResponse(solved[:, :, :size], solved[:, :, size : 2 * size], solved[:, :, 2 * size :])
+    return -np.linalg.solve(whole, right).reshape(count, size, -1)

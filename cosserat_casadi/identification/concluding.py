@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.strain_limits import BeyondLimit
 from cosserat_casadi.identification.case_time_steps import STEP_ERROR
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout
 from cosserat_casadi.identification.identification_result import Identification, LeftOut, Row
 from cosserat_casadi.identification.measured_modes import JointModes
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.statistics import Direction, Statistics
-from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
+from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.spelling import counted, named
 from cosserat_casadi.tubes.tube_functions import AnyModel
@@ -23,95 +23,103 @@ POOR = 2.0
 """Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
 
 
-@dataclass
+def without_equilibrium(
+    model: AnyModel, layout: UnknownLayout, left_out: Sequence[LeftOut], *, stopped: bool
+) -> Identification:
+    """The end where cases have no equilibrium.
+
+    Args:
+        model: that was to be fitted.
+        layout: the unknowns.
+        left_out: these cases.
+        stopped: whether others have one, and the scene asks for all.
+    """
+    cases = named([case.where for case in left_out])
+    reason = left_out[0].reason
+    message = f"No case has an equilibrium at the start: {cases}. {reason}"
+    if stopped:
+        message = f"No equilibrium at the start in {cases}. {reason} Cases without one were to stop the search."
+    shared, own = layout.start(0)
+    n = len(shared)
+    nothing = Statistics(
+        covariance=np.full((n, n), np.nan),
+        determined=np.zeros(n, dtype=bool),
+        unseen=(),
+        settled=False,
+        noise=1.0,
+        quantile=np.nan,
+        own=own,
+    )
+    return Identification(
+        model=model,
+        layout=layout,
+        shared=np.full(n, np.nan),
+        own=own,
+        statistics=nothing,
+        converged=False,
+        outcome="no_equilibrium",
+        message=message,
+        iterations=0,
+        cost=np.nan,
+        rows=(),
+        cases=(),
+        unknowns_x=np.zeros((0, model.size)),
+        inputs=np.zeros((0, model.inputs.size)),
+        unstable=(),
+        left_out=tuple(left_out),
+        at_bounds=(),
+        warnings=(),
+        starts=(0, 0),
+    )
+
+
+@dataclass(frozen=True)
 class Ending:
-    """Collects what an identification has to say.
+    """The end of a search.
 
     Attributes:
-        model: that was fitted.
-        layout: the unknowns.
+        misfit: of the cases that took part.
+        fit: where it ended.
+        known: how well the unknowns are known there.
         left_out: cases that took no part.
-        unstable: cases whose equilibrium is unstable.
-        unresolved: cases that the nodes do not resolve.
-        passages: cases whose motion leads through an obstacle or a rod, and a sentence on it.
-        beyond: cases that are beyond a limit of a path or a law, and which limit that is.
-        joint_modes: measured modes of one frequency.
-        kinks: contacts that come or go, or change, where the search ended.
-        barred: cases of which steps were refused that led through an obstacle or a rod.
-        warnings: sentences on what looks wrong.
     """
 
-    model: AnyModel
-    layout: UnknownLayout
-    left_out: list[LeftOut] = field(default_factory=list)
-    unstable: list[str] = field(default_factory=list)
-    unresolved: list[str] = field(default_factory=list)
-    passages: list[tuple[str, str]] = field(default_factory=list)
-    beyond: list[tuple[str, BeyondLimit]] = field(default_factory=list)
-    joint_modes: list[JointModes] = field(default_factory=list)
-    kinks: list[str] = field(default_factory=list)
-    barred: list[str] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
+    misfit: Misfit
+    fit: Fit[MisfitState]
+    known: Statistics
+    left_out: Sequence[LeftOut]
 
-    def without_equilibrium(self, *, stopped: bool) -> Identification:
-        """The end where cases have no equilibrium."""
-        cases = named([case.where for case in self.left_out])
-        reason = self.left_out[0].reason
-        message = f"No case has an equilibrium at the start: {cases}. {reason}"
-        if stopped:
-            message = f"No equilibrium at the start in {cases}. {reason} Cases without one were to stop the search."
-        shared, own = self.layout.start(0)
-        n = len(shared)
-        nothing = Statistics(
-            covariance=np.full((n, n), np.nan),
-            determined=np.zeros(n, dtype=bool),
-            unseen=(),
-            settled=False,
-            noise=1.0,
-            quantile=np.nan,
-            own=own,
-        )
-        return Identification(
-            model=self.model,
-            layout=self.layout,
-            shared=np.full(n, np.nan),
-            own=own,
-            statistics=nothing,
-            converged=False,
-            outcome="no_equilibrium",
-            message=message,
-            iterations=0,
-            cost=np.nan,
-            rows=(),
-            cases=(),
-            unknowns_x=np.zeros((0, self.model.size)),
-            inputs=np.zeros((0, self.model.inputs.size)),
-            unstable=(),
-            left_out=tuple(self.left_out),
-            at_bounds=(),
-            warnings=tuple(self.warnings),
-            starts=(0, 0),
-        )
+    @cached_property
+    def kinks(self) -> list[str]:
+        """Contacts that come or go, or change, where the search ended."""
+        if self.fit.beyond is None or self.fit.outcome is FitOutcome.CONVERGED:
+            return []
+        return self.misfit.at_kink(self.fit.state, self.fit.beyond)
 
     def concluded(
-        self,
-        fit: Fit[MisfitState],
-        known: Statistics,
-        rows: Sequence[Row],
-        misfit: Misfit,
-        limits: Limits,
-        starts: tuple[int, int],
+        self, rows: Sequence[Row], warnings: Sequence[str], starts: tuple[int, int], step_error: float
     ) -> Identification:
-        """The end of a search."""
+        """The end with its remarks.
+
+        Args:
+            rows: every measured number beside the model's.
+            warnings: sentences on what looks wrong, before the remarks.
+            starts: how many there were, and how many ended here.
+            step_error: of a residual, by the steps of the motions.
+        """
+        fit, misfit = self.fit, self.misfit
+        layout = misfit.layout
+        limits = layout.shared_limits
         at_bound = (fit.shared <= limits.lower) | (fit.shared >= limits.upper)
-        at_bounds = [label for label, is_there in zip(self.layout.shared_labels, at_bound, strict=True) if is_there]
-        outcome, message = self._outcome(fit, known)
+        at_bounds = [label for label, is_there in zip(layout.shared_labels, at_bound, strict=True) if is_there]
+        outcome, message = self._outcome()
+        moves = bool(misfit.motions.times)
         draft = Identification(
-            model=self.model,
-            layout=self.layout,
+            model=misfit.model,
+            layout=layout,
             shared=fit.shared,
             own=fit.own,
-            statistics=known,
+            statistics=self.known,
             converged=outcome == "converged",
             outcome=outcome,
             message=message,
@@ -122,39 +130,38 @@ class Ending:
             unknowns_x=fit.state.point.x,
             inputs=fit.state.point.inputs,
             equilibria=misfit.solutions(fit.state),
-            unstable=tuple(self.unstable),
+            unstable=tuple(misfit.unstable(fit.state)),
             left_out=tuple(self.left_out),
             at_bounds=tuple(at_bounds),
             warnings=(),
             starts=starts,
+            step=misfit.motions.size if moves else None,
+            step_error=step_error if moves else None,
         )
-        return replace(draft, warnings=(*self.warnings, *self._remarks(draft)))
+        return replace(draft, warnings=(*warnings, *self._remarks(draft)))
 
-    def with_steps(self, found: Identification, step: float, error: float) -> Identification:
-        """The end of a search with the steps of its motions, and a warning where they are too long."""
-        warnings = found.warnings
-        if not error <= STEP_ERROR:
-            sentence = (
-                f"Steps of {step:.3g} s leave an error of {error:.2g} standard deviations in the motions: "
-                "give [simulation] a shorter step, or none."
-            )
-            warnings = (*warnings, sentence)
-        return replace(found, warnings=warnings, step=step, step_error=error)
-
-    def _outcome(self, fit: Fit[MisfitState], known: Statistics) -> tuple[str, str]:
+    def _outcome(self) -> tuple[str, str]:
         """How it ended, in a word and in sentences."""
+        fit, misfit, known = self.fit, self.misfit, self.known
         if fit.outcome not in (FitOutcome.CONVERGED, FitOutcome.AT_KINK):
-            return fit.outcome.name.lower(), f"Not found: {fit.outcome.value}{self._unfollowed}"
-        if self.unresolved:
-            cases = named(self.unresolved)
+            remedy = ""
+            if self.kinks:
+                changes = f"Contacts change there ({named(self.kinks)})"
+                remedy = f" {changes}: begin nearer to the answer, or leave these cases out."
+            return fit.outcome.name.lower(), f"Not found: {fit.outcome.value}{remedy}"
+        unresolved = misfit.unresolved(fit.state)
+        if unresolved:
+            cases = named(unresolved)
             return "unresolved", f"Not found: the nodes do not resolve the rods in {cases}; allow more of them."
-        if self.passages:
-            cases = named([case for case, _ in self.passages])
-            return "unresolved", f"Not found. Of {cases}: {self.passages[0][1]}"
-        if self.beyond:
-            limit = self.beyond[0][1]
+        passages = misfit.passages(fit.state)
+        if passages:
+            cases = named([case for case, _ in passages])
+            return "unresolved", f"Not found. Of {cases}: {passages[0][1]}"
+        beyond = misfit.beyond_limits(fit.state)
+        if beyond:
+            limit = beyond[0][1]
             told = Outcome[limit.word]
-            cases = named([case for case, _ in self.beyond])
+            cases = named([case for case, _ in beyond])
             return told.label, f"Not found. Of {cases}: {told.value} {limit.whose}."
         if not known.settled:
             directions = "; ".join(described(direction) for direction in known.unseen)
@@ -163,13 +170,6 @@ class Ending:
         unknowns = counted(len(fit.shared), "unknown")
         numbers = counted(len(fit.state.residual), "number")
         return "converged", f"Found: {unknowns} from {numbers}."
-
-    @property
-    def _unfollowed(self) -> str:
-        """A remedy where the search ended beside contacts that change; empty where none do."""
-        if not self.kinks:
-            return ""
-        return f" Contacts change there ({named(self.kinks)}): begin nearer to the answer, or leave these cases out."
 
     def _remarks(self, found: Identification) -> list[str]:
         """Remarks on the fit, for the user."""
@@ -185,9 +185,10 @@ class Ending:
                 f"The residuals are {rms:.3g} standard deviations (rms): the model does not explain the data to the "
                 "accuracy that sigma states."
             )
-        if self.barred and (not found.converged or (rms is not None and rms > POOR)):
+        barred = self.misfit.barred
+        if barred and (not found.converged or (rms is not None and rms > POOR)):
             remarks.append(
-                f"Steps that led through an obstacle or a rod were refused in {named(self.barred)}: rods stay on the "
+                f"Steps that led through an obstacle or a rod were refused in {named(barred)}: rods stay on the "
                 "side on which the scene has them. Check on which side they were measured, or begin nearer to the "
                 "answer."
             )
@@ -196,50 +197,57 @@ class Ending:
             remarks.append(f"The data do not determine {directions}: there the priors alone speak.")
         if found.at_bounds:
             remarks.append(f"At a bound: {', '.join(found.at_bounds)}. The intervals of others take that as given.")
-        if self.unstable:
+        if found.unstable:
             remarks.append(
-                f"The equilibrium is unstable in {named(self.unstable)}: what was measured there is hardly this one."
+                f"The equilibrium is unstable in {named(found.unstable)}: what was measured there is hardly this one."
             )
-        remarks += self._on_own_unknowns(found)
-        remarks += self._on_joint_modes(found.cases)
+        remarks += _on_own_unknowns(found)
+        remarks += _on_joint_modes(found, self.misfit.joint_modes(self.fit.state))
         if self.left_out:
             remarks.append(f"Left out: {named([case.where for case in self.left_out])}. {self.left_out[0].reason}")
-        return remarks
-
-    def _on_own_unknowns(self, found: Identification) -> list[str]:
-        """Remarks on unknowns of single cases: what their data leave open, and what that means for held-out cases."""
-        remarks = []
-        for label, deviations in zip(self.layout.own_labels, found.statistics.own.T, strict=True):
-            open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]
-            if open_in:
-                remarks.append(f"The data do not determine {label} in {named(open_in)}: its value there means nothing.")
-        held_out = {row.case for row in found.rows if row.held_out}
-        if held_out and self.layout.own_labels:
-            numbers = sum(row.held_out for row in found.rows)
-            fitted = counted(len(held_out) * len(self.layout.own_labels), "unknown")
+        if found.step is not None and found.step_error is not None and not found.step_error <= STEP_ERROR:
             remarks.append(
-                f"{fitted} of the held-out cases themselves were found from their {counted(numbers, 'number')}: "
-                "only what these numbers leave is predicted."
+                f"Steps of {found.step:.3g} s leave an error of {found.step_error:.2g} standard deviations in the "
+                "motions: give [simulation] a shorter step, or none."
             )
         return remarks
 
-    def _on_joint_modes(self, cases: Sequence[str]) -> list[str]:
-        """Measured modes of one frequency, and what would part them."""
-        remarks = []
-        for numbers in dict.fromkeys(joint.numbers for joint in self.joint_modes):
-            alike = [joint for joint in self.joint_modes if joint.numbers == numbers]
-            modes = " and ".join(str(number) for number in numbers)
-            where = named([cases[joint.case] for joint in alike])
-            sentence = (
-                f"Modes {modes} have one frequency in {where}: what was measured of them is compared with their mean."
-            )
-            parted = np.any([joint.parted for joint in alike], axis=0)
-            names = [label for label, is_so in zip(self.layout.shared_labels, parted, strict=True) if is_so]
-            if names:
-                verb = "parts" if len(names) == 1 else "part"
-                sentence += f" {', '.join(names)} {verb} them, which their mean does not see: begin elsewhere."
-            remarks.append(sentence)
-        return remarks
+
+def _on_own_unknowns(found: Identification) -> list[str]:
+    """Remarks on unknowns of single cases: what their data leave open, and what that means for held-out cases."""
+    remarks = []
+    for label, deviations in zip(found.layout.own_labels, found.statistics.own.T, strict=True):
+        open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]
+        if open_in:
+            remarks.append(f"The data do not determine {label} in {named(open_in)}: its value there means nothing.")
+    held_out = {row.case for row in found.rows if row.held_out}
+    if held_out and found.layout.own_labels:
+        numbers = sum(row.held_out for row in found.rows)
+        fitted = counted(len(held_out) * len(found.layout.own_labels), "unknown")
+        remarks.append(
+            f"{fitted} of the held-out cases themselves were found from their {counted(numbers, 'number')}: "
+            "only what these numbers leave is predicted."
+        )
+    return remarks
+
+
+def _on_joint_modes(found: Identification, joint_modes: Sequence[JointModes]) -> list[str]:
+    """Measured modes of one frequency, and what would part them."""
+    remarks = []
+    for numbers in dict.fromkeys(joint.numbers for joint in joint_modes):
+        alike = [joint for joint in joint_modes if joint.numbers == numbers]
+        modes = " and ".join(str(number) for number in numbers)
+        where = named([found.cases[joint.case] for joint in alike])
+        sentence = (
+            f"Modes {modes} have one frequency in {where}: what was measured of them is compared with their mean."
+        )
+        parted = np.any([joint.parted for joint in alike], axis=0)
+        names = [label for label, is_so in zip(found.layout.shared_labels, parted, strict=True) if is_so]
+        if names:
+            verb = "parts" if len(names) == 1 else "part"
+            sentence += f" {', '.join(names)} {verb} them, which their mean does not see: begin elsewhere."
+        remarks.append(sentence)
+    return remarks
 
 
 def described(direction: Direction) -> str:

@@ -9,10 +9,10 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.identification.case_contacts import ContactEquilibria, ContactMisfit
-from cosserat_casadi.identification.case_equilibria import Equilibria, Point
+from cosserat_casadi.identification.case_equilibria import Equilibria
 from cosserat_casadi.identification.case_motions import StartInputs
 from cosserat_casadi.identification.case_time_steps import STEP_ERROR, error_of_steps, given_steps, with_steps
-from cosserat_casadi.identification.concluding import Ending
+from cosserat_casadi.identification.concluding import Ending, without_equilibrium
 from cosserat_casadi.identification.fit_unknowns import UnknownLayout
 from cosserat_casadi.identification.identification_result import Identification, LeftOut, Row
 from cosserat_casadi.identification.measured_cases import Case
@@ -58,19 +58,8 @@ _Missing = list[tuple[Case, str]]
 """Cases that take no part, each with the reason as a sentence."""
 
 
-@dataclass(frozen=True)
-class _Started:
-    """Cases at unknowns to begin with.
-
-    Attributes:
-        misfit: of the cases that take part.
-        state: there.
-        missing: the others.
-    """
-
-    misfit: Misfit
-    state: MisfitState
-    missing: _Missing
+_Started = tuple[Misfit, MisfitState]
+"""Cases that take part, and their state at unknowns to begin with."""
 
 
 @dataclass(frozen=True)
@@ -97,40 +86,31 @@ class Task:
 
     def run(self, fitted: Sequence[Case], held_out: Sequence[Case]) -> Identification:
         """Fit some cases, predict others."""
-        ending = Ending(self.model, self.layout)
         self.report("solving all cases")
         shared, _ = self.layout.start(len(fitted))
         started, missing = self._first(fitted, shared)
         if started is None or (missing and self.options.failures == "stop"):
-            ending.left_out += [LeftOut(case.where, reason) for case, reason in missing]
-            return ending.without_equilibrium(stopped=started is not None)
-        fit, ended_here = self._best(started.misfit, started.state)
-        started, fit = self._with_others(started, fit)
-        started, fit, step_error = self._with_short_steps(started, fit)
-        misfit = started.misfit
+            left_out = [LeftOut(case.where, reason) for case, reason in missing]
+            return without_equilibrium(self.model, self.layout, left_out, stopped=started is not None)
+        misfit = started[0]
+        fit, ended_here = self._best(*started)
+        misfit, fit, missing = self._with_others(misfit, fit, missing)
+        fit, step_error = self._with_short_steps(misfit, fit)
         self.report("judging what was found")
-        ending.left_out += [LeftOut(case.where, reason) for case, reason in started.missing]
+        left_out = [LeftOut(case.where, reason) for case, reason in missing]
         arrow = self._arrow_fit(misfit).linear(fit.shared, fit.own, fit.state)
         known = self._statistics(arrow, fit, misfit)
-        predicted = self._predicted(held_out, fit, ending.left_out)
+        predicted = self._predicted(held_out, fit, left_out)
         rows = self._rows(misfit, fit.state, held_out=False)
         if predicted is not None:
             rows += self._rows(*predicted, held_out=True)
-        ending.warnings += plausibility(self.model, self.layout, rows)
-        ending.joint_modes += misfit.joint_modes(fit.state)
-        ending.unstable += misfit.unstable(fit.state)
-        ending.unresolved += misfit.unresolved(fit.state)
-        ending.passages += misfit.passages(fit.state)
-        ending.beyond += misfit.beyond_limits(fit.state)
-        ending.barred += misfit.barred
-        if fit.beyond is not None and fit.outcome is not FitOutcome.CONVERGED:
-            ending.kinks += misfit.at_kink(fit.state, fit.beyond)
-        else:
-            ending.warnings += misfit.marginal(fit.state)
-        found = ending.concluded(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
-        if not misfit.motions.times:
-            return found
-        return ending.with_steps(found, misfit.motions.size, step_error)
+        ending = Ending(misfit, fit, known, left_out)
+        entries = [(row.measurement, row.entry, row.measured) for row in rows]
+        warnings = [*_thick_rods(self.model), *_wide_bounds(self.model, self.layout)]
+        warnings += far_positions(self.model.scene, entries)
+        if fit.beyond is None or fit.outcome is FitOutcome.CONVERGED:
+            warnings += misfit.marginal(fit.state)
+        return ending.concluded(rows, warnings, (self.starts, ended_here), step_error)
 
     def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, _Missing]:
         """The misfit of the cases that have an equilibrium or a motion at the start, and the other cases."""
@@ -147,25 +127,19 @@ class Task:
         kept = [i for i, reason in enumerate(reasons) if not reason]
         if not kept:
             return None, missing
-        return self._of_finite([cases[i] for i in kept], point.chosen(kept), shared, own[kept], missing)
-
-    def _of_finite(
-        self, cases: list[Case], point: Point, shared: FloatArray, own: FloatArray, missing: _Missing
-    ) -> tuple[_Started | None, _Missing]:
-        """The misfit of the cases whose residuals are finite, and the other cases, with those missing before."""
+        cases, point, own = [cases[i] for i in kept], point.chosen(kept), own[kept]
         misfit = self._misfit(cases)
         state = with_steps(misfit, misfit.first(point, shared, own))
         spoilt = set(misfit.row_cases[~np.isfinite(state.residual)].tolist())
         if spoilt:
-            for i in sorted(spoilt):
-                missing.append((cases[i], NOT_MOVING if cases[i].moves else NOT_SWINGING))
+            missing += [(cases[i], NOT_MOVING if cases[i].moves else NOT_SWINGING) for i in sorted(spoilt)]
             kept = [i for i in range(len(cases)) if i not in spoilt]
             if not kept:
                 return None, missing
             # Steps were halved as long as some motion could not be computed: the others may take longer ones.
             misfit = self._misfit([cases[i] for i in kept])
             state = with_steps(misfit, misfit.first(point.chosen(kept), shared, own[kept]))
-        return _Started(misfit, state, missing), missing
+        return (misfit, state), missing
 
     def _misfit(self, cases: Sequence[Case]) -> Misfit:
         kind = ContactMisfit if self.model.scene.touches_exactly else Misfit
@@ -173,36 +147,36 @@ class Task:
 
     def _equilibria(self, cases: Sequence[Case]) -> Equilibria:
         kind = ContactEquilibria if self.model.scene.touches_exactly else Equilibria
-        return kind(self.model, len(cases), moving(cases) & self._starts_unloaded)
+        # Motions begin in the unloaded shape, and not in an equilibrium, where the scene says so.
+        unloaded = self.model.scene.simulation is not None and self.model.scene.starts_unloaded
+        return kind(self.model, len(cases), moving(cases) & unloaded)
 
-    @property
-    def _starts_unloaded(self) -> bool:
-        """Whether motions begin in the unloaded shape, and not in an equilibrium."""
-        return self.model.scene.simulation is not None and self.model.scene.starts_unloaded
-
-    def _with_others(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState]]:
+    def _with_others(
+        self, misfit: Misfit, fit: Fit[MisfitState], missing: _Missing
+    ) -> tuple[Misfit, Fit[MisfitState], _Missing]:
         """The search again, with cases that had no equilibrium at the start and have one at the fitted numbers."""
         for _ in range(MOST_RETRIES):
-            if not started.missing:
+            if not missing:
                 break
-            further, missing = self._first([case for case, _ in started.missing], fit.shared)
+            further, left = self._first([case for case, _ in missing], fit.shared)
             if further is None:
                 break
-            point = fit.state.point.joined(further.state.point)
-            misfit = self._misfit([*started.misfit.cases, *further.misfit.cases])
-            misfit.motions.size = min(started.misfit.motions.size, further.misfit.motions.size)
-            if not started.misfit.motions.times:
-                misfit.motions.size = further.misfit.motions.size
-            own = np.concatenate([fit.own, further.state.own])
+            missing = left
+            before = misfit
+            added, at_start = further
+            point = fit.state.point.joined(at_start.point)
+            misfit = self._misfit([*before.cases, *added.cases])
+            misfit.motions.size = min(before.motions.size, added.motions.size)
+            if not before.motions.times:
+                misfit.motions.size = added.motions.size
+            own = np.concatenate([fit.own, at_start.own])
             state = misfit.first(point, fit.shared, own)
             self.report("fitting, with cases that had no equilibrium before")
             fit = self._arrow_fit(misfit).run(fit.shared, own, state, self.progress)
-            started = _Started(misfit, state, missing)
-        return started, fit
+        return misfit, fit, missing
 
-    def _with_short_steps(self, started: _Started, fit: Fit[MisfitState]) -> tuple[_Started, Fit[MisfitState], float]:
+    def _with_short_steps(self, misfit: Misfit, fit: Fit[MisfitState]) -> tuple[Fit[MisfitState], float]:
         """The search again with shorter steps, where the steps of the start are too long at the fitted numbers."""
-        misfit = started.misfit
         error = error_of_steps(misfit, fit.state)
         for _ in range(MOST_SHORTENINGS):
             if error <= STEP_ERROR or given_steps(self.model):
@@ -212,7 +186,7 @@ class Task:
             state = misfit.first(fit.state.point, fit.shared, fit.own)
             fit = self._arrow_fit(misfit).run(fit.shared, fit.own, state, self.progress)
             error = error_of_steps(misfit, fit.state)
-        return started, fit, error
+        return fit, error
 
     def _arrow_fit(self, misfit: Misfit, shared: Limits | None = None) -> ArrowFit[MisfitState]:
         limits = self.layout.shared_limits if shared is None else shared
@@ -288,9 +262,7 @@ class Task:
             return NoiseFrom.SIGMA
         return NoiseFrom.BOTH
 
-    def _predicted(
-        self, cases: Sequence[Case], fit: Fit[MisfitState], left_out: list[LeftOut]
-    ) -> tuple[Misfit, MisfitState] | None:
+    def _predicted(self, cases: Sequence[Case], fit: Fit[MisfitState], left_out: list[LeftOut]) -> _Started | None:
         """Held-out cases at the fitted numbers; unknowns of single cases are fitted to the cases' data."""
         if not cases:
             return None
@@ -298,9 +270,9 @@ class Task:
         left_out += [LeftOut(case.where, f"Held out: {reason}") for case, reason in failed]
         if started is None:
             return None
-        misfit, state = started.misfit, started.state
         if not self.layout.own:
-            return misfit, state
+            return started
+        misfit, state = started
         held = replace(self.layout.shared_limits, lower=fit.shared, upper=fit.shared, weight=np.zeros_like(fit.shared))
         return misfit, self._arrow_fit(misfit, held).run(fit.shared, state.own, state).state
 
@@ -332,12 +304,6 @@ class Task:
 
 FAR = 3.0
 """Lengths of all rods, or tubes, beyond which a measured position, from the base on, is hardly one of the scene."""
-
-
-def plausibility(model: AnyModel, layout: UnknownLayout, rows: Sequence[Row]) -> list[str]:
-    """Sentences on numbers that can hardly be in SI units."""
-    entries = [(row.measurement, row.entry, row.measured) for row in rows]
-    return [*_thick_rods(model), *_wide_bounds(model, layout), *far_positions(model.scene, entries)]
 
 
 def _thick_rods(model: AnyModel) -> Iterator[str]:

@@ -19,6 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.numerics.arrow_least_squares import Limits
 from cosserat_casadi.scene.input_fields import AXES
+from cosserat_casadi.scene.orientations import quaternion_about
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 TURN = 1e-4
@@ -63,7 +64,7 @@ class UnknownEntry:
         """Values in the scene, shape (entries,), from the numbers of the search, shape (n,)."""
         if not self.turns:
             return found
-        return _product_matrix(self.start) @ _quaternion(found)
+        return _product_matrix(self.start) @ quaternion_about(found)
 
     def derivative(self, found: FloatArray) -> FloatArray:
         """Derivative of the values with the numbers of the search, (entries, n)."""
@@ -201,16 +202,10 @@ class UnknownLayout:
                 first += entry.size
         return derivatives
 
-    def identified_parameters(self, shared: FloatArray) -> dict[str, FloatArray]:
-        """Values by name of the parameters that were found, in the shape in which the model takes them."""
-        return {entry.record.name: entry.values(found) for entry, found in self._kind(shared, of_input=False)}
-
-    def identified_inputs(self, shared: FloatArray) -> dict[str, FloatArray]:
-        """Values by name of the shared inputs that were found."""
-        return {entry.record.name: entry.values(found) for entry, found in self._kind(shared, of_input=True)}
-
-    def _kind(self, shared: FloatArray, *, of_input: bool) -> list[tuple[UnknownEntry, FloatArray]]:
-        return [(entry, found) for entry, found in parts(self.shared, shared) if entry.of_input is of_input]
+    def identified(self, shared: FloatArray, *, of_input: bool) -> dict[str, FloatArray]:
+        """Values by name of the shared parameters, or inputs, that were found, in the shape that the model takes."""
+        found = parts(self.shared, shared)
+        return {entry.record.name: entry.values(own) for entry, own in found if entry.of_input is of_input}
 
 
 def parts(entries: Sequence[UnknownEntry], stacked: FloatArray) -> list[tuple[UnknownEntry, FloatArray]]:
@@ -239,7 +234,9 @@ def unknown_layout(model: AnyModel) -> UnknownLayout:
         problems.append(Problem("unknowns", "missing", "name what is to be found"))
     entries = []
     parameters = {entry.name: entry for entry in model.parameters.entries}
-    indices = _input_indices(model)
+    # Places in the stacked inputs by the name of an input, or of one of its numbers.
+    indices = {name: [index] for name, index in column_indices(model.inputs).items()}
+    indices |= {entry.name: list(range(span.start, span.stop)) for entry, span in model.inputs}
     typical = _typical_sizes(model)
     for number, record in enumerate(scene.unknowns):
         where = f"unknowns[{number}]"
@@ -283,14 +280,6 @@ def refuse_row_parameters(scene: scenes.Scene) -> None:
         if unknown.per_row and unknown.parameter is not None
     ]
     refuse(refused)
-
-
-def _input_indices(model: AnyModel) -> dict[str, list[int]]:
-    """Places in the stacked inputs by the name of an input, or of one of its numbers."""
-    indices = {name: [index] for name, index in column_indices(model.inputs).items()}
-    for entry, entries in model.inputs:
-        indices[entry.name] = list(range(entries.start, entries.stop))
-    return indices
 
 
 def _entry(
@@ -365,15 +354,8 @@ def _typical_sizes(model: AnyModel) -> dict[str, float]:
 # Rotations
 
 
-def _quaternion(vector: FloatArray) -> FloatArray:
-    """The unit quaternion of a rotation vector, shape (4,)."""
-    angle = float(np.linalg.norm(vector))
-    sine = np.sinc(angle / (2 * np.pi)) / 2
-    return np.array([np.cos(angle / 2), *(sine * vector)])
-
-
 def _quaternion_derivative(vector: FloatArray) -> FloatArray:
-    """Its derivative, shape (4, 3)."""
+    """Derivative of the unit quaternion of a rotation vector, shape (4, 3)."""
     angle = float(np.linalg.norm(vector))
     sine = np.sinc(angle / (2 * np.pi)) / 2
     # (d sine / d angle) / angle; the quotient cancels at small angles.

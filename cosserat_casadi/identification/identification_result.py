@@ -163,7 +163,7 @@ class Identification(Result):
     @cached_property
     def parameters(self) -> dict[str, FloatArray]:
         """Values of the parameters by name, as ``solve(…, parameters=…)`` takes them."""
-        values = self.layout.identified_parameters(self.shared)
+        values = self.layout.identified(self.shared, of_input=False)
         defaults = {entry.name: entry.shape for entry in self.model.parameters.entries}
         return {name: value.reshape(defaults[name], order="F") for name, value in values.items()}
 
@@ -247,7 +247,8 @@ class Identification(Result):
         Raises:
             KeyError: there is no such unknown.
         """
-        values = {**self.layout.identified_parameters(self.shared), **self.layout.identified_inputs(self.shared)}
+        values = self.layout.identified(self.shared, of_input=False)
+        values |= self.layout.identified(self.shared, of_input=True)
         if name not in values:
             raise KeyError(f"{name!r} is not an unknown that all cases share; they are {', '.join(values) or 'none'}")
         found = values[name]

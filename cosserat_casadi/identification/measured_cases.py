@@ -316,13 +316,14 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
     Raises:
         SceneError: rows of one case set an input to different values.
     """
-    joining = _Joining({index: name for name, index in column_indices(layout).items()})
+    names = {index: name for name, index in column_indices(layout).items()}
+    problems: list[Problem] = []
     # What one measurement of a file says of the inputs of a line holds for all measurements of that file.
-    by_place = joining.settled(rows, [row.place for row in rows])
+    by_place = _settled(rows, [row.place for row in rows], names, problems)
     measured = [row for row in rows if row.datum is not None]
     keys = [_key(row, by_place[row.place], layout, per_row) for row in measured]
-    by_case = joining.settled(measured, keys)
-    refuse(shortened(joining.problems, "measurements"))
+    by_case = _settled(measured, keys, names, problems)
+    refuse(shortened(problems, "measurements"))
     cases: dict[Hashable, Case] = {}
     for row, key in zip(measured, keys, strict=True):
         case = cases.setdefault(key, Case(row.where, layout.pack(), row.moves))
@@ -346,27 +347,23 @@ def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayou
     return "inputs", row.moves, *stacked.tolist()
 
 
-@dataclass
-class _Joining:
-    """Joins what rows say of the inputs.
+def _settled(
+    rows: Sequence[_Row], keys: Sequence[Hashable], names: Mapping[int, str], problems: list[Problem]
+) -> dict[Hashable, dict[int, tuple[float, str]]]:
+    """Value of each input that rows of one key set, and the row that did, by key and index.
 
-    Attributes:
+    Args:
+        rows: some rows.
+        keys: of these.
         names: of the stacked inputs, by index.
-        problems: rows that contradict each other.
+        problems: where rows that contradict each other are added.
     """
-
-    names: Mapping[int, str]
-    problems: list[Problem] = field(default_factory=list)
-
-    def settled(self, rows: Sequence[_Row], keys: Sequence[Hashable]) -> dict[Hashable, dict[int, tuple[float, str]]]:
-        """Value of each input that rows of one key set, and the row that did, by key and index."""
-        known: dict[Hashable, dict[int, tuple[float, str]]] = {}
-        for row, key in zip(rows, keys, strict=True):
-            settled = known.setdefault(key, {})
-            for index, value in row.set_inputs.items():
-                first, where = settled.setdefault(index, (value, row.where))
-                if first != value:
-                    name = self.names[index]
-                    problem = f"sets {name} to {value:g}, but {where} sets it to {first:g} in the same case"
-                    self.problems.append(Problem(row.where, problem))
-        return known
+    known: dict[Hashable, dict[int, tuple[float, str]]] = {}
+    for row, key in zip(rows, keys, strict=True):
+        settled = known.setdefault(key, {})
+        for index, value in row.set_inputs.items():
+            first, where = settled.setdefault(index, (value, row.where))
+            if first != value:
+                problem = f"sets {names[index]} to {value:g}, but {where} sets it to {first:g} in the same case"
+                problems.append(Problem(row.where, problem))
+    return known

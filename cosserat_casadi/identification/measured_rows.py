@@ -38,27 +38,14 @@ class MeasuredRows:
         self.times = np.array([data[0].time for _, data in rows])
         count = len(rows)
         sections = max(len(data) for _, data in rows)
-        differences = len(record.differences)
-        self._at = np.zeros((count, sections))
-        measured = QUANTITIES[record.quantity].blank(count, sections)
-        known = np.zeros((count, sections, differences), dtype=bool)
-        self.data: list[tuple[Datum, int]] = []
-        self.row_cases: list[int] = []
-        places = []
-        for i, (case, data) in enumerate(rows):
-            for k, datum in enumerate(data):
-                self._at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
-                given = np.isfinite(datum.values)
-                measured[i, k, given] = datum.values[given]
-                known[i, k] = given[:differences]
-                for entry in np.flatnonzero(known[i, k]).tolist():
-                    self.data.append((datum, entry))
-                    self.row_cases.append(case)
-                    places.append(i)
-        self.places: Indices = np.array(places, dtype=np.int64)
-        self._measured = measured
-        self._known = known.reshape(count, sections * differences)
-        deviations = np.broadcast_to(np.asarray(record.sigma, dtype=float), differences)
+        self._at, self._measured, known = measured_numbers(record, [data for _, data in rows], sections)
+        # In the order of the residuals: places, their sections, the entries of these.
+        numbers = np.argwhere(known)
+        self.data: list[tuple[Datum, int]] = [(rows[i][1][k], entry) for i, k, entry in numbers.tolist()]
+        self.places: Indices = numbers[:, 0]
+        self.row_cases: list[int] = self.cases[self.places].tolist()
+        self._known = known.reshape(count, -1)
+        deviations = np.broadcast_to(np.asarray(record.sigma, dtype=float), len(record.differences))
         self.sigma = np.tile(deviations, sections)
         self._model = model
 
@@ -96,6 +83,33 @@ class MeasuredRows:
         _, *matrices = self._functions[1](*self._arguments(x, inputs, p))
         by_x, by_inputs, by_p = ((split(matrix, count) / self.sigma[:, None])[self._known] for matrix in matrices)
         return by_x, by_inputs, by_p
+
+
+def measured_numbers(
+    record: Any, rows: Sequence[Sequence[Datum]], sections: int
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+    """Data of one measurement as arrays.
+
+    Args:
+        record: the measurement.
+        rows: data of each place, one for each of its sections.
+        sections: most data of a place.
+
+    Returns:
+        abscissae, shape (places, sections); numbers, (places, sections, entries); which of the differences were
+        measured, (places, sections, differences).
+    """
+    at = np.zeros((len(rows), sections))
+    measured = QUANTITIES[record.quantity].blank(len(rows), sections)
+    known = np.zeros((len(rows), sections, len(record.differences)), dtype=bool)
+    for i, data in enumerate(rows):
+        for k, datum in enumerate(data):
+            at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
+            given = np.isfinite(datum.values)
+            measured[i, k, given] = datum.values[given]
+            # A measured pose has one number more than it has differences: all four of a quaternion, or none.
+            known[i, k] = given[: known.shape[2]]
+    return at, measured, known
 
 
 def by_instant(rows: Sequence[tuple[int, list[Datum]]]) -> list[tuple[int, list[Datum]]]:

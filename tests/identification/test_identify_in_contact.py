@@ -49,12 +49,12 @@ def started(scene: Scene, data: dict[str, Any]) -> _Started:
 @pytest.mark.slow
 def test_a_modulus_is_found_while_contacts_open_and_close() -> None:
     stiff = 1.6 * MODULUS
-    first = started(measured(stiff), markers())
+    misfit, state = started(measured(stiff), markers())
     found: Identification = identify(build(measured(stiff).with_unknowns()), markers())
     assert found.converged, found.message
     # Stiffer rods touch otherwise: the search has followed them through changes of their contacts.
     assert kinds(found.equilibria) == kinds(tuple(truth(weight) for weight in WEIGHTS)) == [[], ["point"], ["line"]]
-    assert kinds(first.misfit.solutions(first.state)) != kinds(found.equilibria)
+    assert kinds(misfit.solutions(state)) != kinds(found.equilibria)
     for value, wanted, (lower, upper) in zip(found.shared, (MODULUS, 0.0), found.intervals, strict=True):
         assert lower < wanted < upper, value
     assert found.sigma[0] < 0.01 * MODULUS
@@ -66,8 +66,8 @@ def test_a_modulus_is_found_while_contacts_open_and_close() -> None:
 def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
     weight: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first = started(measured(MODULUS), table([weight], np.zeros((1, len(AT), 3))))
-    by_shared, _ = first.misfit.jacobians(first.state)
+    misfit, state = started(measured(MODULUS), table([weight], np.zeros((1, len(AT), 3))))
+    by_shared, _ = misfit.jacobians(state)
     for column, change in enumerate((1e-4 * MODULUS, 1e-5)):
         sides = []
         for sign in (1.0, -1.0):
@@ -81,9 +81,9 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
         scale = np.abs(differences).max()
         assert_allclose(by_shared[:, column], differences, rtol=0, atol=2e-6 * scale)
     # A contact that presses by little, or a small gap, is told: it may open or close on one side of the answer.
-    assert not first.misfit.marginal(first.state)
+    assert not misfit.marginal(state)
     monkeypatch.setattr(pressing_contacts, "LEAST_TOLERANCE", 1e3)
-    assert len(first.misfit.marginal(first.state)) == 1
+    assert len(misfit.marginal(state)) == 1
 
 
 @pytest.mark.slow
@@ -147,13 +147,13 @@ def lying(accuracy: dict[str, int], **more: Any) -> dict[str, Any]:
 def test_a_load_moves_inside_a_line_of_contact() -> None:
     """The floor carries it wherever it is: nothing else moves."""
     scene = poked_and_measured(lying({"modes": 2, "nodes": 4}))
-    first = started(scene, table([-0.3], np.zeros((1, len(AT), 3))))
-    (solution,) = first.misfit.solutions(first.state)
+    misfit, state = started(scene, table([-0.3], np.zeros((1, len(AT), 3))))
+    (solution,) = misfit.solutions(state)
     (line,) = solution.contacts
     (section,) = line.inside
     assert line.kind == "line" and line.start < section.at < line.end
     assert_allclose([section.at, section.force], [0.9, 0.02], rtol=1e-9, atol=0)
-    assert_allclose(first.misfit.jacobians(first.state)[0], 0, rtol=0, atol=1e-8)
+    assert_allclose(misfit.jacobians(state)[0], 0, rtol=0, atol=1e-8)
 
 
 @pytest.mark.slow
@@ -163,8 +163,8 @@ def test_a_moment_moves_beside_a_line_of_contact() -> None:
     true = solve(build(scene_from_dict(scene)))
     (line,) = true.contacts
     assert line.kind == "line" and line.end < 0.9
-    first = started(poked_and_measured(scene), table([-0.3], np.zeros((1, len(AT), 3))))
-    (by_place,) = first.misfit.jacobians(first.state)[0].T
+    misfit, state = started(poked_and_measured(scene), table([-0.3], np.zeros((1, len(AT), 3))))
+    (by_place,) = misfit.jacobians(state)[0].T
     sides = []
     for change in (1e-4, -1e-4):
         scene["loads"][1]["at"] = 0.9 + change
