@@ -100,22 +100,22 @@ def estimate_model(
     tables = start_tables(table, layout, indices, model.scene)
     search = Search(solver, tables, known, indices, cores or available_cores(), report)
     (found, second), shared, added = _rows_and_shared(search, layout)
-    told = information_of(found.first(own), known, layout.own_labels)
+    covariance, determined, unseen = information_of(found.first(own), known, layout.own_labels)
     inputs = table.inputs.copy()
     inputs[:, indices] = found.unknowns
     beyond = _beyond_obstacles(model, found, inputs)
     barred = np.array([bool(word) for word in beyond])
-    told = replace(told, determined=told.determined & ~barred)
-    covariance = np.where(barred[:, None, None], np.nan, told.covariance)
+    determined &= ~barred
+    covariance = np.where(barred[:, None, None], np.nan, covariance)
     drawn = None
     if model.scene.estimation.draws:
         drawn = search.sampled(found, covariance, model.scene.estimation.draws)
         covariance = np.where(drawn.sound[:, None, None], drawn.covariance, covariance)
     outcomes = []
-    for ending, determined, word in zip(found.outcome.tolist(), told.determined.tolist(), beyond, strict=True):
-        outcomes.append((word or NOT_DETERMINED) if ending == 0 and not determined else ENDINGS[ending])
-    values = np.where(told.determined[:, None], found.unknowns[:, :own], np.nan)
-    inputs[:, indices] = np.where(told.determined[:, None], found.unknowns, np.nan)
+    for ending, is_determined, word in zip(found.outcome.tolist(), determined.tolist(), beyond, strict=True):
+        outcomes.append((word or NOT_DETERMINED) if ending == 0 and not is_determined else ENDINGS[ending])
+    values = np.where(determined[:, None], found.unknowns[:, :own], np.nan)
+    inputs[:, indices] = np.where(determined[:, None], found.unknowns, np.nan)
     sensors = sensor_names(model, sections, table.at)
     result = Estimate(
         model=model,
@@ -131,9 +131,9 @@ def estimate_model(
         inputs=inputs[:, : model.inputs.size],
         parameters=inputs[:, model.inputs.size :],
         second=second,
-        unseen=told.unseen,
+        unseen=unseen,
         shared=shared,
-        consistency=_consistency(found, told.determined, table, layout, shared, sensors),
+        consistency=_consistency(found, determined, table, layout, shared, sensors),
     )
     report("Judging stability", 0, 0)
     result = replace(result, stable=tuple(_stability(result)))

@@ -149,25 +149,16 @@ REASONS = {
 """Why a case was not found, by its outcome."""
 
 
-@dataclass(frozen=True)
-class Known:
+def information_of(
+    found: Estimates, known: Knowledge, labels: Sequence[str]
+) -> tuple[FloatArray, npt.NDArray[np.bool_], dict[str, int]]:
     """Information of data and priors on rows of estimates.
 
-    Attributes:
-        covariance: shape (cases, k, k); NaN where not determined.
-        determined: shape (cases,).
-        unseen: as in :class:`Estimate`.
-    """
-
-    covariance: FloatArray
-    determined: npt.NDArray[np.bool_]
-    unseen: dict[str, int]
-
-
-def information_of(found: Estimates, known: Knowledge, labels: Sequence[str]) -> Known:
-    """Covariances, and the directions that the data do not see.
-
     Directions are told in the deviations of the priors, or in typical sizes where an unknown has no prior.
+
+    Returns:
+        covariances, shape (cases, k, k), NaN where not determined; which rows are determined, shape (cases,); and the
+        directions that the data do not see, as in :class:`Estimate`.
     """
     cases, k = found.unknowns.shape
     has_prior = known.weight > 0.0
@@ -176,7 +167,7 @@ def information_of(found: Estimates, known: Knowledge, labels: Sequence[str]) ->
     determined = np.zeros(cases, dtype=bool)
     rows = np.flatnonzero(found.outcome == 0)
     if not rows.size:
-        return Known(covariance, determined, {})
+        return covariance, determined, {}
     scaled = found.information[rows] * np.outer(sizes, sizes)
     eigenvalues, vectors = np.linalg.eigh(scaled)
     is_determined = eigenvalues[:, 0] > BLIND * eigenvalues[:, -1]
@@ -185,7 +176,7 @@ def information_of(found: Estimates, known: Knowledge, labels: Sequence[str]) ->
     inverse = np.einsum("cij,cj,ckj->cik", vectors, 1.0 / sound, vectors)
     covariance[rows] = inverse * np.outer(sizes, sizes)
     of_data = scaled - np.diag(np.where(has_prior, 1.0, 0.0))
-    return Known(covariance, determined, _unseen(of_data, has_prior, labels))
+    return covariance, determined, _unseen(of_data, has_prior, labels)
 
 
 def _unseen(of_data: FloatArray, has_prior: npt.NDArray[np.bool_], labels: Sequence[str]) -> dict[str, int]:

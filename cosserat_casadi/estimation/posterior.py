@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import additive_recurrence
 
 WIDENED = (1.2, 1.1)
 """How much wider than the covariance that is known the draws of each round are."""
@@ -105,11 +106,8 @@ def normal_draws(count: int, k: int) -> FloatArray:
         count: at least 2 k; of an odd number one more.
         k: numbers in each.
     """
-    root = 1.5
-    for _ in range(60):
-        root = (1 + root) ** (1 / (k + 1))
-    rates = root ** -np.arange(1.0, k + 1)
-    shares = (0.5 + np.arange(1, (count + 1) // 2 + 1)[:, None] * rates) % 1
+    # The corner of all ones comes first, where a normal distribution has no number.
+    shares = additive_recurrence((count + 1) // 2 + 1, k)[1:]
     half = np.vectorize(NormalDist().inv_cdf)(shares)
     spread = half.T @ half / len(half)
     half = np.linalg.solve(np.linalg.cholesky(spread), half.T).T

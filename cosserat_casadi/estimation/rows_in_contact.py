@@ -44,11 +44,6 @@ class _State:
     z_by_numbers: FloatArray
 
 
-def _kinked(state: _State, other: _State) -> npt.NDArray[np.bool_]:
-    """Whether contacts, and with them derivatives, differ between two states, shape (1,)."""
-    return np.array([state.case.touches_otherwise(other.case)])
-
-
 @dataclass(frozen=True)
 class _Row:
     """One row as a problem of least squares.
@@ -175,7 +170,9 @@ class RowsInContact:
         limits = Limits(known.lower, known.upper, known.mean, known.weight, np.zeros(len(numbers), dtype=bool))
         none = np.zeros(0)
         nothing = Limits(none, none, none, none, np.zeros(0, dtype=bool))
-        fit = ArrowFit(row, limits, nothing, kinked=_kinked).run(numbers, state.own, state)
+        # Contacts, and with them derivatives, may differ between two states.
+        arrow = ArrowFit(row, limits, nothing, kinked=lambda one, two: np.array([one.case.touches_otherwise(two.case)]))
+        fit = arrow.run(numbers, state.own, state)
         ending = "found" if fit.outcome in (FitOutcome.CONVERGED, FitOutcome.AT_KINK) else "not_found"
         ended = self._ended(ending, table, fit.shared, fit.iterations)
         by_numbers, residual = fit.state.by_numbers, fit.state.residual

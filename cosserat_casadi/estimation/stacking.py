@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.estimator import EstimatorLibrary, MeasuredCases, estimator_library
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.identification.measured_cases import Case
-from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
+from cosserat_casadi.identification.measured_quantities import difference
+from cosserat_casadi.identification.measured_rows import measured_numbers
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.input_fields import AXES
@@ -75,33 +75,15 @@ def stacked(model: Model, cases: Sequence[Case], sections: dict[int, int]) -> Me
     measured: list[FloatArray] = []
     weights: list[FloatArray] = []
     for number, count in sections.items():
-        own = _of_measurement(model, number, cases, count)
-        for table, part in zip((at, measured, weights), own, strict=True):
-            table.append(part)
+        record = model.scene.measurements[number]
+        abscissae, numbers, known = measured_numbers(record, [case.data.get(number, []) for case in cases], count)
+        inverse_sigma = 1.0 / np.broadcast_to(np.asarray(record.sigma, dtype=float), known.shape[2])
+        at.append(abscissae)
+        measured.append(numbers.reshape(len(cases), -1))
+        weights.append(np.where(known, inverse_sigma, 0.0).reshape(len(cases), -1))
     p = model.parameters.pack()
     inputs = np.array([np.concatenate([case.inputs, p]) for case in cases])
     return MeasuredCases(inputs, np.hstack(at), np.hstack(measured), np.hstack(weights))
-
-
-def _of_measurement(
-    model: Model, number: int, cases: Sequence[Case], sections: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Abscissae, numbers and weights of one measurement, a row for each case."""
-    record = model.scene.measurements[number]
-    rows = len(record.differences)
-    at = np.zeros((len(cases), sections))
-    measured = QUANTITIES[record.quantity].blank(len(cases), sections)
-    weights = np.zeros((len(cases), sections, rows))
-    inverse_sigma = 1.0 / np.broadcast_to(np.asarray(record.sigma, dtype=float), rows)
-    for i, case in enumerate(cases):
-        for k, datum in enumerate(case.data.get(number, [])):
-            at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
-            given = np.isfinite(datum.values)
-            measured[i, k, given] = datum.values[given]
-            # A measured pose has one number more than it has differences: all four of a quaternion, or none.
-            weights[i, k] = np.where(given[:rows], inverse_sigma, 0.0)
-    count = len(cases)
-    return at, measured.reshape(count, -1), weights.reshape(count, -1)
 
 
 def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) -> list[str]:
@@ -116,19 +98,15 @@ def sensor_names(model: Model, sections: dict[int, int], abscissae: FloatArray) 
     first = 0
     for number, count in sections.items():
         record = model.scene.measurements[number]
+        # Words are those of its numbers, but for a quaternion the axes of the angle.
+        words = [word for word, unit in zip(record.entries, record.differences, strict=False) if unit != "rad"]
+        words += [f"about {axis}" for axis in AXES[3]][: len(record.differences) - len(words)]
         for column in range(first, first + count):
             own = abscissae[:, column]
             where = f" at X = {own[0]:g}" if hasattr(record, "at") and np.ptp(own) == 0.0 else ""
-            names += [f"{record.title} {word}{where}" for word in _words_of(record)]
+            names += [f"{record.title} {word}{where}" for word in words]
         first += count
     return names
-
-
-def _words_of(record: scenes.Measurement) -> list[str]:
-    """Words for the differences of a measurement: those of its numbers, but for a quaternion the axes of the angle."""
-    distances = [word for word, unit in zip(record.entries, record.differences, strict=False) if unit != "rad"]
-    angles = [f"about {axis}" for axis in AXES[3]][: len(record.differences) - len(distances)]
-    return [*distances, *angles]
 
 
 def row_library(
