@@ -102,11 +102,7 @@ def choose(variants: Variants, table: Table, samples: int, progress: StageProgre
         if text not in scenes:
             scenes[text] = unfixed(variant, accuracy.tolerance)
         cases.append(LoadCase(scenes[text], variants.inputs_of_row(row)))
-
-    def show(done: int, total: int) -> None:
-        progress("Choosing the discretisation", done, total)
-
-    search = CommonModes(cases, show)
+    search = CommonModes(cases, lambda done, total: progress("Choosing the discretisation", done, total))
     answers = search.refined()
     _, error = search.worst(answers)
     return Choice(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from importlib.metadata import version
 from types import TracebackType
 from typing import Any
@@ -32,15 +33,12 @@ class ClusterError(CosseratError):
     page = "sweeps"
 
 
-class Cluster:
+class Cluster(AbstractContextManager["Cluster"]):
     """A scheduler with its workers; results come as they are ready."""
 
     def __init__(self, address: str) -> None:
         self._client = _client(address)
         self._shared: dict[int, Any] = {}
-
-    def __enter__(self) -> Cluster:
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self._shared.clear()

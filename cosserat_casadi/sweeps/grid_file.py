@@ -164,7 +164,12 @@ def _axis(entry: Any) -> FloatArray | _Random:
 
 def _range(entry: Mapping[str, Any]) -> FloatArray:
     """Evenly spaced values, both ends included."""
-    _refuse_keys(entry)
+    unknown = sorted(set(entry) - set(RANGE))
+    missing = [key for key in RANGE if key not in entry]
+    faults = [f"does not know {', '.join(unknown)}"] if unknown else []
+    faults += [f"lacks {', '.join(missing)}"] if missing else []
+    if faults:
+        raise _Refused(" and ".join(faults), REMEDY)
     count = _whole(entry["count"], "count", 1)
     if count > MOST_ROWS:
         raise _Refused(f"asks for {count:,} values", f"at most {MOST_ROWS:,}")
@@ -175,19 +180,6 @@ def _range(entry: Mapping[str, Any]) -> FloatArray:
     if count == 1 and start != end:
         raise _Refused("has one value between two ends", "count at least 2, or a number")
     return np.linspace(start, end, count)
-
-
-def _refuse_keys(entry: Mapping[str, Any]) -> None:
-    """Refuse a range with other keys than its three."""
-    unknown = sorted(set(entry) - set(RANGE))
-    missing = [key for key in RANGE if key not in entry]
-    faults = []
-    if unknown:
-        faults.append(f"does not know {', '.join(unknown)}")
-    if missing:
-        faults.append(f"lacks {', '.join(missing)}")
-    if faults:
-        raise _Refused(" and ".join(faults), REMEDY)
 
 
 def _random(entry: Mapping[str, Any]) -> _Random:

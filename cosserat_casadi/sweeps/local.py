@@ -6,6 +6,7 @@ import os
 import threading
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager
 from types import TracebackType
 
 from cosserat_casadi.errors import Problem, SceneError
@@ -17,7 +18,7 @@ AHEAD = 4
 """Chunks that wait for each core: enough to keep it busy, few enough to stop soon."""
 
 
-class Cores:
+class Cores(AbstractContextManager["Cores"]):
     """So many chunks at once; results come as they are ready.
 
     Raises:
@@ -31,9 +32,6 @@ class Cores:
         self._pool = ThreadPoolExecutor(self.count)
         self._own = threading.local()
         self._workers: list[Worker] = []
-
-    def __enter__(self) -> Cores:
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         # After an error the workers go first, or the pool would wait for what they are at.

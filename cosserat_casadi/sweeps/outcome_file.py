@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -150,11 +150,6 @@ def _is_dataset(path: Path) -> bool:
     return path.suffix.lower() == DATASET
 
 
-def _numbers(column: Sequence[str]) -> FloatArray:
-    """Numbers of a column of a CSV file; NaN where the cell is empty."""
-    return np.array([WORDS[cell] if cell in WORDS else float(cell) for cell in column])
-
-
 def _write_csv(sweep: Sweep, path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as stream:
         header = [*sweep.swept, "outcome", *sweep.found]
@@ -253,7 +248,10 @@ def _read_csv(path: Path) -> _Read:
     columns = list(zip(*rows, strict=True))
     split = names.index("outcome")
     outcomes = np.array([LABELS.index(word) for word in columns[split]])
-    numbers = [_numbers(column) for column in (*columns[:split], *columns[split + 1 :])]
+    numbers = [
+        [WORDS[cell] if cell in WORDS else float(cell) for cell in column]
+        for column in (*columns[:split], *columns[split + 1 :])
+    ]
     return names, outcomes, np.column_stack(numbers)
 
 

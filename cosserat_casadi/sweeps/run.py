@@ -169,7 +169,16 @@ def plan_sweep(
     """
     # What differs from row to row is what the table says.
     scene = scene.baked()
-    problems = list(_repeated_columns(scene))
+    rods = {rod.name for rod in scene.rods}
+    problems = [
+        Problem(
+            f"bodies[{i}].name",
+            f"{body.name!r} is the name of a rod too: their columns could not be told apart",
+            "rename one",
+        )
+        for i, body in enumerate(scene.bodies)
+        if body.name in rods
+    ]
     plan = None
     if samples < 1:
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
@@ -580,8 +589,11 @@ def _sweep(
         if judged is not None:
             values[block, -len(STABILITY) :][~judged[block]] = np.nan
         if verdict is not None:
-            converged = outcomes[block] == 0
-            values[block, verdict] = _within_tolerance(plan.scene, converged, values[block, estimate])
+            # 1 or 0 as of a solution; NaN where that is not known or has no meaning.
+            errors = values[block, estimate]
+            within = np.where(np.isnan(errors), np.nan, errors <= plan.scene.accuracy.tolerance)
+            within[outcomes[block] != 0] = 0.0
+            values[block, verdict] = within if plan.scene.accuracy.binds else np.nan
     checked = []
     # Rows of tubes are within tolerance each, or do not converge.
     if not plan.scene.tubes:
@@ -616,14 +628,6 @@ def _gathered(
     return values, outcomes
 
 
-def _within_tolerance(scene: Scene, converged: npt.NDArray[np.bool_], errors: FloatArray) -> FloatArray:
-    """Which rows are within the tolerance, 1 or 0, as of a solution; NaN where that is not known or has no meaning."""
-    if not scene.accuracy.binds:
-        return np.full(len(errors), np.nan)
-    within = np.where(np.isnan(errors), np.nan, errors <= scene.accuracy.tolerance)
-    return np.where(converged, within, 0.0)
-
-
 def _units(scene: Scene, columns: Sequence[str]) -> dict[str, str]:
     """Units of the columns that set inputs; a number without unit has "1"."""
     units: dict[str, str] = {}
@@ -656,15 +660,6 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         **sobol,
         "scene": scene_text(plan.scene),
     }
-
-
-def _repeated_columns(scene: Scene) -> Iterator[Problem]:
-    """Bodies whose poses could not be told from those of rods."""
-    rods = {rod.name for rod in scene.rods}
-    for i, body in enumerate(scene.bodies):
-        if body.name in rods:
-            problem = f"{body.name!r} is the name of a rod too: their columns could not be told apart"
-            yield Problem(f"bodies[{i}].name", problem, "rename one")
 
 
 def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:

@@ -11,6 +11,7 @@ import os
 import struct
 import zlib
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import AbstractContextManager
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
@@ -59,7 +60,7 @@ class Memory:
             yield self._results.popitem()
 
 
-class Store:
+class Store(AbstractContextManager["Store"]):
     """The unfinished results of one sweep.
 
     The first line says what sweep it is, in JSON with a checksum; every chunk follows with its number and a checksum.
@@ -163,9 +164,6 @@ class Store:
         """Leave the file for a later run."""
         if self._file is not None:
             self._file.close()
-
-    def __enter__(self) -> Store:
-        return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.close()

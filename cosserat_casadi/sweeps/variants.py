@@ -117,15 +117,13 @@ class Variants:
                 )
                 for pattern, row in zip(patterns, rows[first].tolist(), strict=True):
                     if pattern.tobytes() not in verdicts:
-                        verdicts[pattern.tobytes()] = self._has_potential(row)
+                        scene = self.scene_of_row(row)
+                        # The coarsest model: loads are the same on each.
+                        coarsest = build(scene, discretise(scene, 1, 2))
+                        verdicts[pattern.tobytes()] = coarsest.has_potential(self.inputs[row])
                 of_patterns = np.array([verdicts[pattern.tobytes()] for pattern in patterns])
                 judged[rows] = of_patterns[pattern_of_row.ravel()]
         return judged
-
-    def _has_potential(self, row: int) -> bool:
-        scene = self.scene_of_row(row)
-        # The coarsest model: loads are the same on each.
-        return build(scene, discretise(scene, 1, 2)).has_potential(self.inputs[row])
 
 
 def variants_of(scene: Scene, table: Table) -> Variants:
@@ -233,18 +231,11 @@ def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
     tables.pop("targets", None)
     tables.pop("bounds", None)
     possible = [f"{record.name}.{field}" for record in (*scene.input_owners, *scene.rods) for field in record.inputs]
-    names = dict.fromkeys(_input_of_column(column, possible) for column in columns)
-    inputs = [name for name in names if name is not None and _may_be_input(tables, name)]
+    # A column adds an axis and a degree to the name of its input: ``push.force.x.1`` is of ``push.force``.
+    named = [[name for name in possible if f"{column}.".startswith(f"{name}.")] for column in columns]
+    names = dict.fromkeys(max(of_column, key=len) for of_column in named if of_column)
+    inputs = [name for name in names if _may_be_input(tables, name)]
     return scene_from_dict({**tables, "inputs": inputs})
-
-
-def _input_of_column(column: str, possible: Sequence[str]) -> str | None:
-    """The input that a column is an entry of; None for a column of another kind.
-
-    A column adds an axis and a degree to the name of its input: ``push.force.x.1`` is of ``push.force``.
-    """
-    named = [name for name in possible if f"{column}.".startswith(f"{name}.")]
-    return max(named, key=len, default=None)
 
 
 def _may_be_input(tables: Mapping[str, Any], name: str) -> bool:
@@ -283,7 +274,10 @@ def _entries(
     if not parameter_columns:
         with collect_problems(problems):
             check_constraints(scene)
-        yield Variant(scene, all_rows(table))
+        rows = table.scratch.array((len(table.values),), np.int64)
+        for block in table.scratch.blocks(len(rows)):
+            rows[block] = np.arange(block.start, block.stop)
+        yield Variant(scene, rows)
         return
     reserved = [table.columns[k] for k in parameter_columns if _is_reserved(table.columns[k])]
     for column in reserved:
@@ -292,14 +286,6 @@ def _entries(
         problems.append(Problem(table.where, problem, example))
     if not reserved:
         yield from _scenes(scene_tables(scene), table, parameter_columns, problems)
-
-
-def all_rows(table: Table) -> npt.NDArray[np.int64]:
-    """Numbers of the rows of a table."""
-    rows = table.scratch.array((len(table.values),), np.int64)
-    for block in table.scratch.blocks(len(rows)):
-        rows[block] = np.arange(block.start, block.stop)
-    return rows
 
 
 def _is_reserved(column: str) -> bool:
