@@ -221,7 +221,10 @@ def save_film(
             writer.grab_frame()
             if progress is not None:
                 progress((index + 1) / count)
-        _finish(writer)
+        try:
+            writer.finish()
+        except CalledProcessError as failure:
+            raise AnimationFailedError(failure.returncode) from failure
         write_atomically(path, drawn.read_bytes())
 
 
@@ -259,18 +262,6 @@ def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
     if not motion.converged:
         remark += ", not converged"
     return [f"t = {time:.{digits}f} s{remark}" for time in times]
-
-
-def _finish(writer: Any) -> None:
-    """Write the drawn frames.
-
-    Raises:
-        AnimationFailedError: ffmpeg gives up.
-    """
-    try:
-        writer.finish()
-    except CalledProcessError as failure:
-        raise AnimationFailedError(failure.returncode) from failure
 
 
 @contextmanager

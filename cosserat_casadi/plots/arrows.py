@@ -53,25 +53,20 @@ def draw_arrows(canvas: Canvas, arrows: Sequence[Arrow]) -> None:
     for sort, style in STYLES.items():
         of_sort = [arrow for arrow in arrows if arrow.sort == sort]
         every = -(-len(of_sort) // MOST_LINE_ARROWS) if sort == "line" else 1
-        _draw_sort(canvas, of_sort, style, every)
+        # The largest arrow of a sort has the length that its style gives it, whatever its unit.
+        largest = max((float(np.linalg.norm(arrow.vector)) for arrow in of_sort), default=0.0)
+        for index, arrow in enumerate(of_sort):
+            # One of every few is drawn, and each that the legend names.
+            if index % every and not arrow.label:
+                continue
+            if sort == "moment" and canvas.plane is not None:
+                # Drawn as a turning sign; the legend still gives its value.
+                canvas.legend_entry(arrow.label or None, color=style.colour, linewidth=style.width)
+                continue
+            scaled = arrow.vector * style.share * canvas.size / largest
+            canvas.arrow(arrow.start, scaled, colour=style.colour, width=style.width, label=arrow.label or None)
     if canvas.plane is None:
         return
     for arrow in arrows:
         if arrow.sort == "moment":
             canvas.turning_sign(arrow.start, arrow.vector, MOMENTS)
-
-
-def _draw_sort(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle, every: int) -> None:
-    """Draw arrows of one sort: one of every few, and each that the legend names."""
-    magnitudes = [float(np.linalg.norm(arrow.vector)) for arrow in arrows]
-    largest = max(magnitudes, default=0.0)
-    # The largest arrow of a sort has the length that its style gives it, whatever its unit.
-    for index, arrow in enumerate(arrows):
-        if index % every and not arrow.label:
-            continue
-        if arrow.sort == "moment" and canvas.plane is not None:
-            # Drawn as a turning sign; the legend still gives its value.
-            canvas.legend_entry(arrow.label or None, color=style.colour, linewidth=style.width)
-            continue
-        scaled = arrow.vector * style.share * canvas.size / largest
-        canvas.arrow(arrow.start, scaled, colour=style.colour, width=style.width, label=arrow.label or None)

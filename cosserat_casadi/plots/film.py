@@ -40,6 +40,9 @@ THIN = 2e-3
 
 Faces = npt.NDArray[np.int64]
 
+Colour = tuple[float, float, float, float]
+"""Red, green, blue and opacity, 0 to 1."""
+
 
 @dataclass(frozen=True)
 class FilmPart:
@@ -47,7 +50,7 @@ class FilmPart:
 
     Attributes:
         name: of the thing that it shows.
-        colour: red, green, blue and opacity, 0 to 1.
+        colour: of the mesh.
         points: in the axes of their frames, shape (n, 3), m.
         frame: index of the frame of each point, shape (n,).
         faces: indices of the corners of triangles, counter-clockwise from outside, shape (m, 3).
@@ -55,7 +58,7 @@ class FilmPart:
     """
 
     name: str
-    colour: tuple[float, float, float, float]
+    colour: Colour
     points: FloatArray
     frame: Faces
     faces: Faces
@@ -82,16 +85,6 @@ class Film:
     parts: tuple[FilmPart, ...]
 
 
-def check_film_path(path: str | Path) -> None:
-    """Refuse a film that cannot be written, before any work is done for it.
-
-    Raises:
-        SceneError: the suffix is none of MESHES.
-    """
-    if Path(path).suffix.lower() not in MESHES:
-        raise SceneError(Problem("path", f"{path} has no suffix of a film", f"use one of {', '.join(MESHES)}"))
-
-
 def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) -> None:
     """Write a solution or a motion as meshes, whole or not at all; the suffix says in which format.
 
@@ -104,7 +97,8 @@ def write_film(result: Solution | Motion, path: str | Path, speed: float = 1.0) 
         SceneError: the suffix is none of MESHES, or the motion has no state.
         WriteError: the file cannot be written.
     """
-    check_film_path(path)
+    if Path(path).suffix.lower() not in MESHES:
+        raise SceneError(Problem("path", f"{path} has no suffix of a film", f"use one of {', '.join(MESHES)}"))
     # Imported here: a run needs one of the two writers.
     if Path(path).suffix.lower() == ".glb":
         from cosserat_casadi.plots.gltf import glb
@@ -173,7 +167,7 @@ def _single(poses: Poses) -> Poses:
     return Poses(poses.position[:, None], poses.quaternion[:, None])
 
 
-def _colour(name: str, opacity: float = 1.0) -> tuple[float, float, float, float]:
+def _colour(name: str, opacity: float = 1.0) -> Colour:
     """A colour from its hexadecimal name."""
     red, green, blue = (int(name[i : i + 2], 16) / 255 for i in (1, 3, 5))
     return red, green, blue, opacity
@@ -210,16 +204,14 @@ def _rings(count: int, sides: int, first: int = 0) -> Faces:
     return np.concatenate([sheet.reshape(-1, 3) for sheet in sheets] + [first + fan[:, ::-1], last + fan])
 
 
-def _tube(name: str, colour: tuple[float, float, float, float], outline: FloatArray, poses: Poses) -> FilmPart:
+def _tube(name: str, colour: Colour, outline: FloatArray, poses: Poses) -> FilmPart:
     """A tube through outlines, shape (k, sides, 2), in the x–y planes of k frames."""
     count, sides, _ = outline.shape
     points = np.concatenate([outline, np.zeros((count, sides, 1))], axis=2).reshape(-1, 3)
     return FilmPart(name, colour, points, np.repeat(np.arange(count), sides), _rings(count, sides), poses)
 
 
-def _disks(
-    name: str, colour: tuple[float, float, float, float], radius: float, thickness: float, poses: Poses
-) -> FilmPart:
+def _disks(name: str, colour: Colour, radius: float, thickness: float, poses: Poses) -> FilmPart:
     """Cylinders about the frames of a row of disks, or of a body that is one."""
     count = poses.position.shape[1]
     ring = _ring(radius)

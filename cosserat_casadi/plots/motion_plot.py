@@ -15,7 +15,7 @@ from cosserat_casadi.equilibrium.solution import SolvedPoses, rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.contact_record import MotionContact
-from cosserat_casadi.motion.trajectory import Energies, Motion
+from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas, add_canvas
 from cosserat_casadi.plots.colours import CATEGORIES, FAILURE, rod_style
 from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
@@ -95,11 +95,19 @@ def plot_motion(motion: Motion) -> Any:
     for panel, (quantity, curves) in zip(panels[:-2], moving.items(), strict=True):
         _draw_curves(panel, motion.times, curves)
         panel.set_ylabel(quantity)
-    _draw_curves(panels[-2], motion.times, _energy_curves(motion.energy))
+    energies = {field.name: getattr(motion.energy, field.name) for field in fields(motion.energy)}
+    del energies["imbalance"]
+    # Those that are not zero throughout.
+    least = NOTHING * max(np.abs(values).max() for values in energies.values())
+    energies = {name: values for name, values in energies.items() if np.abs(values).max() > least}
+    _draw_curves(panels[-2], motion.times, energies)
     panels[-2].set_ylabel("energy, J")
     _draw_imbalance(panels[-1], motion)
+    first, last = motion.times[[0, -1]]
+    # A motion that stopped at its start has one time, and limits need two.
+    margin = 0.02 * (last - first) or 1.0
     for panel in panels:
-        _set_time_limits(panel, motion.times)
+        panel.set_xlim(first - margin, last + margin)
     for panel in panels[:-1]:
         panel.tick_params(labelbottom=False)
     panels[-1].set_xlabel("time, s")
@@ -247,13 +255,6 @@ def _moving_inputs(motion: Motion) -> dict[str, dict[str, FloatArray]]:
     return moving
 
 
-def _energy_curves(energy: Energies) -> dict[str, FloatArray]:
-    """The energies that are not zero throughout, by name."""
-    curves = {field.name: getattr(energy, field.name) for field in fields(energy) if field.name != "imbalance"}
-    largest = max(np.abs(values).max() for values in curves.values())
-    return {name: values for name, values in curves.items() if np.abs(values).max() > NOTHING * largest}
-
-
 def _draw_curves(panel: Any, times: FloatArray, curves: dict[str, FloatArray]) -> None:
     """Draw curves over time with a legend beside the panel."""
     panel.grid(alpha=0.3)
@@ -299,11 +300,3 @@ def _draw_imbalance(panel: Any, motion: Motion) -> None:
 def _say(panel: Any, word: str) -> None:
     panel.text(0.5, 0.5, word, ha="center", va="center", color="0.5", transform=panel.transAxes)
     panel.set_yticks([])
-
-
-def _set_time_limits(panel: Any, times: FloatArray) -> None:
-    """Give all panels the same axis of time."""
-    duration = times[-1] - times[0]
-    # A motion that stopped at its start has one time, and limits need two.
-    margin = 0.02 * duration or 1.0
-    panel.set_xlim(times[0] - margin, times[-1] + margin)

@@ -54,7 +54,8 @@ def draw_surfaces(
     for obstacle in obstacles:
         body = None if obstacle.body is None else bodies[obstacle.body]
         if canvas.plane is None:
-            _draw_net(canvas, surface_net(obstacle, points, canvas.size, body), strength)
+            for line in surface_lines(canvas, obstacle, points, body):
+                canvas.line(line, color=OBSTACLES, linewidth=0.6, alpha=0.6 * strength)
         else:
             _draw_cut(canvas, obstacle, points, body, strength)
         if named:
@@ -69,13 +70,6 @@ def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body:
         return np.asarray(member.mesh(obstacle, near, size))
     (seen,) = in_axes_of(body, near[None])
     return np.asarray(body.position + member.mesh(obstacle, seen, size) @ body.rotation.T)
-
-
-def _draw_net(canvas: Canvas, mesh: FloatArray, strength: float) -> None:
-    """Draw lines through the points of a surface, both ways."""
-    style = {"color": OBSTACLES, "linewidth": 0.6, "alpha": 0.6 * strength}
-    for row in [*mesh, *mesh.transpose(1, 0, 2)]:
-        canvas.line(row, **style)
 
 
 def _draw_cut(

@@ -162,8 +162,10 @@ def _followed_section(path: EquilibriumPath, name: str) -> _Section:
 def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
     displacement = section.displacement(path.position(section.X, section.rod))
     stability = _stability(path)
-    for component in _moving_components(displacement):
-        for start, stop, style in _runs(stability):
+    # The components that move, or x where none does.
+    moving = np.flatnonzero(np.abs(displacement).max(axis=0, initial=0.0) > SMALLEST_DISPLACEMENT)
+    for component in moving.tolist() or [0]:
+        for start, stop, style in runs(stability):
             part = slice(start, stop)
             stroke = STYLES[style][0]
             axes.plot(displacement[part, component], path.factor[part], color=AXES[component], linestyle=stroke)
@@ -179,13 +181,6 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
     axes.grid(alpha=0.3)
     # Below the panel: inside it would cover a curve sooner or later.
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, fontsize=9, frameon=False)
-
-
-def _moving_components(displacement: FloatArray) -> list[int]:
-    """Components that are drawn: the ones that move, or x where none does."""
-    largest = np.abs(displacement).max(axis=0, initial=0.0)
-    moving = np.flatnonzero(largest > SMALLEST_DISPLACEMENT)
-    return moving.tolist() or [0]
 
 
 def _mark_events(axes: Any, path: EquilibriumPath, section: _Section, component: int) -> None:
@@ -218,15 +213,11 @@ def _stability(path: EquilibriumPath) -> FloatArray:
     return styles
 
 
-def _runs(styles: FloatArray) -> list[tuple[int, int, int]]:
+def runs(styles: npt.NDArray[Any]) -> list[tuple[int, int, int]]:
     """Pieces of one style as (start, stop, style); neighbours share a point, so that no gap shows."""
-    changes = np.flatnonzero(np.diff(styles)) + 1
-    cuts = [0, *changes.tolist(), len(styles)]
-    runs = []
-    for start, stop in pairwise(cuts):
-        if stop > start:
-            runs.append((start, min(stop + 1, len(styles)), int(styles[start])))
-    return runs
+    cuts = [0, *(np.flatnonzero(np.diff(styles)) + 1).tolist(), len(styles)]
+    pieces = pairwise(cuts)
+    return [(start, min(stop + 1, len(styles)), int(styles[start])) for start, stop in pieces if stop > start]
 
 
 def _way_words(path: EquilibriumPath) -> str:

@@ -154,25 +154,20 @@ def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
 
 def draw_bodies(canvas: Canvas, solution: Solution) -> None:
     """Draw every body as the polygon through its joints, or the line to its centre of mass from a joint alone."""
-    for body in solution.model.scene.bodies:
-        _draw_body(canvas, solution, body)
-
-
-def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
-    pose = solution.body(body.name)
     scene = solution.model.scene
-    outline = in_world(pose, body_outline(scene, body))
-    if body.thickness is not None:
-        # Disks of a row that are bodies for its contacts are drawn with their row.
-        if body.listed:
-            canvas.line(outline, color=BODIES, linewidth=1.6, label=body.name)
-        return
-    joints = [(joint, place.position) for joint in scene.joints for place in joint.places if place.body == body.name]
-    points = in_world(pose, np.array([position for _, position in joints]))
-    canvas.polygon(outline[:-1], BODIES)
-    canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
-    for (joint, _), point in zip(joints, points, strict=True):
-        canvas.markers(point[None], **joint_style(joint))
+    for body in scene.bodies:
+        pose = solution.body(body.name)
+        outline = in_world(pose, body_outline(scene, body))
+        if body.thickness is not None:
+            # Disks of a row that are bodies for its contacts are drawn with their row.
+            if body.listed:
+                canvas.line(outline, color=BODIES, linewidth=1.6, label=body.name)
+            continue
+        canvas.polygon(outline[:-1], BODIES)
+        canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
+        ends = [(joint, place) for joint in scene.joints for place in joint.places if place.body == body.name]
+        for (joint, _), point in zip(ends, in_world(pose, places_in(scene, body.name)), strict=True):
+            canvas.markers(point[None], **joint_style(joint))
 
 
 def joint_style(joint: Joint) -> dict[str, Any]:

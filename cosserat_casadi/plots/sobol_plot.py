@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.colours import CATEGORIES
 from cosserat_casadi.plots.figure import add_title, figure_class
 from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
@@ -52,17 +51,11 @@ def _draw(panel: Any, name: str, found: Estimates, factors: tuple[str, ...]) -> 
         (found.total, found.total_interval, HEIGHT / 2, CATEGORIES[1], "total"),
     )
     for values, intervals, shift, colour, label in bars:
-        whiskers = _whiskers(values, intervals)
+        # A percentile may lie on the wrong side of an estimate by rounding.
+        whiskers = np.maximum(np.vstack([values - intervals[:, 0], intervals[:, 1] - values]), 0.0)
         style = {"height": HEIGHT, "color": colour, "label": label, "error_kw": {"elinewidth": 1.0, "capsize": 2.0}}
         panel.barh(places + shift, values, xerr=whiskers, **style)
     panel.set_yticks(places, factors)
     panel.set_ylim(len(factors) - 0.4, -0.6)
     panel.set_xlabel(f"share of the variance of {name}")
     panel.grid(axis="x", alpha=0.3)
-
-
-def _whiskers(values: FloatArray, intervals: FloatArray) -> FloatArray:
-    """Distances from values to their bounds, shape (2, columns)."""
-    distances = np.vstack([values - intervals[:, 0], intervals[:, 1] - values])
-    # A percentile may lie on the wrong side of an estimate by rounding.
-    return np.maximum(distances, 0.0)

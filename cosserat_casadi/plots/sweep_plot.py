@@ -6,7 +6,6 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -61,12 +60,10 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     show_inputs = not sweep.converged.all() and len(varying) > 1
 
     plane = _plane(points)
-    views: tuple[_View, ...] = SPACE_VIEWS
-    if plane is not None:
-        views = (_View(plane, 0, 0),)
+    views: Views = SPACE_VIEWS if plane is None else {(0, 0): plane}
     figure, grid = _figure(views, show_inputs)
-    panels = [_add_view(figure, grid, view) for view in views]
-    scatters = [_scatter(panel, points, view, shades) for panel, view in zip(panels, views, strict=True)]
+    panels = [_add_view(figure, grid[cell], view) for cell, view in views.items()]
+    scatters = [_scatter(panel, points, view, shades) for panel, view in zip(panels, views.values(), strict=True)]
     if shades is not None:
         unit = sweep.record.get("units", {}).get(coloured_by, "1")
         label = coloured_by if unit == "1" else f"{coloured_by}, {unit}"
@@ -78,34 +75,17 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     return figure
 
 
-@dataclass(frozen=True)
-class _View:
-    """A panel of the figure.
+Views = dict[tuple[int, int], Plane | None]
+"""By the row and the column of a panel in the grid the two world axes that it shows; None shows space."""
 
-    Attributes:
-        plane: the two world axes it shows; None shows space.
-        row: in the grid of panels.
-        column: likewise.
-    """
-
-    plane: Plane | None
-    row: int
-    column: int
-
-
-SPACE_VIEWS = (
-    _View((0, 1), 0, 0),
-    _View(None, 0, 1),
-    _View((0, 2), 1, 0),
-    _View((1, 2), 1, 1),
-)
+SPACE_VIEWS: Views = {(0, 0): (0, 1), (0, 1): None, (1, 0): (0, 2), (1, 1): (1, 2)}
 """From above, in space; from the front below the first, from the side beside that."""
 
 
-def _figure(views: tuple[_View, ...], show_inputs: bool) -> tuple[Any, Any]:
+def _figure(views: Views, show_inputs: bool) -> tuple[Any, Any]:
     """A figure and its grid of panels, one column wider where inputs are shown."""
-    rows = max(view.row for view in views) + 1
-    columns = max(view.column for view in views) + 1 + show_inputs
+    rows = max(row for row, _ in views) + 1
+    columns = max(column for _, column in views) + 1 + show_inputs
     size = (6.4 * columns, 5.4)
     if rows > 1:
         size = (5.4 * columns, 9.0)
@@ -113,11 +93,10 @@ def _figure(views: tuple[_View, ...], show_inputs: bool) -> tuple[Any, Any]:
     return figure, figure.add_gridspec(rows, columns)
 
 
-def _add_view(figure: Any, grid: Any, view: _View) -> Any:
-    cell = grid[view.row, view.column]
-    if view.plane is None:
+def _add_view(figure: Any, cell: Any, plane: Plane | None) -> Any:
+    if plane is None:
         return figure.add_subplot(cell, projection="3d")
-    right, up = view.plane
+    right, up = plane
     panel = figure.add_subplot(cell)
     panel.set(xlabel=f"{AXIS_NAMES[right]}, m", ylabel=f"{AXIS_NAMES[up]}, m")
     # Numbers such as 0.1425 need the room of two.
@@ -126,13 +105,13 @@ def _add_view(figure: Any, grid: Any, view: _View) -> Any:
     return panel
 
 
-def _scatter(panel: Any, points: FloatArray, view: _View, shades: FloatArray | None) -> Any:
+def _scatter(panel: Any, points: FloatArray, plane: Plane | None, shades: FloatArray | None) -> Any:
     """Dots of a panel, coloured by the shades or all alike.
 
     Args:
         panel: the axes.
         points: shape (k, 3), m.
-        view: what the panel shows of them.
+        plane: the axes that the panel shows of them; None for space.
         shades: shape (k,), or None.
     """
     share = DOT_AREA / max(len(points), 1)
@@ -142,9 +121,9 @@ def _scatter(panel: Any, points: FloatArray, view: _View, shades: FloatArray | N
         style["color"] = category_style(0)["color"]
     else:
         style |= {"c": shades, "cmap": MAP}
-    if view.plane is not None:
+    if plane is not None:
         panel.set_aspect("equal", adjustable="datalim")
-        return panel.scatter(*points[:, view.plane].T, **style)
+        return panel.scatter(*points[:, plane].T, **style)
     dots = panel.scatter(*points.T, **style)
     if len(points):
         canvas = Canvas(panel, None, float(np.ptp(points, axis=0).max()))

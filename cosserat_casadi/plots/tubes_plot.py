@@ -21,7 +21,7 @@ from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import WORLD, Canvas, add_canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
-from cosserat_casadi.plots.path_plot import path_interval, shown_points
+from cosserat_casadi.plots.path_plot import path_interval, runs, shown_points
 from cosserat_casadi.plots.scenery import draw_targets
 from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_equilibria import TubeEquilibria
@@ -237,10 +237,9 @@ def _draw_curve(axes: Any, path: TubePath, heights: FloatArray, colour: str, lab
     if stable is None:
         axes.plot(path.values, heights, color=colour, label=label)
         return
-    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(stable)]
-    for start, stop in pairwise(cuts):
-        part = slice(start, min(stop + 1, len(stable)))
-        axes.plot(path.values[part], heights[part], color=colour, linestyle=STROKES[bool(stable[start])])
+    for start, stop, is_stable in runs(stable):
+        part = slice(start, stop)
+        axes.plot(path.values[part], heights[part], color=colour, linestyle=STROKES[bool(is_stable)])
     axes.plot([], [], color=colour, label=label)
 
 
