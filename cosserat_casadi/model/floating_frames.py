@@ -240,14 +240,8 @@ class UnloadedScene:
         if record.base.free or not stays_in_plane(self.rods[rod].properties):
             return None
         own = self.base(rod)
-        if rod in self.scene.jointed_bases:
-            # The joint, in the world or on another rod, has to keep its rod in the x–z plane of the base.
-            at_base = self.base_joint(rod)
-            if at_base is None:
-                return None
-            joint = self.scene.joints[at_base[0]]
-            if not confines(JOINT_KINDS[joint.kind].held(joint, at_base[1])):
-                return None
+        if rod in self.scene.jointed_bases and not self._base_keeps_plane(rod):
+            return None
         carrier = record.base.rod
         if carrier is None:
             return own
