@@ -23,7 +23,7 @@ from cosserat_casadi.motion.tip_paths import watched_arms, watched_states
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene import Body, Scene
 
 UNKNOWN_ORDER = 1.7
 """Power of the modes with which errors fall, before two distances tell."""
@@ -56,8 +56,14 @@ ANGLES = np.pi * np.arange(1, 40) / 40.0
 TWIST = 2
 """Number of the torsion."""
 
+STRETCH = 5
+"""Number of the extension."""
+
 BENDING = (0, 1)
 """Numbers of the curvatures: they move places by two integrals, so that their fronts make no kinks."""
+
+ROUNDING = 1e-12
+"""Lever over the length that is put down to rounding."""
 
 TINY = float(np.finfo(float).tiny)
 """Keeps the share of no acceleration finite."""
@@ -199,9 +205,11 @@ def lacking(history: History, duration: float, moved_by: ByStrain | None = None)
         moved_by: the displacements of :func:`felt`, where they are known.
     """
     moved_by = felt(history, duration) if moved_by is None else moved_by
-    strains = [moved for of_rod in moved_by.values() for moved in of_rod]
-    late = out_of_phase(history, duration, moved_by)
-    return max((REST * len(moved) * last_of(moved) for moved in strains), default=0.0) + late
+    further = 0.0
+    for name, of_rod in moved_by.items():
+        for let_through, moved in zip(_let_through(history.model, name), of_rod, strict=True):
+            further = max(further, let_through * REST * len(moved) * last_of(moved))
+    return further + out_of_phase(history, duration, moved_by)
 
 
 def lacking_at_fronts(history: History, duration: float) -> float:
@@ -221,7 +229,8 @@ def lacking_at_fronts(history: History, duration: float) -> float:
             * len(moved)
             * float(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :].max())
             * _fronts_over_seen(model, name)[strain]
-            for strain, moved in zip(rod.admitted, moved_by[name], strict=True)
+            * let_through
+            for strain, moved, let_through in zip(rod.admitted, moved_by[name], _let_through(model, name), strict=True)
             if strain not in BENDING
         ]
         for other in moved_along(model.scene, name).rods:
@@ -280,6 +289,89 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
     return float(at_watched * late.max() / seen.max())
 
 
+def _let_through(model: Model, name: str) -> list[float]:
+    """As :func:`let_through_at_tip`, of all strains of a rod; every level of a search asks."""
+    known_of: dict[str, list[float]] = kept_with(model, "_let_through_at_tips", dict)
+    if name not in known_of:
+        known_of[name] = [let_through_at_tip(model, name, strain) for strain in model.discrete.rods[name].admitted]
+    return known_of[name]
+
+
+def let_through_at_tip(model: Model, name: str, strain: int) -> float:
+    """Motion of a tip with a body over that of a free one, by waves that coefficients of a strain lack.
+
+    A body of mass m ends a rod of impedance Z: by a wave of frequency ω it moves 1/√(1 + (ω m / Z)²) times as much as
+    a free tip. What n coefficients of an element lack has frequencies above n / T, where T is the time in which a wave
+    passes it. With the mass of a uniform element, Z T, the share is 1/√(1 + (n m / Z T)²). Of a twist m is a moment of
+    inertia. Waves of bending meet no more, ω m / Z = k m / ρA with the wave number k ≥ n / ℓ; but the body turns by
+    them: its points on a radius of gyration move by up to the root of that share.
+
+    It is 1 where anything else goes along with the rod, and where sections before its tip are watched.
+
+    Args:
+        model: the model.
+        name: of the rod.
+        strain: its number.
+    """
+    scene, discrete = model.scene, model.discrete
+    at_tip = [
+        body
+        for body in scene.bodies
+        if body.name in discrete.riding
+        and scene.joints[discrete.riding[body.name]].rod == name
+        and scene.joints[discrete.riding[body.name]].at == 1.0
+    ]
+    goes_along = MovedAlong({name}, {body.name for body in at_tip})
+    floats = discrete.unloaded.floating_base(name) is not None
+    if not at_tip or floats or moved_along(scene, name) != goes_along or watched_sections(scene, name)[0] < 1.0:
+        return 1.0
+    rod = discrete.rods[name]
+    ends = np.array(rod.grid.known_places)
+    inside = (ends[:-1, None] + np.diff(ends)[:, None] * (1.0 - np.cos(ANGLES)) / 2.0).ravel()
+    stiffness, inertia = _along(rod.properties, STRETCH if strain in BENDING else strain, np.append(inside, 1.0))
+    if min(stiffness.min(), inertia.min()) <= 0.0 and strain not in BENDING:
+        return 1.0
+    slowness = np.ones(len(inside) + 1) if strain in BENDING else np.sqrt(inertia / stiffness)
+    widths = np.repeat(np.diff(ends), len(ANGLES))
+    of_element = inertia[-1] / slowness[-1] * float((widths * slowness[:-1]).max()) * model.length(name, model.pack())
+    heaviest = max(_inertia_at_tip(model, name, body, strain) for body in at_tip)
+    count = rod.discretisation.modes[rod.admitted.index(strain)]
+    share = of_element / np.hypot(of_element, count * heaviest)
+    return float(np.sqrt(share) if strain in BENDING else share)
+
+
+def _inertia_at_tip(model: Model, name: str, body: Body, strain: int) -> float:
+    """Moment along a tip on a body over its angular acceleration, kg m²; or force over the acceleration there, kg.
+
+    The body is free to turn, so that it gives way as much as it can: 0 where nothing else would hold it.
+
+    Args:
+        model: the model.
+        name: of the rod at whose tip it is.
+        body: the body.
+        strain: number of the twist, for the moment, of the stretch, or of a shear.
+    """
+    start = model.discrete.own_unloaded.body_frame(body.name).start
+    tip, tangent = (vectors[-1] for vectors in _unloaded_axis(model, name))
+    along = tangent / np.linalg.norm(tangent)
+    inertia = start.rotation @ body.inertia_matrix @ start.rotation.T
+    if strain == TWIST:
+        turned = along[None]
+    else:
+        pushed = along[None] if strain == STRETCH else np.eye(3) - np.outer(along, along)
+        lever = tip - start.position - start.rotation @ np.asarray(body.centre_of_mass)
+        turned = np.cross(lever, pushed)
+    is_turned = bool(np.abs(turned).max() > ROUNDING * model.length(name, model.pack()))
+    if is_turned and np.linalg.matrix_rank(inertia) < len(inertia):
+        return 0.0
+    turns = np.linalg.solve(inertia, turned.T).T if is_turned else np.zeros_like(turned)
+    if strain == TWIST:
+        return float(1.0 / np.linalg.norm(turns))
+    if body.mass == 0.0:
+        return 0.0
+    return float(1.0 / np.linalg.norm(pushed / body.mass + np.cross(turns, lever), ord=2))
+
+
 def _along(properties: RodProperties, strain: int, X: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Stiffness and inertia per length of a twist, a stretch or a shear at abscissae X, shape (k,) each."""
     stiffness = np.broadcast_to(known(properties.hooke(X)), (len(X), 6))[:, strain]
@@ -318,8 +410,11 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
     accelerations = _by_strain(history.model, np.abs([end.a[own] for end in ends]).max(axis=0))
     late = 0.0
     for rod, of_rod in ways.items():
-        for way, acceleration, moved in zip(of_rod, accelerations[rod], moved_by[rod], strict=True):
+        let_through = _let_through(history.model, rod)
+        for passed, way, acceleration, moved in zip(
+            let_through, of_rod, accelerations[rod], moved_by[rod], strict=True
+        ):
             share = last_of(acceleration) / max(acceleration.max(), TINY)
             of_any_share = float(np.sqrt(0.5 * np.pi * last_of(way) * last_of(moved)))
-            late = max(late, min(0.5 * last_of(way) * share, of_any_share))
+            late = max(late, passed * min(0.5 * last_of(way) * share, of_any_share))
     return late

@@ -15,7 +15,14 @@ from cosserat_casadi import Motion, Scene, build, discretise, scene_from_dict, s
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
-from cosserat_casadi.motion.felt_modes import arm_of_twist, lacking, lacking_at_fronts
+from cosserat_casadi.motion.felt_modes import (
+    STRETCH,
+    TWIST,
+    arm_of_twist,
+    lacking,
+    lacking_at_fronts,
+    let_through_at_tip,
+)
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion, _Search, _timed
 from cosserat_casadi.motion.pose_series import frames_of
@@ -415,3 +422,94 @@ def test_waves_are_late_by_no_more_than_they_move() -> None:
     exact = MOMENT * (2.0 - np.abs(np.mod(times, 4.0) - 2.0))
     error = float(LEVER * np.abs(turn_of_tip(history, times) - exact).max())
     assert error < lacking(history, duration) < 10.0 * error
+
+
+def with_body(kind: str, changes: dict[str, Any], modes: int = 6, **tables: Any) -> Scene:
+    """A rod of :func:`suddenly` with a body of mass 0.3 fixed to its tip, of the moment of inertia 0.2 about x."""
+    scene = suddenly(kind, 1e-3, modes)
+    body = {"name": "weight", "mass": 0.3, "inertia": [0.2, 0.15, 0.15], **changes}
+    joint = {"kind": "fixed", "rod": "rod", "body": "weight"}
+    return scene_from_dict({**scene, "bodies": [body], "joints": [joint], **tables}).with_motion_inputs()
+
+
+@pytest.mark.parametrize(
+    ("kind", "strain", "changes", "inertia"),
+    [
+        ("pull", STRETCH, {}, 0.3),
+        ("pull", STRETCH, {"mass": 0.0}, 0.0),
+        # The mass lies ahead of the tip, or beside it: then the body turns and gives way.
+        ("pull", STRETCH, {"centre_of_mass": [0.0, 0.0, 0.2]}, 0.3),
+        ("pull", STRETCH, {"centre_of_mass": [0.2, 0.0, 0.0]}, 1.0 / (1.0 / 0.3 + 0.2**2 / 0.15)),
+        ("pull", STRETCH, {"centre_of_mass": [0.2, 0.0, 0.0], "inertia": [0.0, 0.0, 0.0]}, 0.0),
+        ("twist", TWIST, {"inertia": [0.15, 0.15, 0.2]}, 0.2),
+        ("twist", TWIST, {"inertia": [0.0, 0.0, 0.0]}, 0.0),
+    ],
+)
+def test_a_body_at_the_tip_holds_it_by_its_inertia(
+    kind: str, strain: int, changes: dict[str, Any], inertia: float
+) -> None:
+    """Of waves above the frequency n: the mass of the rod, its inertia and the speed of its waves are one."""
+    scene = with_body(kind, changes)
+    model = build(scene, discretise(scene), moving=True)
+    assert_allclose(let_through_at_tip(model, "rod", strain), 1.0 / np.hypot(1.0, 6.0 * inertia), rtol=1e-12, atol=0)
+
+
+def test_what_bends_a_rod_turns_the_body_at_its_tip() -> None:
+    rod = {"strain": ["bending_x", "bending_y"], "stiffness": {"bending_x": 1.0, "bending_y": 2.0}}
+    scene = with_body("pull", {}, rods=[{**suddenly("pull", 1e-3)["rods"][0], **rod}])
+    model = build(scene, discretise(scene), moving=True)
+    for strain in (0, 1):
+        found = let_through_at_tip(model, "rod", strain)
+        assert_allclose(found, np.hypot(1.0, 6.0 * 0.3) ** -0.5, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"joints": [{"kind": "fixed", "rod": "rod", "at": 0.5, "body": "weight"}]},
+        {"joints": [{"kind": "spherical", "rod": "rod", "body": "weight"}]},
+        {"accuracy": {"modes": 6, "nodes": 8, "shape": True}},
+        {"bodies": []},
+    ],
+)
+def test_a_tip_is_held_by_nothing_else(changes: dict[str, Any]) -> None:
+    """A body elsewhere holds no tip, and where other sections are watched it does not matter."""
+    tables = {**suddenly("pull", 1e-3, 6), "joints": [{"kind": "fixed", "rod": "rod", "body": "weight"}]}
+    tables["bodies"] = [{"name": "weight", "mass": 0.3}]
+    tables |= changes
+    if not tables["bodies"]:
+        del tables["joints"]
+    scene = scene_from_dict(tables).with_motion_inputs()
+    assert let_through_at_tip(build(scene, discretise(scene), moving=True), "rod", STRETCH) == 1.0
+
+
+def weight_moved(mass: float) -> FloatArray:
+    """Displacement of a mass at the tip of the pulled rod without units, at the times of a row.
+
+    The wave w that leaves the tip comes back from the base as −w after two passes: the velocity v = w(t) − w(t − 2) of
+    the tip obeys mass · v̇ = F − v − 2 w(t − 2). By the trapezoidal rule, row by row.
+    """
+    step = PASSES / (ROWS - 1)
+    delay = round(2.0 / step)
+    left = np.zeros(ROWS)
+    velocity = np.zeros(ROWS)
+    for row in range(1, ROWS):
+        before, now = (left[at - delay] if at >= delay else 0.0 for at in (row - 1, row))
+        driven = 2.0 * FORCE - 2.0 * (before + now) - velocity[row - 1]
+        velocity[row] = (mass * velocity[row - 1] + 0.5 * step * driven) / (mass + 0.5 * step)
+        left[row] = velocity[row] + now
+    return np.concatenate([[0.0], np.cumsum(0.5 * step * (velocity[1:] + velocity[:-1]))])
+
+
+@pytest.mark.parametrize(
+    ("mass", "modes"),
+    mostly_slow(
+        [(mass, modes) for mass in (0.03, 0.1, 0.3, 1.0, 3.0) for modes in (4, 6, 9, 12)], quick=[(0.03, 6), (1.0, 9)]
+    ),
+)
+def test_last_coefficients_tell_the_error_of_a_tip_with_a_mass(mass: float, modes: int) -> None:
+    """It is a low pass: as if the tip were free, up to several hundred times the error was told."""
+    history = history_of(with_body("pull", {"mass": mass, "inertia": [0.0] * 3}), modes, 1e-6)
+    error = float(np.abs(pulled_by(history, PASSES) - weight_moved(mass)).max())
+    assert error < lacking_at_fronts(history, PASSES) < 30.0 * error
+    assert error < lacking(history, PASSES) < 40.0 * error
