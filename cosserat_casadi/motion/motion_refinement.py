@@ -619,8 +619,10 @@ def _timed(search: _Search) -> TimedHistory:
         return timed
     search.levels[-1] = _with_waves(search, level, timed.history)
     if timed.error > _allowed(search):
-        timed = level.simulator.tightened(timed.history, timed.tolerance, _allowed(search))
-        search.levels[-1] = _with_waves(search, level, timed.history)
+        finer = level.simulator.finer(timed, factor_for(timed.error, _allowed(search)))
+        if finer.history.completed:
+            timed = finer
+            search.levels[-1] = _with_waves(search, level, timed.history)
     return timed
 
 
