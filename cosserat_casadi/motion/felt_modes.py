@@ -301,9 +301,9 @@ def let_through_at_tip(model: Model, name: str, strain: int) -> float:
     """Motion of a tip with a body over that of a free one, by waves that coefficients of a strain lack.
 
     A body of mass m ends a rod of impedance Z: by a wave of frequency ω it moves 1/√(1 + (ω m / Z)²) times as much as
-    a free tip. What n coefficients of an element lack has frequencies above n / T, where T is the time in which a wave
-    passes it. With the mass of a uniform element, Z T, the share is 1/√(1 + (n m / Z T)²). Of a twist m is a moment of
-    inertia. Waves of bending meet no more, ω m / Z = k m / ρA with the wave number k ≥ n / ℓ; but the body turns by
+    a free tip. The waves that n coefficients of an element lack have frequencies above n / T, with the time T in which
+    a wave passes it. With the mass of a uniform element, Z T, the share is 1/√(1 + (n m / Z T)²). Of a twist m is a
+    moment of inertia. For waves of bending ω m / Z is k m / ρA, with the wave number k ≥ n / ℓ; but the body turns by
     them: its points on a radius of gyration move by up to the root of that share.
 
     It is 1 where anything else goes along with the rod, and where sections before its tip are watched.
@@ -343,7 +343,7 @@ def let_through_at_tip(model: Model, name: str, strain: int) -> float:
 def _inertia_at_tip(model: Model, name: str, body: Body, strain: int) -> float:
     """Moment along a tip on a body over its angular acceleration, kg m²; or force over the acceleration there, kg.
 
-    The body is free to turn, so that it gives way as much as it can: 0 where nothing else would hold it.
+    The body is free to turn, so that it gives way as much as it can: 0 where it has no inertia against that.
 
     Args:
         model: the model.
@@ -389,9 +389,9 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
     coefficients, times half of their share, bounds the displacement by which a wave is late in the end. Accelerations
     tell their share of the shortest waves, which long and larger ones would hide.
 
-    No wave errs by more than twice what it moves. One whose last coefficient moves l, with the share s of it, is late
-    by no more than min(2 l / s, s Θ l / 2) after the phase Θ, which is at most √Θ l for any share; and the way of l
-    is 2 Θ l / π.
+    No wave errs by more than twice its displacement, l / s if l is that by its last coefficient and s their share. So
+    it is late by no more than min(2 l / s, s Θ l / 2) after the phase Θ, which is at most √Θ l for any share. The way
+    of the last coefficient is 2 Θ l / π.
 
     Args:
         history: the motion.
