@@ -488,14 +488,10 @@ def _with_tolerance(search: _Search) -> Motion:
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
-            timed = _timed(search)
-            if _is_enough(search, timed):
-                break
-            search.step_tolerance = TIGHTER * timed.tolerance
+            break
         if search.foreseen_impacts > MOST_IMPACTS:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
-        timed = timed if rung is None else None
     timed = timed or _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
         raise KeyboardInterrupt
@@ -508,20 +504,13 @@ def _with_tolerance(search: _Search) -> Motion:
     return _judged(search, finest, search.space_error + timed.error, companions)
 
 
-def _with_waves(search: _Search, level: ResolvedMotion, exact: History | None = None) -> ResolvedMotion:
-    """A level that knows of waves: of loads that act at once at its start, or jump, along rods without damping.
-
-    Args:
-        search: the search.
-        level: the level.
-        exact: a motion on its modes by more exact steps, which tells what fronts lack; None for that of the level.
-    """
+def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
+    """A level that knows of waves: of loads that act at once at its start, or jump, along rods without damping."""
     simulator = level.simulator
     duration = search.simulation.duration
-    history = level.history if exact is None else exact
-    if search.is_damped or not is_sudden(history, simulator.start, simulator.moving, duration):
+    if search.is_damped or not is_sudden(level.history, simulator.start, simulator.moving, duration):
         return level
-    return replace(level, waves=True, fronts=lacking_at_fronts(history, duration))
+    return replace(level, waves=True, fronts=lacking_at_fronts(level.history, duration))
 
 
 def _is_erratic(search: _Search) -> bool:
@@ -607,38 +596,14 @@ def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
 
 
 def _timed(search: _Search) -> TimedHistory:
-    """The motion of the last level with steps as exact as the tolerance asks for, and their error.
-
-    What fronts lack is then told by that motion: longer steps damp the last coefficients, which tell it.
-    """
+    """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
     level = search.last
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
-    timed = level.simulator.tightened(level.history, search.step_tolerance, _allowed(search))
-    if not level.waves or not timed.history.completed:
-        return timed
-    search.levels[-1] = _with_waves(search, level, timed.history)
-    if timed.error > _allowed(search):
-        finer = level.simulator.finer(timed, factor_for(timed.error, _allowed(search)))
-        if finer.history.completed:
-            timed = finer
-            search.levels[-1] = _with_waves(search, level, timed.history)
-    return timed
-
-
-def _allowed(search: _Search) -> float:
-    """Error of the paths that the steps of the last level may make, over the length.
-
-    What the modes have left over of their share is the steps' to use. Where they miss the tolerance no steps meet it.
-    """
+    # What the modes have left over of their share is the steps' to use. Where they miss the tolerance no steps meet it.
     space_error = search.space_error
-    return max(TIME_SHARE * max(search.tolerance, space_error), search.tolerance - space_error)
-
-
-def _is_enough(search: _Search, timed: TimedHistory) -> bool:
-    """Whether no more modes are to be tried: not where more exact steps tell that fronts lack more than was seen."""
-    exact = timed.history.completed and timed.error <= _allowed(search)
-    return not (search.last.waves and exact) or search.space_error + timed.error <= search.tolerance
+    allowed = max(TIME_SHARE * max(search.tolerance, space_error), search.tolerance - space_error)
+    return level.simulator.tightened(level.history, search.step_tolerance, allowed)
 
 
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
@@ -657,11 +622,11 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
         return timed
     left = lacking(timed.history, search.simulation.duration)
     are_exact = timed.error <= max(TIME_SHARE * search.tolerance, search.tolerance - unseen)
-    if are_exact and max(left, search.last.fronts) + timed.error > search.tolerance:
+    if are_exact and left + timed.error > search.tolerance:
         # The first motion that tells an error is TIGHTER times as exact as those of the levels.
         search.step_tolerance = TIGHTER * timed.tolerance
         paths = level.simulator.paths(timed.history)
-        search.levels[-1] = replace(level, history=timed.history, paths=paths, fronts=search.last.fronts)
+        search.levels[-1] = replace(level, history=timed.history, paths=paths)
         return None
     search.levels[-1] = replace(search.last, unseen=left)
     return timed

@@ -12,7 +12,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Motion, Scene, build, discretise, scene_from_dict, simulate
-from cosserat_casadi.accuracy.levels import VERIFIED_MODES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.felt_modes import (
@@ -24,7 +23,6 @@ from cosserat_casadi.motion.felt_modes import (
     let_through_at_tip,
 )
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.motion_refinement import ResolvedMotion, _Search, _timed
 from cosserat_casadi.motion.pose_series import frames_of
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.tip_paths import paths
@@ -206,36 +204,6 @@ def test_fronts_from_a_thick_rod_into_a_thin_one_are_told_from_above() -> None:
     scene = chain([1.0, 1.0], [1.0, 1.0 / 3.0], float(duration))
     error, told = of_chain(scene, [9, 16], float(duration), moved_beyond_a_step(1.0 / 3.0, duration, 200))
     assert error < told < CARELESS * error
-
-
-@pytest.mark.slow
-def test_a_search_in_a_chain_with_a_step_of_impedance_is_told_from_above() -> None:
-    """By steps that damp the last coefficients 2.7e-3 were told where 3.0e-3 were true."""
-    duration, tolerance = 12, 6e-3
-    scene = chain([1.0, 1.0], [1.0, 1.0 / 3.0], float(duration))
-    assert scene.simulation is not None
-    asked_of = scene.simulation.model_copy(update={"tolerance": tolerance})
-    motion = simulate(scene.model_copy(update={"simulation": asked_of}))
-    moved = moved_beyond_a_step(1.0 / 3.0, duration, 200)
-    history: Any = motion.interpolant
-    times = np.linspace(0.0, duration, len(moved))
-    place = paths(motion.model, *history.__self__.rough_positions(times)).points[:, -2, 0]
-    assert np.abs(place - place[0] - moved).max() < motion.error_estimate < tolerance
-
-
-def test_fronts_are_told_by_the_motion_of_exact_steps() -> None:
-    """Longer steps damp the last coefficients, which then tell a part of what fronts lack."""
-    scene = scene_from_dict(suddenly("pull", 3e-3)).with_motion_inputs()
-    simulation = scene.simulation
-    assert simulation is not None
-    model = build(scene, discretise(scene, 24, 26), moving=True)
-    simulator = Simulator(model, simulation, started(model, simulation, None))
-    coarse = simulator.controlled(2e-3)
-    fronts = lacking_at_fronts(coarse, PASSES)
-    level = ResolvedMotion(simulator, coarse, simulator.paths(coarse), 0, 24, 0.0, 0.0, waves=True, fronts=fronts)
-    search = _Search(scene, simulation, None, None, None, (), 3e-3, VERIFIED_MODES, [level], step_tolerance=2e-3)
-    timed = _timed(search)
-    assert search.last.fronts == lacking_at_fronts(timed.history, PASSES) > 1.5 * fronts
 
 
 def twisted_with(base: dict[str, Any], length: float, stiffness: float = 1e6, **changes: Any) -> Scene:
