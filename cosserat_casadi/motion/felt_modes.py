@@ -314,12 +314,13 @@ def let_through_at_tip(model: Model, name: str, strain: int) -> float:
         strain: its number.
     """
     scene, discrete = model.scene, model.discrete
+    riding = discrete.unloaded.riding
     at_tip = [
         body
         for body in scene.bodies
-        if body.name in discrete.riding
-        and scene.joints[discrete.riding[body.name]].rod == name
-        and scene.joints[discrete.riding[body.name]].at == 1.0
+        if body.name in riding
+        and scene.joints[riding[body.name]].rod == name
+        and scene.joints[riding[body.name]].at == 1.0
     ]
     goes_along = MovedAlong({name}, {body.name for body in at_tip})
     floats = discrete.unloaded.floating_base(name) is not None
