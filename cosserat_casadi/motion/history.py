@@ -67,6 +67,9 @@ SHORTER = 0.25
 AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
+AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
+"""What to do with an input that has a speed where nothing can follow it."""
+
 
 def equations_of(
     model: Model, piece: Piece, p: FloatArray | None = None, kernels: StepKernels | None = None
@@ -533,7 +536,8 @@ def _switched(
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
                 shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if flight.coordinates is None else {}
                 moving = _inputs_that_move(model, piece, at.time)
-                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest, moving=moving)
+                grow = [name for name in _lengths_of_free_rods(model) if name in moving]
+                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest, moving=moving, grow=grow)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
@@ -627,8 +631,22 @@ def _inputs_that_move(model: Model, piece: Piece, time: float) -> list[str]:
     return [name for name, entries in slices if np.any(rate[entries]) and name.split(".")[0] not in loads]
 
 
+def _lengths_of_free_rods(model: Model) -> list[str]:
+    """Names of the lengths of free rods, as inputs, where nothing in the scene is held."""
+    in_world = [joint for joint in model.scene.joints if joint.body is None]
+    if model.scene.supports or in_world:
+        return []
+    return [f"{rod.name}.length" for rod in model.scene.rods if rod.base.free]
+
+
 def _check_start(
-    start: ConsistentStart, duration: float, *, touches: bool, sags: Mapping[str, float], moving: Sequence[str]
+    start: ConsistentStart,
+    duration: float,
+    *,
+    touches: bool,
+    sags: Mapping[str, float],
+    moving: Sequence[str],
+    grow: Sequence[str],
 ) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
 
@@ -638,6 +656,7 @@ def _check_start(
         touches: whether rods touch where it starts.
         sags: how much longer cables are than their ways, over the lengths of their rods, by cable.
         moving: names of inputs with a speed where it starts.
+        grow: those that are lengths of free rods.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.
@@ -664,8 +683,14 @@ def _check_start(
             f"{names}, which moves supports, joints or cables, has a speed at t = 0, where the scene is at rest: "
             "no finite force brings what they hold to it at once"
         )
-        remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
-        problems.append(Problem("motions", what, remedy))
+        problems.append(Problem("motions", what, AT_REST))
+    elif grow and not np.any(start.instant.v):
+        names = " or ".join(map(repr, grow))
+        what = (
+            f"{names} has a speed at t = 0, where its free rod is at rest: its sections would have a momentum that no "
+            "force gave them"
+        )
+        problems.append(Problem("motions", what, AT_REST))
     refuse(problems)
 
 

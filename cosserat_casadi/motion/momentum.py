@@ -86,7 +86,9 @@ class MomentumKeeper:
     ) -> None:
         self._to_model = to_model or (lambda instant: instant)
         damped = any(rod.properties.mass_damping is not None for rod in model.discrete.rods.values())
-        self._loaded = damped or bool(model.scene.loads)
+        # A rod of another length has another mass: what it gains has the velocity of its sections.
+        grows = any(model.discrete.layout.of_rod(name, "length") is not None for name in model.discrete.rods)
+        self._changes = damped or grows or bool(model.scene.loads)
         self._size = model.size
         # The momentum where the last step was looked at last.
         self._last: tuple[Instant | None, Piece | None, FloatArray] = (None, None, np.zeros(MOMENTA))
@@ -125,8 +127,8 @@ class MomentumKeeper:
         return end
 
     def _impulse(self, step: TimeStep, piece: Piece) -> FloatArray:
-        """Impulse of the loads in a step, shape (6,), N s and N m s; nothing else acts from outside."""
-        if not self._loaded:
+        """Impulse of the loads, and momentum of what rods gain, in a step, shape (6,), N s and N m s."""
+        if not self._changes:
             return np.zeros(6)
         stages = step.stages
         rates = []

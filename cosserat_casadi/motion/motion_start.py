@@ -32,6 +32,7 @@ EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
 RESUMED = "From the end of the motion that was given, at t = {time:.6g} s."
 GIVEN = "At rest in the equilibrium that was given."
+ALONG = " A base or a length has a speed at t = 0: rods move along with it from the start on, nothing jerks them."
 TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0, and on at most {modes} modes of a strain the "
     "search for such an equilibrium, with forces at sections, did not settle. Give "

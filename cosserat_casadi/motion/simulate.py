@@ -31,7 +31,7 @@ from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
-from cosserat_casadi.motion.motion_start import Start, equilibrium_start, given_start, unloaded_start
+from cosserat_casadi.motion.motion_start import ALONG, Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.pose_series import poses_of
@@ -537,7 +537,14 @@ def started(
     else:
         kernels = interpreted(model) if source is None else source.kernels(model)
         start = equilibrium_start(model, moving.at(0.0).value, near, kernels.residual)
-    return with_velocities(model, start, moving.pieces(simulation.duration)[0])
+    return _along(model, with_velocities(model, start, moving.pieces(simulation.duration)[0]), moving.at(0.0).rate)
+
+
+def _along(model: Model, start: Start, rates: FloatArray) -> Start:
+    """A start that tells whether rods move along with their bases and lengths; rates are those of the inputs."""
+    of_rods = ("length", "base.position", "base.quaternion")
+    moved = [span for entry, span in model.inputs if entry.of_rod and entry.field in of_rods and np.any(rates[span])]
+    return replace(start, sentence=start.sentence + ALONG) if moved and start.found else start
 
 
 def unresolved(history: History, duration: float) -> bool:
