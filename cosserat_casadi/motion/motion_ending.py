@@ -113,16 +113,20 @@ def unsettled(history: History) -> str:
 
 
 def whirled(history: History) -> str:
-    """A sentence on rods without rotary inertia where a motion ends in a blow on them; else nothing.
+    """A sentence on rods without rotary inertia where a motion ends in a blow on them, or as it begins; else nothing.
 
     Only the mass beside its chord resists there that a rod turns about itself: a nearly straight one has next to none.
     """
     leg = history.legs[-1]
     if leg.integration.steps:
         return ""
+    without = {name for name, rod in history.model.discrete.rods.items() if rod.properties.rotary_inertia is None}
+    if leg.start.massless > 0 and without:
+        names = ", ".join(repr(name) for name in sorted(without))
+        return f" Nothing resists a spin about the axis of {names}: give rotary_inertia, kg m."
     struck = {event.owner for event in leg.restart.events if event.kind == "impact"}
-    rods = [(name, rod.properties) for name, rod in history.model.discrete.rods.items() if name in struck]
-    light = [repr(name) for name, own in rods if own.rotary_inertia is None and TWIST in own.admitted]
+    rods = history.model.discrete.rods
+    light = [repr(name) for name in rods if name in struck & without and TWIST in rods[name].properties.admitted]
     if not light:
         return ""
     return f" A blow turns {', '.join(light)} about itself, and nothing resists: give it a rotary_inertia, kg m."

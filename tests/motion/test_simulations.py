@@ -333,3 +333,20 @@ def test_rods_in_short_elements_begin_on_fewer_modes(disks: int, first: int, cap
     with caplog.at_level("INFO", "cosserat_casadi.motion"):
         assert simulate(scene_from_dict(scene)).converged
     assert caplog.messages[0].startswith(f"up to {first} modes")
+
+
+def test_a_free_pair_in_line_that_nothing_keeps_from_spinning_is_told() -> None:
+    """Neither rod has rotary inertia: a spin about their common axis has no kinetic energy."""
+    rod = {"length": 0.5, "strain": "planar", "stiffness": {"bending_y": 0.05}, "linear_density": 0.1}
+    first = {"name": "first", **rod, "base": {"position": [0, 0, 0], "free": True}}
+    second = {"name": "second", **rod, "base": {"rod": "first", "at": 1.0}}
+    thrown = [{"rod": "first", "linear": [0.1, 0.0, 0.2]}]
+    scene = {"schema": 1, "rods": [first, second], "velocities": thrown, "accuracy": FEW}
+    motion = simulated({**scene, "simulation": asked(start="unloaded")})
+    assert motion.outcome is MotionOutcome.STEP_TOO_SMALL
+    assert motion.message.endswith(
+        "Nothing resists a spin about the axis of 'first', 'second': give rotary_inertia, kg m."
+    )
+    for one in (first, second):
+        one["rotary_inertia"] = [1e-6, 1e-6, 2e-6]
+    assert simulated({**scene, "simulation": asked(start="unloaded")}).converged
