@@ -73,13 +73,14 @@ def parametric_response(written: Expressions) -> Matrix:
     """The same where numbers of the scene are parameters: a linear system for each p."""
     discrete = written.discrete
     load_factor = ca.MX.sym("load_factor")
-    unloaded = ca.DM.zeros(discrete.size, 1)
-    equations = SceneEquations(System(discrete, Arguments(ca.MX(unloaded), written["inputs"], load_factor)))
     if not discrete.size:
         return ca.MX(0, 1)
+    # A symbol: some Jacobians are derivatives by it.
+    x = ca.MX.sym("x", discrete.size)
+    equations = SceneEquations(System(discrete, Arguments(x, written["inputs"], load_factor)))
     rate = ca.jacobian(equations.residual, load_factor)
-    at_start = ca.substitute([equations.jacobian, rate], [load_factor], [ca.MX(0.0)])
-    jacobian, right_side = at_start
+    start = [ca.MX(ca.DM.zeros(discrete.size, 1)), ca.MX(0.0)]
+    jacobian, right_side = ca.substitute([equations.jacobian, rate], [x, load_factor], start)
     response: Matrix = -ca.solve(jacobian, right_side, "qr")
     return response
 

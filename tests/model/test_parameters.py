@@ -664,9 +664,10 @@ def test_equations_of_moved_elements_are_those_of_a_scene_of_its_own(case: str, 
         assert_allclose(found.full(), wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
 
 
-def test_the_unloaded_response_is_that_of_the_model_with_these_numbers() -> None:
-    model = model_of("length and sections")
-    values = CASES["length and sections"][1]
+@pytest.mark.parametrize("rotation", ["magnus4", "permuted"])
+def test_the_unloaded_response_is_that_of_the_model_with_these_numbers(rotation: str) -> None:
+    given, values = CASES["length and sections"]
+    model = resolved(scene_from_dict({**given, "parameters": list(values), "accuracy": {"rotation": rotation}}))
     inputs = model.pack()
     bound = model.at(values)
     found = model.path_tangent(inputs, model.parameters.pack(values))
