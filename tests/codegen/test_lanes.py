@@ -293,6 +293,19 @@ def test_batches_of_other_builds_are_those(asked: Scene, size: float, flags: tup
         assert_allclose(row[2:], library.solve(own).x, rtol=tolerance, atol=tolerance)
 
 
+def test_a_folder_holds_rows_side_by_side_and_motions(tmp_path: Path) -> None:
+    """Their sources are parts of one file."""
+    model = build(strip(), moving=True)
+    library = load(export(model, tmp_path / "strip", batches=True, dynamics=True, estimate_errors=False))
+    (row,) = library.solve_batch(model.pack())
+    start = library.rest(x=row.x)
+    assert start is not None
+    # What is at rest in its equilibrium stays there.
+    step = library.step(start, 1e-3, model.pack())
+    assert step.done
+    assert_allclose(step.state.x, library.solve().x, rtol=0, atol=1e-9)
+
+
 def test_a_folder_without_batches_holds_nothing_of_them(tmp_path: Path) -> None:
     folder = export(build(scene(push(), strain="planar", accuracy=SMALL)), tmp_path / "strip", estimate_errors=False)
     assert not [file for file in folder.iterdir() if "lanes" in file.name]

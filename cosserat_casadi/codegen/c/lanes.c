@@ -82,7 +82,7 @@ static void begin_row(row *own, const batch_of_rows *batch, int i) {
   own->state = WAITS_FOR_FIRST_TANGENT;
 }
 
-static void take_step(row *own) {
+static void step_along_path(row *own) {
   if (own->steps < LONG_PATH.max_steps && own->info.iterations < LONG_PATH.max_iterations) {
     own->steps++;
     own->step = admissible_step(&own->now, own->step);
@@ -101,7 +101,7 @@ static void end_correction(row *own) {
   count_work(&own->info, result);
   if (!is_trusted(&own->path, result, &own->now, own->work)) {
     own->step /= 2;
-    take_step(own);
+    step_along_path(own);
   } else if (own->now.next->t < 1) {
     if (result->jacobians <= GROW_BELOW) own->step *= 2;
     own->state = WAITS_FOR_RATE;
@@ -157,7 +157,7 @@ static void after_step(row *own, const lanes_room *room, int lane) {
 
 static void after_first_tangent(row *own) {
   if (isfinite(norm_of(own->now.point->tangent))) {
-    take_step(own);
+    step_along_path(own);
   } else {
     solve_by_itself(own);
   }
@@ -167,7 +167,7 @@ static void after_prediction(row *own) {
   if (!is_promising(&own->now, own->work)) {
     own->info.iterations++;
     own->step /= 2;
-    take_step(own);
+    step_along_path(own);
     return;
   }
   own->limits = corrector_limits(own->now.next, LONG_PATH.max_iterations - own->info.iterations);
@@ -187,7 +187,7 @@ static void after_newton_matrix(row *own, int finite) {
 static void go_on_from_next_point(row *own, int sound) {
   set_tangent(own->now.next, sound, own->now.spare, own->work);
   accept_next(&own->now);
-  take_step(own);
+  step_along_path(own);
 }
 
 static void after_rate(row *own) {
