@@ -32,7 +32,7 @@ from cosserat_casadi.equilibrium.contact.passing_through import LookedAt, admitt
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, depth_allowed
 from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
-from tests.codegen.libraries import HARNESS, Exported, compile_quickly
+from tests.codegen.libraries import C99, HARNESS, Exported, compile_quickly, gcc
 from tests.contact.test_contact_of_assemblies import BALL, HEAD
 from tests.contact.test_contact_of_assemblies import ROD as LONG_ROD
 from tests.contact.test_passage_of_bodies import DISK, SMALL
@@ -315,6 +315,10 @@ def test_no_solve_leads_through_a_wire(barred: Exported) -> None:
         assert found.outcome is wanted.outcome is Outcome.LOAD_STALLED
         assert height(barred, found.x, BEHIND) > -0.15
         assert 0.0 < found.load_factor < 1.0
+
+
+def test_sources_compile_without_a_warning(barred: Exported) -> None:
+    gcc(*C99, "-Werror", "-fsyntax-only", barred.folder / "barred.c")
 
 
 def test_a_rod_that_leaves_a_thin_wire_takes_few_steps(barred: Exported) -> None:
