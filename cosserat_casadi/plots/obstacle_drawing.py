@@ -49,16 +49,17 @@ def draw_surfaces(
         points: that are shown, world axes, shape (k, 3), m.
         bodies: poses of the bodies that obstacles are fixed to, by name.
         strength: share of its colour that an obstacle has.
-        named: whether the legend names them.
+        named: whether the legend names them; it does not name those that are far from the points.
     """
     for obstacle in obstacles:
         body = None if obstacle.body is None else bodies[obstacle.body]
+        is_shown = True
         if canvas.plane is None:
             for line in surface_lines(canvas, obstacle, points, body):
                 canvas.line(line, color=OBSTACLES, linewidth=0.6, alpha=0.6 * strength)
         else:
-            _draw_cut(canvas, obstacle, points, body, strength)
-        if named:
+            is_shown = _draw_cut(canvas, obstacle, points, body, strength)
+        if named and is_shown:
             canvas.legend_entry(obstacle.name, color=OBSTACLES, linewidth=6, alpha=0.5)
 
 
@@ -74,16 +75,21 @@ def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body:
 
 def _draw_cut(
     canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: SolvedPoses | None, strength: float
-) -> None:
-    """Fill what of the plane that is shown is inside an obstacle, about the rods."""
-    points = _points_of_plane(canvas, shown)
-    columns, rows, values = _cut(canvas, obstacle, points, body)
+) -> bool:
+    """Fill what of the plane that is shown is inside an obstacle, about the rods; return whether there is something.
+
+    Beside a straight rod axes of one scale show more than what is about it: a table below it is looked for there.
+    """
+    columns, rows, values = _cut(canvas, obstacle, _points_of_plane(canvas, shown), body)
     if not np.any(values < 0.0):
-        return
+        columns, rows, values = _cut(canvas, obstacle, _points_of_plane(canvas, shown, square=True), body)
+    if not np.any(values < 0.0):
+        return False
     inside = [min(float(values.min()), -1e-12), 0.0]
     canvas.axes.contourf(columns, rows, values, levels=inside, colors=[OBSTACLES], alpha=0.35 * strength, zorder=0)
     outline = {"colors": [OBSTACLES], "linewidths": 1.2, "alpha": strength, "zorder": 0}
     canvas.axes.contour(columns, rows, values, levels=[0.0], **outline)
+    return True
 
 
 def surface_lines(
@@ -106,13 +112,23 @@ def surface_lines(
     return lines
 
 
-def _points_of_plane(canvas: Canvas, shown: FloatArray) -> FloatArray:
-    """Points of the plane that is shown about the rods, in the axes of the view, rows of points, m."""
+def _points_of_plane(canvas: Canvas, shown: FloatArray, *, square: bool = False) -> FloatArray:
+    """Points of the plane that is shown about the rods, in the axes of the view, rows of points, m.
+
+    Args:
+        canvas: where to draw.
+        shown: points that are shown, world axes, shape (k, 3), m.
+        square: whether all sides are as long as the longest one.
+    """
     assert canvas.plane is not None, "asked for in a plane"
     coordinates = shown @ canvas.view_axes.T
-    spare = MARGIN * canvas.size
-    lowest = coordinates.min(axis=0) - spare
-    highest = coordinates.max(axis=0) + spare
+    lowest = coordinates.min(axis=0)
+    highest = coordinates.max(axis=0)
+    spare = np.full(3, MARGIN * canvas.size)
+    if square:
+        spare += (np.max(highest - lowest) - (highest - lowest)) / 2
+    lowest -= spare
+    highest += spare
     right, up = canvas.plane
     (across,) = set(SPACE) - set(canvas.plane)
     points = np.zeros((RESOLUTION, RESOLUTION, 3))

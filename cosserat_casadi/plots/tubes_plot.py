@@ -64,7 +64,7 @@ def plot_tubes(solution: TubeSolution | TubeEquilibria) -> Any:
     canvas.label_axes()
     canvas.equalise(points)
     panel.set_xlabel("distance from the plate along the centre line, m")
-    panel.set_ylabel("angle of the tube, rad")
+    panel.set_ylabel(f"angle of the tube less {solutions[0].robot.names[0]}.rotation, rad")
     panel.grid(alpha=0.3)
     panel.legend(fontsize=9)
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)

@@ -346,6 +346,7 @@ def test_each_tube_has_one_colour_in_space_and_beside() -> None:
 def test_angles_of_tubes_are_curves_through_their_stations() -> None:
     solution = solve(Pendulum(1.0).scene(1.0, tolerance=1e-4))
     panel = plot_tubes(solution).axes[1]
+    assert panel.get_ylabel() == f"angle of the tube less {solution.robot.names[0]}.rotation, rad"
     for index, name in enumerate(solution.robot.names):
         distance, angles = next(line.get_data() for line in panel.get_lines() if line.get_label() == name)
         here = solution.shape.distance <= distance[-1]
@@ -510,6 +511,17 @@ def test_the_legend_names_a_body_that_is_a_disk_and_a_row_once() -> None:
     rims = [line for line in axes.get_lines() if line.get_xdata().shape == (2 * RIM,)]
     assert len(rims) == 3
     assert [line.get_label() for line in rims if not line.get_label().startswith("_")] == ["puck", "spacers"]
+
+
+@pytest.mark.parametrize(("depth", "is_shown"), [(0.3, True), (5.0, False)])
+def test_obstacles_that_the_legend_names_are_drawn(depth: float, is_shown: bool) -> None:
+    """A table below a straight rod is as far from it as axes of one scale reach; one far below is not shown."""
+    level = rod("planar", base={"tangent": [1, 0, 0]})
+    table = {"name": "table", "kind": "plane", "point": [0, 0, -depth], "normal": [0, 0, 1], "width": 0.01}
+    solution = solve(build(scene(push(force=[0.1, 0, 0]), rods=[level], obstacles=[table])))
+    axes = plot_solution(solution).axes[0]
+    assert ("table" in lines(axes)) == is_shown
+    assert bool(axes.collections) == is_shown
 
 
 def test_axes_hold_the_bodies_of_a_loop() -> None:
