@@ -119,7 +119,8 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
             for how, (position, radius) in held.items():
                 depth = radius - float(member.function(obstacle)(position)[0])
                 if depth > TOUCHING * properties.length:
-                    problem = f"the rod {rod.name!r} {how} {depth:.4g} m inside it, at {position.tolist()}"
+                    side = f"{depth:.4g} m {member.forbidden} it"
+                    problem = f"the rod {rod.name!r} {how} {side}, at {position.tolist()}"
                     remedy = "move one of the two, or name the rods that it concerns: rods = [...]"
                     yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
     for obstacle in discrete.scene.obstacles:

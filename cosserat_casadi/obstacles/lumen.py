@@ -125,6 +125,7 @@ class LumenObstacle(Obstacle[Lumen]):
     """All that is outside a tube."""
 
     record = Lumen
+    forbidden = "outside"
 
     def distance(self, obstacle: Lumen, point: Matrix) -> Matrix:
         """R(s) − |r − c(s)|, m, at the s where it is largest."""

@@ -30,9 +30,11 @@ class Obstacle(Kind, ABC, Generic[RecordType]):
     Attributes:
         record: the record of the scene, whose word is that of the obstacle.
         kind: the word of the scene format.
+        forbidden: the side of its surface where a rod must not be, in sentences.
     """
 
     record: ClassVar[type[ObstacleRecord]]
+    forbidden: ClassVar[str] = "inside"
     family = OBSTACLES
     kinds = Kinds(OBSTACLES)
 

@@ -569,6 +569,7 @@ CHANGES: dict[str, Callable[[str], str]] = {
     "narrow": lambda text: WIRE.replace("radius = [4e-3, 4e-3, 5e-3, 4e-3, 4e-3]", "radius = 3e-4"),
     "radii": lambda text: WIRE.replace("radius = [4e-3, ", "radius = ["),
     "points": lambda text: WIRE.replace("[[0, 0, -0.02], [0, 0, 0.04],", "[[0, 0, 0.04], [0, 0, 0.04],"),
+    "vessel": lambda text: WIRE.replace('name = "wire"', 'name = "wire"\nbase = { position = [0.02, 0, 0] }'),
     "axis": lambda text: ROD + TWO_BARS.replace("to = [0.4, 1.0, -0.07]", "to = [0.4, -1.0, -0.07]"),
 }
 
@@ -580,6 +581,7 @@ REFUSALS = {
     "name": ("obstacles[1].name", "already the name"),
     "kind": ("obstacles[0].kind", "must be one of 'plane'"),
     "square": ("obstacles[0]", "is not round"),
+    "vessel": ("obstacles.vessel", "m outside it"),
     "narrow": ("obstacles.vessel.radius", "has the radius"),
     "radii": ("obstacles[0].radius", "one radius for each of 5 points"),
     "points": ("obstacles[0].points[1]", "must differ from the point before it"),
