@@ -18,23 +18,29 @@ SOFTEST = 1e3
 LIGHTEST = 10.0
 """Density, kg/m³, below that of foams: 6450 kg/m³ written as 6.45 g/cm³ is lighter."""
 
+ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
+"""Keys of angles of hinges and of drives of tubes."""
+
+FURTHEST = 4 * math.pi
+"""Angle, rad, beyond that of most hinges and drives: 15° written as 15 is more."""
+
 NEAR_ONE = 100.0
-"""Largest number, and inverse of the smallest one, of a rod that is computed without units."""
+"""Largest number, and inverse of the smallest one, of a rod or tube that is computed without units."""
 
 
 def note_unlikely_units(scene: Scene) -> None:
-    """Warn of every number that is likely in another unit; of none of a rod whose numbers are all near one."""
+    """Warn of every number that is likely in another unit; of no size of a rod whose numbers are all near one."""
     for note in _notes(scene):
         LOG.warning("%s", note)
 
 
 def _notes(scene: Scene) -> Iterator[str]:
-    for index, rod in enumerate(scene.rods):
-        where = f"rods[{index}]"
-        length = _numbers(rod, {"length"})
-        sizes = _numbers(rod.section, SIZES)
-        material = _numbers(rod.material, {"youngs_modulus", "density"})
-        numbers = (length | sizes | material).values()
+    rods = [(f"rods[{i}]", rod, _numbers(rod, {"length"})) for i, rod in enumerate(scene.rods)]
+    tubes = [(f"tubes[{i}]", tube, _numbers(tube, {"straight", "curved"})) for i, tube in enumerate(scene.tubes)]
+    for where, record, lengths in [*rods, *tubes]:
+        sizes = _numbers(record.section, SIZES)
+        material = _numbers(record.material, {"youngs_modulus", "density"})
+        numbers = (lengths | sizes | material).values()
         if all(1 / NEAR_ONE <= number <= NEAR_ONE for number in numbers):
             continue
         modulus = material.get("youngs_modulus", math.inf)
@@ -43,10 +49,17 @@ def _notes(scene: Scene) -> Iterator[str]:
         density = material.get("density", math.inf)
         if density < LIGHTEST:
             yield f"{where}.material.density: {density:g} kg/m³ is lighter than foam (is it in kg/m³?)"
-        longest = length.get("length", math.inf)
+        # A length that is a parameter is not known.
+        longest = sum(lengths.values()) or math.inf
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
+    turning = [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
+    turning += [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
+    for where, turned in turning:
+        for key, angle in _numbers(turned, ANGLES).items():
+            if abs(angle) > FURTHEST:
+                yield f"{where}.{key}: {angle:g} rad is more than two turns (is it in rad?)"
 
 
 def _numbers(record: Record | None, keys: Collection[str]) -> dict[str, float]:

@@ -29,6 +29,30 @@ def test_a_number_in_another_unit_is_noted(override: str, note: str, caplog: pyt
 
 
 @pytest.mark.parametrize(
+    ("override", "note"),
+    [
+        ("inner.material.youngs_modulus=60", "tubes[1].material.youngs_modulus: 60 Pa is softer than any rod"),
+        ("outer.section={outer_radius=1.2,inner_radius=1.0}", "tubes[0].section."),
+        ("inner.rotation=60", "tubes[1].rotation: 60 rad is more than two turns"),
+        ("inner.rotation=9", ""),
+    ],
+)
+def test_a_tube_in_another_unit_is_noted(override: str, note: str, caplog: pytest.LogCaptureFixture) -> None:
+    read_scene(ROOT / "examples" / "concentric_tubes.toml", [override])
+    notes = [record.getMessage() for record in caplog.records]
+    assert bool(notes) == bool(note)
+    assert all(text.startswith(note) for text in notes)
+
+
+@pytest.mark.parametrize(("stop", "noted"), [("90", True), ("1.5", False)])
+def test_a_stop_in_degrees_is_noted(stop: str, noted: bool, caplog: pytest.LogCaptureFixture) -> None:
+    read_scene(ROOT / "examples" / "pendulum_chain.toml", [f"elbow.upper_stop={stop}"])
+    assert [record.getMessage() for record in caplog.records] == [
+        "joints[1].upper_stop: 90 rad is more than two turns (is it in rad?)"
+    ] * noted
+
+
+@pytest.mark.parametrize(
     ("radius", "warned"), [("0.01", False), ("{ base = 0.02, tip = 0.01 }", False), ("1e-3", True)]
 )
 def test_a_rod_without_units_is_not_warned_of(
