@@ -99,7 +99,7 @@ def test_cases_without_an_equilibrium_are_not_within_the_tolerance(choice: Choic
     assert "All 2 load cases are within 0.01." in printed(choice)
     said = printed(replace(choice, without_equilibrium=(choice.worst,)))
     assert "All 1 load cases that have an equilibrium are within 0.01." in said
-    assert "No equilibrium was found at 1 load cases" in said
+    assert "No equilibrium was found at 1 load case," in said
 
 
 def test_an_error_that_is_not_known_is_no_number(choice: Choice) -> None:

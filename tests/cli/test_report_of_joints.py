@@ -46,3 +46,13 @@ def test_check_tells_of_sections_turned_to_the_axes_of_the_world(joint: dict[str
     model = build(scene_from_dict(scene([rod], [held])))
     print_check(console, model, [], price(model), {})
     assert ("Note: joints[0] turns a at X = 1 to the axes of the world" in console.export_text()) == noted
+
+
+@pytest.mark.parametrize(("depth", "told"), [(0.3, False), (0.015, True)])
+def test_the_error_of_widths_is_told_where_something_touches(depth: float, told: bool) -> None:
+    rod = link("a", base={"tangent": [1, 0, 0]})
+    table = {"name": "table", "kind": "plane", "point": [0, 0, -depth], "normal": [0, 0, 1], "width": 0.01}
+    tables = {**scene([rod], []), "obstacles": [table]}
+    console = Console(record=True, width=200)
+    print_solution(console, solve(build(scene_from_dict(tables))), [])
+    assert ("contact without widths" in console.export_text()) == told

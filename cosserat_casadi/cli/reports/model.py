@@ -27,6 +27,7 @@ from cosserat_casadi.model.operation_cost import Price
 from cosserat_casadi.model.operations import Count
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.scene.varying import VaryingValue
+from cosserat_casadi.spelling import counted
 
 IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
 """Orientation of a joint that has none in the scene."""
@@ -141,8 +142,8 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     console.print(title_line(model.scene.title))
     console.print(discretisation_table(model))
     console.print(
-        f"{model.size} unknowns, {inputs} inputs; estimated error of the tip pose at the scene's own "
-        f"inputs: {estimate}.",
+        f"{counted(model.size, 'unknown')}, {counted(inputs, 'input')}; estimated error of the tip pose at the scene's "
+        f"own inputs: {estimate}.",
     )
     console.print(f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
@@ -163,7 +164,7 @@ def print_choice(console: Console, choice: Choice) -> None:
     print_ranges(console, choice.ranges)
     if failed:
         point = escape(_point(choice.without_equilibrium[0]))
-        console.print(f"[bold yellow]No equilibrium was found at {failed} load cases[/], such as {point}")
+        console.print(f"[bold yellow]No equilibrium was found at {counted(failed, 'load case')}[/], such as {point}")
     if choice.error_estimate is not None:
         error = error_words(choice.error_estimate, None, tolerance)
         console.print(f"Worst case: {escape(_point(choice.worst))}: estimated error {error}")

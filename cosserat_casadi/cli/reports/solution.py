@@ -178,7 +178,8 @@ def _errors(solution: Solution) -> Iterator[str]:
             yield f"estimated {what} {error_words(error, within, accuracy.tolerance)}"
     if solution.wrench_error_estimate is not None:
         yield f"of clamps' forces and moments {solution.wrench_error_estimate:.1e}, relative"
-    layer_error = solution.layer_error_estimate
+    # Where nothing touches, a width moves nothing.
+    layer_error = solution.layer_error_estimate if solution.contacts else None
     if layer_error is not None:
         words = error_words(layer_error, None, accuracy.tolerance)
         yield f"estimated distance to contact without widths, which no tolerance binds: {words}"
