@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJsonSchema
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, one_of, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, one_of, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import force_or_moment
 from cosserat_casadi.scene.records import Entry, Record, refusal
@@ -28,7 +28,6 @@ from cosserat_casadi.scene.values import (
     Share,
     Vector,
     listed,
-    numbers_of,
 )
 
 

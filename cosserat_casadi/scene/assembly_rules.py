@@ -6,8 +6,7 @@ import json
 from collections.abc import Iterator, Mapping
 
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
-from cosserat_casadi.scene.values import numbers_of
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
 
 TIP = 1.0
 """Abscissa of a tip, where a joint is unless it says otherwise."""

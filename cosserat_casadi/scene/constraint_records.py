@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Discriminator, Field
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.joint_ends import end_faults
 from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented
@@ -34,7 +34,6 @@ from cosserat_casadi.scene.values import (
     Triple,
     Vector,
     listed,
-    numbers_of,
 )
 
 # Supports

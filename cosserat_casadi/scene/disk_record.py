@@ -8,19 +8,9 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.faults import Fault, Table, numbers_of, shown
 from cosserat_casadi.scene.records import Entry, sound
-from cosserat_casadi.scene.values import (
-    ABOVE_BASE,
-    Name,
-    NotEmpty,
-    NotNegative,
-    Number,
-    Positive,
-    Whole,
-    above_base,
-    numbers_of,
-)
+from cosserat_casadi.scene.values import ABOVE_BASE, Name, NotEmpty, NotNegative, Number, Positive, Whole, above_base
 
 MOST_DISKS = 1000
 """Largest number of disks of a row; each of them ends an element of its rod."""

@@ -60,11 +60,6 @@ class Family(Generic[Member]):
             return None
         return self.records.get(word)
 
-    def marked(self, mark: str) -> type[Member] | None:
-        """The record that a mark in one of pydantic's locations stands for."""
-        word = mark.strip("⟨⟩")
-        return self.records.get(word)
-
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         # A union would be frozen when the class of the scene is made; a function asks the family each time.
         return core_schema.no_info_plain_validator_function(self._validated)

@@ -45,6 +45,21 @@ PROFILE_KEYS = ("base", "tip", "legendre", "powers")
 """Keys of a table of what varies along the rod, below the key of the quantity."""
 
 
+SINGULAR = {
+    "obstacles": "obstacle",
+    "rod_contacts": "contact of rods",
+    "supports": "support",
+    "joints": "joint",
+    "disks": "row of disks",
+    "bodies": "body",
+    "rods": "rod",
+    "actuators": "actuator",
+    "loads": "load",
+    "tubes": "tube",
+}
+"""Lists whose entries may have names, and one of what each holds, in the words of an error."""
+
+
 class Fault(NamedTuple):
     """One fault at a path of the scene.
 
@@ -175,17 +190,45 @@ def listing(names: Iterable[str], what: str) -> str:
 
 def frame_faults(given: Table) -> Iterator[Fault]:
     """Faults of a table that names a section of a rod, or a body."""
-    if "rod" in given and "body" in given:
-        yield Fault(("body",), "stands beside rod", "give one of the two")
-    elif "rod" not in given and "body" not in given:
-        yield Fault(("rod",), "missing", "name a rod or a body")
-    elif "at" in given and "body" in given:
+    yield from one_of("rod", "body", given, "name a rod or a body")
+    if "at" in given and "body" in given and "rod" not in given:
         yield Fault(("at",), "is for a rod", "leave it out: a body has one pose")
 
 
-def one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
-    """Faults unless exactly one of two keys is there."""
+def one_of(first: str, second: str, given: Table, remedy: str = "") -> Iterator[Fault]:
+    """Faults unless exactly one of two keys is there; with a remedy for neither of them."""
     if first in given and second in given:
         yield Fault((second,), f"stands beside {first}", "give one of the two")
     if first not in given and second not in given:
-        yield Fault((first,), "missing", f"give {first} or {second}")
+        yield Fault((first,), "missing", remedy or f"give {first} or {second}")
+
+
+def faults_of_ends(given: Table, *, equal: bool) -> Iterator[Fault]:
+    """Faults of a lower and an upper end, each one number for all entries or a list, which are left out or faulty too.
+
+    Args:
+        given: the table.
+        equal: whether both ends may be equal.
+    """
+    lower, upper = numbers_of(given.get("lower")), numbers_of(given.get("upper"))
+    count = max(len(lower), len(upper))
+    if min(len(lower), len(upper)) > 1 and len(lower) != len(upper):
+        yield Fault(("upper",), f"must have as many entries as lower, {len(lower)}, got {len(upper)}")
+        return
+    # A side that is left out or faulty has no numbers, and nothing to cross.
+    lowest, highest = (side * count if len(side) == 1 else side for side in (lower, upper))
+    pairs = list(zip(lowest, highest, strict=False))
+    if any(low > high or (low == high and not equal) for low, high in pairs):
+        yield Fault(("upper",), "must not be below lower" if equal else "must be above lower")
+
+
+def numbers_of(value: Any) -> list[float]:
+    """The numbers of a value that is one or a list of them; none where it is faulty or left out."""
+    numbers = [value]
+    if isinstance(value, list | tuple):
+        numbers = list(value)
+    # Truth values are integers in Python.
+    for number in numbers:
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            return []
+    return numbers

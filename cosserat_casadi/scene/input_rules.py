@@ -7,12 +7,11 @@ from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.constraint_records import JOINTS
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
 from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.tube_records import Tube
-from cosserat_casadi.scene.values import numbers_of
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]
 """Tables that may have inputs, by name, with the record of each; None where its kind is not known."""

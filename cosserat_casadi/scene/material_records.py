@@ -12,18 +12,9 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.faults import Fault, Table, numbers_of, one_of, shown
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.values import (
-    NotEmpty,
-    NotNegative,
-    Number,
-    PoissonRatio,
-    Positive,
-    Whole,
-    listed,
-    numbers_of,
-)
+from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, PoissonRatio, Positive, Whole, listed
 
 INCOMPRESSIBLE = 0.5
 """Poisson's ratio of a material that keeps its volume."""
@@ -53,10 +44,7 @@ material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """Poisson's ratio and the shear modulus say the same."""
-        if "poisson_ratio" in given and "shear_modulus" in given:
-            yield Fault(("shear_modulus",), "stands beside poisson_ratio", "give one of the two")
-        if "poisson_ratio" not in given and "shear_modulus" not in given:
-            yield Fault(("poisson_ratio",), "missing", "give poisson_ratio or shear_modulus, Pa")
+        yield from one_of("poisson_ratio", "shear_modulus", given, "give poisson_ratio or shear_modulus, Pa")
 
 
 MATERIALS: Family[Material] = Family("material", key="law", default="linear")

@@ -13,21 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, shown
 from cosserat_casadi.scene.input_rules import input_part_faults
 from cosserat_casadi.scene.records import Entry, HashedTable, Record
-from cosserat_casadi.scene.values import (
-    BY_LENGTH,
-    SEVERAL,
-    SINGLE,
-    Component,
-    NotEmpty,
-    Number,
-    Positive,
-    Share,
-    Whole,
-    numbers_of,
-)
+from cosserat_casadi.scene.values import Component, NotEmpty, Number, PositiveComponent, Share, Whole
 from cosserat_casadi.spelling import counted
 
 
@@ -59,13 +48,6 @@ def _as_input_column(value: Any) -> Any:
 
 
 MeasuredInput = Annotated[InputColumn, BeforeValidator(_as_input_column)]
-
-
-PositiveComponent = Annotated[
-    Annotated[Positive, SINGLE] | Annotated[tuple[Positive, ...], NotEmpty(), SEVERAL],
-    BY_LENGTH,
-]
-"""A number > 0, or several."""
 
 
 TEXT = Tag("⟨text⟩")

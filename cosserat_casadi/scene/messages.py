@@ -97,7 +97,7 @@ def record_at(location: Path) -> type[Record]:
             continue
         # After the key of a family, and an index where it is a list, comes the mark of the kind.
         if family is not None:
-            record = family.marked(part) or record
+            record = family.records.get(part.strip("⟨⟩"), record)
             family = None
         keys = keys_of(record)
         if part not in keys:

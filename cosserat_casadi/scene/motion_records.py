@@ -13,20 +13,12 @@ from pydantic import Field, model_validator
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, Table
+from cosserat_casadi.scene.faults import Fault, Table, numbers_of
 from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.scene.number_table import read_numbers, shortened
 from cosserat_casadi.scene.profiles import coefficient_count
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.values import (
-    Component,
-    LegendreComponent,
-    NotEmpty,
-    Number,
-    Positive,
-    not_increasing,
-    numbers_of,
-)
+from cosserat_casadi.scene.values import Component, LegendreComponent, NotEmpty, Number, Positive, not_increasing
 
 SLOPE_SLACK = 1e-9
 """Change of slope relative to the steepest one that is put down to rounding."""

@@ -9,12 +9,11 @@ import numpy as np
 
 from cosserat_casadi.maths.splines import least_norm, table_values
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import field_faults, owners_of
 from cosserat_casadi.scene.motion_records import InputMotion
 from cosserat_casadi.scene.records import Entry, sound
-from cosserat_casadi.scene.values import numbers_of
 
 LEAST_NORM = 0.1
 """Norm of a quaternion on its way, over the largest one at the times of its tables, below which it has no direction."""

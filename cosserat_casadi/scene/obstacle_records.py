@@ -15,12 +15,10 @@ from pydantic import Discriminator, Field, Tag
 
 from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of
 from cosserat_casadi.scene.records import Entry, Record, sound
 from cosserat_casadi.scene.rod_records import admitted_strains, is_round
 from cosserat_casadi.scene.values import (
-    BY_LENGTH,
-    SEVERAL,
     SINGLE,
     Direction,
     Name,
@@ -28,9 +26,9 @@ from cosserat_casadi.scene.values import (
     NotEmpty,
     NotNegative,
     Positive,
+    PositiveComponent,
     Share,
     Vector,
-    numbers_of,
 )
 
 SHEARS = {3, 4}
@@ -386,13 +384,6 @@ rods = ["finger"]
             yield Fault(("to",), "must differ from from", 'a bar without length is a ball: kind = "sphere"')
 
 
-Radii = Annotated[
-    Annotated[Positive, SINGLE] | Annotated[tuple[Positive, ...], NotEmpty(), SEVERAL],
-    BY_LENGTH,
-]
-"""One radius, or one for each point of a lumen."""
-
-
 CLOSEST_POINTS = 1e-12
 """Least distance of neighbours on a line relative to the largest: the equations of the line have so many digits."""
 
@@ -418,7 +409,7 @@ rods = ["finger"]
         description="points that its line passes in world axes, or those of its body, a natural cubic spline over the "
         "distance between them, m"
     )
-    radius: Radii = Field(description="its radius, one or one for each point, m")
+    radius: PositiveComponent = Field(description="its radius, one or one for each point, m")
 
     @property
     def radii(self) -> tuple[float, ...]:

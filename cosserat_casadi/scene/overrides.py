@@ -9,22 +9,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.scene.faults import Path, printable, shown
+from cosserat_casadi.scene.faults import SINGULAR, Path, printable, shown
 from cosserat_casadi.scene.toml import keys_are_too_deep
 from cosserat_casadi.spelling import likely_meant
 
-NAMED_LISTS = (
-    "obstacles",
-    "rod_contacts",
-    "supports",
-    "joints",
-    "disks",
-    "bodies",
-    "rods",
-    "actuators",
-    "loads",
-    "tubes",
-)
+NAMED_LISTS = tuple(SINGULAR)
 """Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""
 
 MOST_NAMES = 12

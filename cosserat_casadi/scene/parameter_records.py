@@ -66,11 +66,13 @@ class Holder:
         table: key of the list that it stands in.
         index: its place there.
         record: the entry; None where it is faulty.
+        name: of the entry; what is no text, or faulty, is none.
     """
 
     table: str
     index: int
     record: Entry | None
+    name: Any
 
 
 Holders = Mapping[str, Sequence[Holder]]
@@ -120,8 +122,7 @@ class NamedNumbers:
     @property
     def field(self) -> str:
         """``owner.key`` with the keys of inner tables: the name that the key has among inputs."""
-        assert self.holder.record is not None
-        owner = getattr(self.holder.record, "name", None) or f"{self.holder.table}[{self.holder.index}]"
+        owner = self.holder.name or f"{self.holder.table}[{self.holder.index}]"
         return ".".join((owner, *self.keys))
 
     @property
@@ -443,16 +444,11 @@ def tie_faults(groups: Iterable[tuple[Sequence[Any], Path]], holders: Holders) -
             yield Fault(path, problem, remedy)
 
 
-def holders_of(entries: Iterable[Holder], names: Iterable[Any]) -> dict[str, list[Holder]]:
-    """Entries by the words that a name may begin with.
-
-    Args:
-        entries: the entries of the lists that may have parameters, in the order of these lists.
-        names: the name of each; an entry whose name is no text is left out.
-    """
+def holders_of(entries: Iterable[Holder]) -> dict[str, list[Holder]]:
+    """Entries of the lists that may have parameters, in the order of these, by the words that a name may begin with."""
     known: dict[str, list[Holder]] = {}
-    for holder, name in zip(entries, names, strict=True):
-        if isinstance(name, str):
-            known.setdefault(name, []).append(holder)
+    for holder in sorted(entries, key=lambda holder: PARAMETER_LISTS.index(holder.table)):
+        if isinstance(holder.name, str):
+            known.setdefault(holder.name, []).append(holder)
         known.setdefault(f"{holder.table}[{holder.index}]", []).append(holder)
     return known

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, StrictBool
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.material_records import ElasticMaterial
 from cosserat_casadi.scene.orientations import Oriented
@@ -36,7 +36,6 @@ from cosserat_casadi.scene.values import (
     Vector,
     above_base,
     listed,
-    numbers_of,
     without_repetition,
 )
 

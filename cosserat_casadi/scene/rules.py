@@ -20,7 +20,7 @@ from cosserat_casadi.scene.assembly_rules import (
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.faults import SINGULAR, Fault, Path, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_range_records import ranges_of_no_input
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.load_records import LOADS
@@ -62,20 +62,6 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
 OF_ONE_COLUMN = ("name", "columns", "inputs", "scale", "shift", "sigma", "held_out")
 """Keys of a measurement that do not say which number of which rows it is."""
 
-SINGULAR = {
-    "loads": "load",
-    "supports": "support",
-    "joints": "joint",
-    "actuators": "actuator",
-    "rods": "rod",
-    "bodies": "body",
-    "disks": "row of disks",
-    "obstacles": "obstacle",
-    "rod_contacts": "contact of rods",
-    "tubes": "tube",
-}
-"""One of what a list holds, in the words of an error."""
-
 
 def scene_faults(given: Table) -> Iterator[Fault]:
     """Faults of the tables of a scene against each other, by every rule."""
@@ -102,19 +88,7 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
 
 def repeated_names(scene: SceneTables) -> Iterator[Fault]:
     """Two entries of one list have the same name."""
-    for key in (
-        "rods",
-        "loads",
-        "supports",
-        "actuators",
-        "bodies",
-        "joints",
-        "disks",
-        "obstacles",
-        "rod_contacts",
-        "tubes",
-        "measurements",
-    ):
+    for key in (*SINGULAR, "measurements"):
         named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")
@@ -189,9 +163,10 @@ def own_rules(scene: SceneTables) -> Iterator[Fault]:
 
 
 def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
-    """Faults of rods without mass on which gravity acts."""
+    """Faults of rods, or tubes, without mass on which gravity acts."""
     load_on_all, load_on_rod = _gravity(scene)
-    for i, rod in scene.tables("rods"):
+    listed = [(key, i, rod) for key in ("rods", "tubes") for i, rod in scene.tables(key)]
+    for key, i, rod in listed:
         # One fault a rod, however many loads weigh it.
         load = load_on_all
         name = rod.get("name")
@@ -202,11 +177,11 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
         material = rod.get("material")
         is_direct = "stiffness" in rod or "stiffness_matrix" in rod
         if is_direct and "linear_density" not in rod:
-            remedy = f"{load} acts on this rod: give its mass per length, kg/m"
-            yield Fault(("rods", i, "linear_density"), "missing", remedy)
+            remedy = f"{load} acts on this {SINGULAR[key]}: give its mass per length, kg/m"
+            yield Fault((key, i, "linear_density"), "missing", remedy)
         elif not is_direct and isinstance(material, Mapping) and "density" not in material:
-            remedy = f"{load} acts on this rod: give its density, kg/m³"
-            yield Fault(("rods", i, "material", "density"), "missing", remedy)
+            remedy = f"{load} acts on this {SINGULAR[key]}: give its density, kg/m³"
+            yield Fault((key, i, "material", "density"), "missing", remedy)
 
 
 def _gravity(scene: SceneTables) -> tuple[str | None, dict[str, str]]:
@@ -313,13 +288,11 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
                     break
     if not groups:
         return
-    by_list: dict[str, list[tuple[Holder, Any]]] = {key: [] for key in PARAMETER_LISTS}
-    for (key, index), record, table in _entries(scene):
-        if key in by_list:
-            holder = Holder(str(key), int(index), sound(record, table))
-            by_list[str(key)].append((holder, table.get("name")))
-    entries = [entry for key in PARAMETER_LISTS for entry in by_list[key]]
-    holders = holders_of([holder for holder, _ in entries], [name for _, name in entries])
+    holders = holders_of(
+        Holder(str(key), int(index), sound(record, table), table.get("name"))
+        for (key, index), record, table in _entries(scene)
+        if key in PARAMETER_LISTS
+    )
     names = [name for group, _ in groups for name in group]
     paths = [path if len(group) == 1 else (*path, j) for group, path in groups for j in range(len(group))]
     yield from parameter_faults(names, paths, holders, free_names(scene), requested_fields(scene))

@@ -29,7 +29,7 @@ from cosserat_casadi.scene.simulation import TOLERANCE, Simulation
 from cosserat_casadi.scene.target_records import Bound, Target
 from cosserat_casadi.scene.tube_records import Tube
 from cosserat_casadi.scene.unknown_records import Estimation, IdentificationSettings, Unknown
-from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition, without_tied_repetition
+from cosserat_casadi.scene.values import NotEmpty, TiedNames, names_in, without_repetition
 from cosserat_casadi.scene.velocity_record import InitialVelocity
 
 
@@ -86,7 +86,7 @@ inputs = ["push.force", "cable.tension"]
         None,
         description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
     )
-    parameters: Annotated[tuple[TiedNames, ...], AfterValidator(without_tied_repetition)] = Field(
+    parameters: Annotated[tuple[TiedNames, ...], AfterValidator(without_repetition)] = Field(
         (),
         description="numbers of the scene that become arguments of every function, by their keys, such as "
         "'finger.material.youngs_modulus'; a list of keys is one parameter, named as its first: their numbers keep "
@@ -162,11 +162,11 @@ inputs = ["push.force", "cable.tension"]
 
     def named_parameters(self) -> tuple[NamedNumbers, ...]:
         """The numbers that the scene names as parameters, in the order of its list."""
-        entries = []
-        for key in PARAMETER_LISTS:
-            records = getattr(self, key)
-            entries += [Holder(key, index, record) for index, record in enumerate(records)]
-        holders = holders_of(entries, [getattr(holder.record, "name", None) for holder in entries])
+        holders = holders_of(
+            Holder(key, index, record, getattr(record, "name", None))
+            for key in PARAMETER_LISTS
+            for index, record in enumerate(getattr(self, key))
+        )
         named = [tied_numbers(names_in(entry), holders) for entry in self.parameters]
         return tuple(numbers for numbers in named if numbers is not None)
 

@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.faults import Fault, Table, numbers_of, shown
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, not_increasing, numbers_of
+from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, not_increasing
 
 TOLERANCE = 1e-3
 """Error of the paths of tips, relative to the rod length, where the scene asks for none: that of a film."""

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Table, frame_faults
+from cosserat_casadi.scene.faults import Fault, Table, faults_of_ends, frame_faults
 from cosserat_casadi.scene.orientations import Oriented
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaternion, Share, Vector, numbers_of
+from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaternion, Share, Vector
 
 
 class TargetRecord(Entry):
@@ -132,24 +132,6 @@ upper = 1.0
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The lower bound is below the upper one."""
-        lower = numbers_of(given.get("lower"))
-        upper = numbers_of(given.get("upper"))
         if "lower" not in given and "upper" not in given:
             yield Fault(("lower",), "missing", "give lower, upper or both")
-        count = max(len(lower), len(upper))
-        fewer = min(len(lower), len(upper))
-        # A single number bounds all entries, so that it goes with any count.
-        if fewer > 1 and fewer != count:
-            yield Fault(("upper",), f"must have as many entries as lower, {len(lower)}, got {len(upper)}")
-            return
-        # A side that is left out or faulty has no numbers, and nothing to cross.
-        pairs = zip(_spread(lower, count), _spread(upper, count), strict=False)
-        if any(low > high for low, high in pairs):
-            yield Fault(("upper",), "must not be below lower")
-
-
-def _spread(numbers: list[float], count: int) -> list[float]:
-    """One number for all entries as a list of them."""
-    if len(numbers) == 1:
-        return numbers * count
-    return numbers
+        yield from faults_of_ends(given, equal=True)

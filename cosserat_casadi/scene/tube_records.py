@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, shown
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.records import Entry, Record
-from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
+from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive
 
 BESIDE_TUBES = (
     "schema",
@@ -183,7 +183,6 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
     yield from _load_faults(scene)
     yield from _target_faults(scene)
     yield from _measurement_faults(scene)
-    yield from _weightless_tubes(scene)
 
 
 def _load_faults(scene: SceneTables) -> Iterator[Fault]:
@@ -239,26 +238,6 @@ def _spread_faults(load: Table) -> Iterator[Fault]:
     force = load.get("force")
     if isinstance(force, list) and any(isinstance(component, list | Mapping) for component in force):
         yield Fault(("force",), "varies along the tube", "give three numbers, N/m, of the tube up to its tip")
-
-
-def _weightless_tubes(scene: SceneTables) -> Iterator[Fault]:
-    """Faults of tubes without mass on which gravity acts."""
-    for index, tube in scene.tables("tubes"):
-        weighing = [i for i, load in scene.tables("loads") if _weighs(load, tube.get("name"))]
-        if not weighing:
-            continue
-        acting = f"loads[{weighing[0]}] acts on this tube"
-        material = tube.get("material")
-        if "stiffness" in tube and "linear_density" not in tube:
-            yield Fault(("tubes", index, "linear_density"), "missing", f"{acting}: give its mass per length, kg/m")
-        elif "stiffness" not in tube and isinstance(material, Mapping) and "density" not in material:
-            yield Fault(("tubes", index, "material", "density"), "missing", f"{acting}: give its density, kg/m³")
-
-
-def _weighs(load: Table, tube: Any) -> bool:
-    """Whether a load weighs a tube of a name."""
-    rods = load.get("rods")
-    return load.get("kind") == "gravity" and (rods is None or (isinstance(rods, list) and tube in rods))
 
 
 def _reaches_out(tube: Table) -> bool:

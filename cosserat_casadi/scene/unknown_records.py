@@ -7,11 +7,11 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, faults_of_ends, one_of, shown
 from cosserat_casadi.scene.input_rules import input_part_faults
-from cosserat_casadi.scene.measurement_record import PositiveComponent, overlap, table_that_moves
+from cosserat_casadi.scene.measurement_record import overlap, table_that_moves
 from cosserat_casadi.scene.records import Entry, Record
-from cosserat_casadi.scene.values import Component, Number, Positive, TiedNames, Whole, names_in, numbers_of
+from cosserat_casadi.scene.values import Component, Number, Positive, PositiveComponent, TiedNames, Whole, names_in
 
 MOST_STARTS = 10_000
 """Places from which a search may be asked to begin."""
@@ -75,23 +75,12 @@ per_row = true
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A parameter or an input; bounds in their order."""
-        if "parameter" in given and "input" in given:
-            yield Fault(("input",), "stands beside parameter", "give one of the two")
-        elif "parameter" not in given and "input" not in given:
-            yield Fault(("parameter",), "missing", "name a parameter or an input")
-        elif given.get("per_row") is True and "parameter" in given and not ("lower" in given and "upper" in given):
+        yield from one_of("parameter", "input", given, "name a parameter or an input")
+        of_row = given.get("per_row") is True and "parameter" in given and "input" not in given
+        if of_row and not ("lower" in given and "upper" in given):
             problem = "asks for a parameter of each row, of which lower or upper is missing"
             yield Fault(("per_row",), problem, "say between which values it may be; an estimate begins there")
-        lower = numbers_of(given.get("lower"))
-        upper = numbers_of(given.get("upper"))
-        count = max(len(lower), len(upper))
-        if min(len(lower), len(upper)) > 1 and len(lower) != len(upper):
-            yield Fault(("upper",), f"must have as many entries as lower, {len(lower)}, got {len(upper)}")
-            return
-        lowest = lower * count if len(lower) == 1 else lower
-        highest = upper * count if len(upper) == 1 else upper
-        if any(low >= high for low, high in zip(lowest, highest, strict=False)):
-            yield Fault(("upper",), "must be above lower")
+        yield from faults_of_ends(given, equal=False)
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:

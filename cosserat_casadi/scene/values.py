@@ -203,15 +203,7 @@ def _direction(value: Triple) -> Triple:
     return (x / norm, y / norm, z / norm)
 
 
-def without_repetition(value: tuple[str, ...]) -> tuple[str, ...]:
-    """Refuse names that are listed twice."""
-    faults = list(_repetitions(value))
-    if faults:
-        raise refusal(faults)
-    return value
-
-
-def without_tied_repetition(value: tuple[str | tuple[str, ...], ...]) -> tuple[str | tuple[str, ...], ...]:
+def without_repetition(value: tuple[str | tuple[str, ...], ...]) -> tuple[str | tuple[str, ...], ...]:
     """Refuse names that are listed twice, be it in lists of names that stand for one number."""
     seen: set[str] = set()
     faults = []
@@ -235,27 +227,6 @@ def _without_list_of_one(entry: str | tuple[str, ...]) -> str | tuple[str, ...]:
     """The name alone where a list has no other: both spellings are one parameter."""
     names = names_in(entry)
     return names[0] if len(names) == 1 else entry
-
-
-def _repetitions(names: Sequence[str]) -> Iterator[Fault]:
-    seen: set[str] = set()
-    for i, name in enumerate(names):
-        if name in seen:
-            problem = f"{shown(name)} is listed twice"
-            yield Fault((i,), problem)
-        seen.add(name)
-
-
-def numbers_of(value: Any) -> list[float]:
-    """The numbers of a value that is one or a list of them; none where it is faulty or left out."""
-    numbers = [value]
-    if isinstance(value, list | tuple):
-        numbers = list(value)
-    # Truth values are integers in Python.
-    for number in numbers:
-        if isinstance(number, bool) or not isinstance(number, int | float):
-            return []
-    return numbers
 
 
 def not_increasing(times: Sequence[float], path: Path) -> Iterator[Fault]:
@@ -326,6 +297,12 @@ Component = Annotated[
     BY_LENGTH,
 ]
 """A number, or several."""
+
+PositiveComponent = Annotated[
+    Annotated[Positive, SINGLE] | Annotated[tuple[Positive, ...], NotEmpty(), SEVERAL],
+    BY_LENGTH,
+]
+"""A number > 0, or several."""
 
 TiedNames = Annotated[
     Annotated[str, SINGLE] | Annotated[tuple[str, ...], NotEmpty(), SEVERAL],
