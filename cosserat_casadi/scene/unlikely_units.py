@@ -8,7 +8,9 @@ from collections.abc import Collection, Iterator
 
 from cosserat_casadi.scene.faults import SIZES
 from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.tube_records import Tube
 
 LOG = logging.getLogger(__name__)
 
@@ -35,9 +37,10 @@ def note_unlikely_units(scene: Scene) -> None:
 
 
 def _notes(scene: Scene) -> Iterator[str]:
-    rods = [(f"rods[{i}]", rod, _numbers(rod, {"length"})) for i, rod in enumerate(scene.rods)]
-    tubes = [(f"tubes[{i}]", tube, _numbers(tube, {"straight", "curved"})) for i, tube in enumerate(scene.tubes)]
-    for where, record, lengths in [*rods, *tubes]:
+    made: list[tuple[str, Rod | Tube, dict[str, float]]] = []
+    made += [(f"rods[{i}]", rod, _numbers(rod, {"length"})) for i, rod in enumerate(scene.rods)]
+    made += [(f"tubes[{i}]", tube, _numbers(tube, {"straight", "curved"})) for i, tube in enumerate(scene.tubes)]
+    for where, record, lengths in made:
         sizes = _numbers(record.section, SIZES)
         material = _numbers(record.material, {"youngs_modulus", "density"})
         numbers = (lengths | sizes | material).values()
@@ -54,7 +57,8 @@ def _notes(scene: Scene) -> Iterator[str]:
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
-    turning = [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
+    turning: list[tuple[str, Record]] = []
+    turning += [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
     turning += [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
     for where, turned in turning:
         for key, angle in _numbers(turned, ANGLES).items():
