@@ -207,7 +207,7 @@ def solve_rods(
         transport = scene.accuracy.rotation or solver.reference_transport
         in_contact = solve_contact_scene(scene, values, transport, progress, report)
         return noted_unstable(in_contact) if stable else in_contact
-    solution = _with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver)
+    solution = with_notes(_with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver))
     # The last correction alone may need no step: a user asks what the search has cost.
     solution = replace(solution, iterations=solver.iterations)
     if solver.relaxed and solution.stable:
@@ -410,7 +410,7 @@ def _beside_finer(
     shape_error = judged.shape_error_estimate
     # Written so that an estimate which is not a number counts as too large.
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
-        return with_notes(judged)
+        return judged
     return judged.unresolved()
 
 

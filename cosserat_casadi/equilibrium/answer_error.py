@@ -152,7 +152,7 @@ FRICTION_OF_JOINTS = " Friction of joints acts in motion alone, and is left out.
 """A sentence on equilibria of scenes with joints that rub."""
 
 FRICTION_OF_BODIES = " Friction of bodies and disks acts in motion alone, and is left out."
-"""A sentence on paths of scenes in which bodies or disks rub on obstacles."""
+"""A sentence on equilibria and paths of scenes in which bodies or disks rub on obstacles."""
 
 
 def left_out_friction(scene: Scene) -> str:
@@ -171,8 +171,10 @@ def _friction_note(solution: Equilibrium[Any]) -> str:
     if not solution.converged or not isinstance(solution, Solution):
         return ""
     scene = solution.model.scene
-    of_contact = solution.contacts and scene.rubs and solution.model.inputs.memory is None
-    return (FRICTION_OF_CONTACT if of_contact else "") + left_out_friction(scene)
+    if not (solution.contacts and scene.rubs and solution.model.inputs.memory is None):
+        return left_out_friction(scene)
+    of_bodies = all(touch.of_body for touch in solution.contacts)
+    return (FRICTION_OF_BODIES if of_bodies else FRICTION_OF_CONTACT) + left_out_friction(scene)
 
 
 def _tolerance_note(solution: Equilibrium[Any]) -> str:

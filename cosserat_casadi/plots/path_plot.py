@@ -239,7 +239,7 @@ def _numbers(value: FloatArray) -> str:
 def _subtitle(path: EquilibriumPath) -> str:
     if not path.converged:
         return path.message
-    if path.model.scene.rubs:
+    if path.model.inputs.memory is not None:
         return "with friction: limits and bifurcations are not looked for"
     events = [f"{CONTACT_WORDS.get(event.kind, event.kind)} at {event.factor:.6g}" for event in path.events[:3]]
     return "; ".join(events) or "no limit, no bifurcation"

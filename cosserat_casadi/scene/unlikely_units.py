@@ -8,9 +8,7 @@ from collections.abc import Collection, Iterator
 
 from cosserat_casadi.scene.faults import SIZES
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.scene import Scene
-from cosserat_casadi.scene.tube_records import Tube
 
 LOG = logging.getLogger(__name__)
 
@@ -37,10 +35,10 @@ def note_unlikely_units(scene: Scene) -> None:
 
 
 def _notes(scene: Scene) -> Iterator[str]:
-    made: list[tuple[str, Rod | Tube, dict[str, float]]] = []
-    made += [(f"rods[{i}]", rod, _numbers(rod, {"length"})) for i, rod in enumerate(scene.rods)]
-    made += [(f"tubes[{i}]", tube, _numbers(tube, {"straight", "curved"})) for i, tube in enumerate(scene.tubes)]
-    for where, record, lengths in made:
+    rods = [(f"rods[{i}]", rod) for i, rod in enumerate(scene.rods)]
+    tubes = [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
+    for where, record in (*rods, *tubes):
+        lengths = _numbers(record, {"length", "straight", "curved"})
         sizes = _numbers(record.section, SIZES)
         material = _numbers(record.material, {"youngs_modulus", "density"})
         numbers = (lengths | sizes | material).values()
@@ -57,10 +55,8 @@ def _notes(scene: Scene) -> Iterator[str]:
         for key, size in sizes.items():
             if size > longest:
                 yield f"{where}.section.{key}: {size:g} m is more than the length of {longest:g} m (are both in m?)"
-    turning: list[tuple[str, Record]] = []
-    turning += [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
-    turning += [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
-    for where, turned in turning:
+    hinges = [(f"joints[{i}]", joint) for i, joint in enumerate(scene.joints) if joint.kind == "revolute"]
+    for where, turned in (*hinges, *tubes):
         for key, angle in _numbers(turned, ANGLES).items():
             if abs(angle) > FURTHEST:
                 yield f"{where}.{key}: {angle:g} rad is more than two turns (is it in rad?)"

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Model, build, discretise, export, load, read_scene, scene_from_dict, simulate, solve
+from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.codegen.compiled_motion import CompiledMotion, StepState
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -158,6 +159,8 @@ def test_at_rest_nothing_rubs_and_it_is_said() -> None:
     found = solve(with_friction)
     assert found.contacts and "Friction acts in motion and on paths" in found.message
     assert "Friction" not in solve(plain).message
+    searched = solve(unfixed(rubbing, 1e-2))
+    assert searched.contacts and "Friction acts in motion and on paths" in searched.message
 
 
 @pytest.mark.slow

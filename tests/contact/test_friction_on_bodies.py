@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, build, discretise, export, follow, load, read_scene, scene_from_dict, simulate
+from cosserat_casadi import Model, build, discretise, export, follow, load, read_scene, scene_from_dict, simulate, solve
+from cosserat_casadi.accuracy.fixing import unfixed
 from cosserat_casadi.codegen.compiled_motion import CompiledMotion, StepState
 from cosserat_casadi.equilibrium.rubbing import friction_between
 from cosserat_casadi.equilibrium.smooth_contact import smooth_layers
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.paths.friction_path import FrictionPath
+from cosserat_casadi.plots.path_plot import _subtitle
 from tests.conftest import ROOT
 from tests.families import mostly_slow
 
@@ -250,3 +252,8 @@ def test_a_path_of_a_body_that_rubs_has_no_friction_and_says_so() -> None:
     assert_allclose(paths[0].tip("rod").position[-1], paths[1].tip("rod").position[-1], rtol=0, atol=1e-9)
     assert "Friction of bodies and disks acts in motion alone" in paths[0].message
     assert "riction" not in paths[1].message
+    assert [_subtitle(path) for path in paths] == ["no limit, no bifurcation"] * 2
+    pushed = tables | {"loads": [{**tables["loads"][0], "force": [0, 0, -0.1]}]}
+    scene = scene_from_dict(pushed | {"obstacles": [smooth | {"friction": 0.3}]})
+    for solution in (solve(build(scene)), solve(scene), solve(unfixed(scene, 1e-2))):
+        assert solution.contacts and "Friction of bodies and disks acts in motion alone" in solution.message
