@@ -253,10 +253,11 @@ class SmoothBarriers:
             for own, other in ((first.start, second.start), (first.end, second.end))
         )
         way = later - apart
-        # Others stay apart.
-        half, bend = float(thickness(self.model.discrete.rods, pair)) / 2, first.bend + second.bend
+        half = float(thickness(self.model.discrete.rods, pair)) / 2
+        bend = first.bend + second.bend
         allowed = max(half, float(np.hypot(*spacings)) * EVERY / 2)
         longest = np.sqrt(np.einsum("ki,ki->k", way, way).max(initial=0.0))
+        # Others stay apart.
         near = np.einsum("ki,ki->k", apart, apart) <= (allowed + bend + longest) ** 2
         apart, way = apart[near], way[near]
         lengths = np.einsum("ki,ki->k", way, way)

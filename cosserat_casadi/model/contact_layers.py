@@ -30,13 +30,13 @@ LOOSEST_NODES = 1.5
 farther apart a rod sinks in between them, and its shape hangs on where they are."""
 
 MOST_LAYER_NODES = 60
-"""Intervals that layers alone ask for: who wants thinner ones waits until the grid is refined."""
+"""Most intervals that layers alone ask for; those of thinner layers wait until the grid is refined."""
 
 NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
 
 SHARE_OF_LAYER = 0.5
-"""Error of a point on a path over the width of the thinnest layer, relative to the length."""
+"""How far the error of a point on a path may move a section, over the width of the thinnest layer."""
 
 SHARE_ON_BODY = 0.25
 """Share of an obstacle's thickness on a body: it comes to meet the rod, and neither may pass its middle."""

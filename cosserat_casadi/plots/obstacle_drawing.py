@@ -49,7 +49,7 @@ def draw_surfaces(
         points: that are shown, world axes, shape (k, 3), m.
         bodies: poses of the bodies that obstacles are fixed to, by name.
         strength: share of its colour that an obstacle has.
-        named: whether the legend names them; it does not name obstacles that are far from the points.
+        named: whether the legend names them; it names no obstacle that is far from the points.
     """
     for obstacle in obstacles:
         body = None if obstacle.body is None else bodies[obstacle.body]
@@ -76,7 +76,7 @@ def surface_net(obstacle: ObstacleRecord, points: FloatArray, size: float, body:
 def _draw_cut(
     canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray, body: SolvedPoses | None, strength: float
 ) -> bool:
-    """Fill the part of the shown plane that is inside an obstacle, about the rods; return whether there is one.
+    """Fill the part of the shown plane that lies inside an obstacle, about the rods; return whether there is one.
 
     Beside a straight rod axes of one scale show more than its surroundings: a table below it is looked for there.
     """

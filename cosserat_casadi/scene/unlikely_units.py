@@ -8,7 +8,9 @@ from collections.abc import Collection, Iterator
 
 from cosserat_casadi.scene.faults import SIZES
 from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.rod_records import Rod
 from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.tube_records import Tube
 
 LOG = logging.getLogger(__name__)
 
@@ -35,9 +37,9 @@ def note_unlikely_units(scene: Scene) -> None:
 
 
 def _notes(scene: Scene) -> Iterator[str]:
-    rods = [(f"rods[{i}]", rod) for i, rod in enumerate(scene.rods)]
     tubes = [(f"tubes[{i}]", tube) for i, tube in enumerate(scene.tubes)]
-    for where, record in (*rods, *tubes):
+    elastic: list[tuple[str, Rod | Tube]] = [(f"rods[{i}]", rod) for i, rod in enumerate(scene.rods)]
+    for where, record in [*elastic, *tubes]:
         lengths = _numbers(record, {"length", "straight", "curved"})
         sizes = _numbers(record.section, SIZES)
         material = _numbers(record.material, {"youngs_modulus", "density"})
