@@ -181,19 +181,15 @@ class Level:
         Up to the finest level any number is. Above, only one that some level has: rods are sharply bent, but converge.
         """
         if self.index >= self.finest:
-            return self._beyond_finest(modes)
+            if modes > REFERENCE_MODES[-1] or self.index + 1 == len(REFERENCE_MODES):
+                return None
+            # One up at a time: these cost most, and rounding grows with their modes.
+            return replace(self, index=self.index + 1)
         tried = min(modes, REFERENCE_MODES[self.finest])
         above = self.with_modes(tried)
         if above is None:
             return None
         return replace(above, index=min(above.index, self.index + MOST_LEVELS))
-
-    def _beyond_finest(self, modes: int) -> Level | None:
-        """The next level, on the way to a number of modes; None where no level has so many."""
-        if modes > REFERENCE_MODES[-1] or self.index + 1 == len(REFERENCE_MODES):
-            return None
-        # One up at a time: these cost most, and rounding grows with their modes.
-        return replace(self, index=self.index + 1)
 
     def with_min_nodes(self, nodes: int) -> Level:
         """The same modes on at least so many intervals."""

@@ -20,6 +20,7 @@ from math import ceil, log
 import numpy as np
 
 from cosserat_casadi.accuracy.preview import FinerShift, Preview
+from cosserat_casadi.equilibrium.answer_error import FASTEST, SLOWEST
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -28,12 +29,6 @@ MODES_SAFETY = 2.0
 
 GRID_SAFETY = 1.5
 """Factor on the distance to a finer grid, which is not exact either."""
-
-FASTEST = 0.02
-"""Smallest ratio of the errors with and without two more modes that is believed."""
-
-SLOWEST = 0.7
-"""Largest ratio of the errors with and without two more modes that is believed."""
 
 WAVES_FACTOR = 2
 """Factor on modes and intervals at which a look is taken for waves that the last coefficients do not show."""

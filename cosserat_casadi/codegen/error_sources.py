@@ -5,6 +5,7 @@ from __future__ import annotations
 from cosserat_casadi.codegen.block_sources import Words, numbers
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.equilibrium import answer_error
+from cosserat_casadi.equilibrium.metrics import ROUNDING
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import POSE_SIZE, watched_cables, watched_owners
 
@@ -58,6 +59,6 @@ def error_words(model: Model, names: Names) -> Words:
         "error_enough": answer_error.enough_for(tolerance),
         "error_fastest": answer_error.FASTEST,
         "error_slowest": answer_error.SLOWEST,
-        "error_floor": answer_error.ROUNDING,
+        "error_floor": ROUNDING,
         "error_reals": 3 * (model.size + richer.missing_size + watched_count),
     }

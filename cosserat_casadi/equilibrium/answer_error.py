@@ -16,8 +16,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.metrics import ROUNDING, distance_of_poses
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
-from cosserat_casadi.maths.pose_change import change_size, rotation_angles
+from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
@@ -53,9 +54,6 @@ SLOWEST = 0.7
 
 UNKNOWN = 1.0
 """Error of an answer that no correction settles near: the whole length."""
-
-ROUNDING = 2e-14
-"""Floor of every estimate."""
 
 NO_WRENCH = 1e-6
 """Wrench, in units of EI/ℓ, below which one counts as none, and errors are relative to it."""
@@ -325,12 +323,22 @@ def change_with_following(solution: Solution, balance: RicherBalance, following:
     return change_size(balance.poses.moved(before, after).change_from(before))
 
 
+def richer_unknowns(
+    solution: Solution, known: FloatArray | float = 0.0, missing: FloatArray | float = 0.0
+) -> FloatArray:
+    """Unknowns of the richer model: those of the answer with a correction, and missing coordinates."""
+    richer = solution.model.discrete.richer
+    unknowns = np.zeros(richer.discrete.size)
+    unknowns[richer.known] = solution.x + known
+    unknowns[~richer.known] = missing
+    return unknowns
+
+
 def _newton_steps(solution: Solution) -> Iterator[Correction]:
     """Corrections by Newton's method on the richer model."""
     richer = solution.model.discrete.richer
     model = solution.model.richer
-    unknowns = np.zeros(model.size)
-    unknowns[richer.known] = solution.x
+    unknowns = richer_unknowns(solution)
     before = None
     for _ in range(MOST_STEPS):
         residual = column(model.path_residual(unknowns, solution.inputs, 1.0))
@@ -371,10 +379,7 @@ def _rest_of_series(solution: Solution, correction: Correction) -> float:
 
 def _richer_answer(solution: Solution, correction: Correction) -> Solution:
     """The corrected answer as a solution of the richer model."""
-    richer = solution.model.discrete.richer
-    unknowns = np.zeros(richer.discrete.size)
-    unknowns[richer.known] = solution.x + correction.known
-    unknowns[~richer.known] = correction.missing
+    unknowns = richer_unknowns(solution, correction.known, correction.missing)
     return replace(solution, model=solution.model.richer, x=unknowns)
 
 
@@ -382,12 +387,8 @@ def _shape_change(solution: Solution, corrected: Solution) -> float:
     """Largest displacement over the length, or rotation angle (rad), of all sections of all rods."""
     changes = [0.0]
     for name in solution.model.discrete.rods:
-        before = solution.pose(SAMPLES, name)
-        after = corrected.pose(SAMPLES, name)
         length = solution.model.length(name, solution.inputs)
-        distances = np.linalg.norm(after.position - before.position, axis=1) / length
-        angles = rotation_angles(before.quaternion, after.quaternion)
-        changes += [float(distances.max()), float(angles.max())]
+        changes.append(distance_of_poses(solution.pose(SAMPLES, name), corrected.pose(SAMPLES, name), length))
     return max(changes)
 
 

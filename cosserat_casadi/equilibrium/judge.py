@@ -135,7 +135,8 @@ def _with_stability(solution: Solution) -> Solution:
     if stability.neutral:
         smallest_first = np.argsort(np.abs(eigenvalues))
         neutral = admissible[:, smallest_first[: stability.zero]]
-        critical = not _leads_to_equilibria_alike(solution, jacobian, neutral)
+        # Each of them leads to equilibria alike, or just away from this one.
+        critical = not all(_is_alike_beside(solution, jacobian, variation) for variation in neutral.T)
     return replace(
         solution,
         smallest_eigenvalue=stability.smallest_eigenvalue,
@@ -155,11 +156,6 @@ def stability_note(stability: Stability, critical: bool) -> str:
     if stability.negative == 1:
         return " It is unstable: a variation releases energy."
     return f" It is unstable: {stability.negative} independent variations release energy."
-
-
-def _leads_to_equilibria_alike(solution: Solution, jacobian: FloatArray, neutral: FloatArray) -> bool:
-    """Whether each variation that costs no energy, n×k, leads to equilibria alike and not just away from this one."""
-    return all(_is_alike_beside(solution, jacobian, variation) for variation in neutral.T)
 
 
 def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatArray) -> bool:

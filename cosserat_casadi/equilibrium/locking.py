@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.answer_error import richer_unknowns
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -55,13 +56,10 @@ def locked_inputs(solution: Solution) -> tuple[str, ...]:
     model = solution.model
     if degrees_of_freedom(model) is None:
         return ()
-    richer = model.discrete.richer
-    unknowns = np.zeros(richer.discrete.size)
-    unknowns[richer.known] = solution.x
     locked = []
     for (name, own), (_, more) in zip(
         _compliances(model, solution.x, solution.inputs),
-        _compliances(model.richer, unknowns, solution.inputs),
+        _compliances(model.richer, richer_unknowns(solution), solution.inputs),
         strict=True,
     ):
         moves = more > NONE * more.max(initial=0.0)

@@ -66,10 +66,10 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
         first_pose = first.pose(sections, name)
         second_pose = second.pose(sections, name)
         length = first.model.length(name, first.inputs)
-        distances.append(_distance(first_pose, second_pose, length))
+        distances.append(distance_of_poses(first_pose, second_pose, length))
     for name in first.model.discrete.bodies:
         length = first.model.body_length(name, first.inputs)
-        distances.append(_distance(first.body(name), second.body(name), length))
+        distances.append(distance_of_poses(first.body(name), second.body(name), length))
     return max(distances)
 
 
@@ -126,7 +126,8 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
     return np.concatenate(blocks)
 
 
-def _distance(first: SolvedPoses, second: SolvedPoses, length: float) -> float:
+def distance_of_poses(first: SolvedPoses, second: SolvedPoses, length: float) -> float:
+    """Largest distance of positions over a length, or angle between orientations, rad."""
     distances = np.linalg.norm(first.position - second.position, axis=-1)
     angles = rotation_angles(first.quaternion, second.quaternion)
     largest_distance = float(distances.max()) / length

@@ -9,7 +9,7 @@ See docs/theory.md, section 9, "Settling".
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -44,19 +44,6 @@ PATH_OF_ENERGY = " It was reached by letting the rod settle to less energy, not 
 """Sentence in the message of a relaxed solution."""
 
 
-@dataclass(frozen=True)
-class _Try:
-    """One descent.
-
-    Attributes:
-        start: strain coordinates, shape (n,).
-        side: +1 or −1, the side on which a saddle is left.
-    """
-
-    start: FloatArray
-    side: float
-
-
 def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | None = None) -> Solution | None:
     """Find a stable equilibrium of the same model and inputs.
 
@@ -69,8 +56,8 @@ def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | N
         the equilibrium; None where no try leads to one.
     """
     tries = len(SIDES) + RANDOM_TRIES
-    for k, attempt in enumerate(_tries(solution)):
-        for x in _descended(solution, attempt):
+    for k, (start, side) in enumerate(_tries(solution)):
+        for x in _descended(solution, start, side):
             corrected = _corrected(solution, x, settings)
             if corrected.stable and _is_near(corrected, x):
                 return replace(corrected, message=corrected.message + PATH_OF_ENERGY)
@@ -85,8 +72,11 @@ def can_relax(model: Model) -> bool:
     return not discrete.is_assembly and not discrete.frames and not discrete.cables
 
 
-def _tries(solution: Solution) -> Iterator[_Try]:
-    """Both sides from where the path ended, then from beside it."""
+def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
+    """Strain coordinates to start from, shape (n,), and the side, +1 or −1, on which a saddle is left.
+
+    Both sides from where the path ended, then from beside it.
+    """
     model = solution.model
     # A held rod begins without its springs, where only its intrinsic shape is known.
     unknowns = solution.x
@@ -94,7 +84,7 @@ def _tries(solution: Solution) -> Iterator[_Try]:
         unknowns = model.unloaded()
     start = unknowns[: model.discrete.unknowns.count(BlockKind.STRAIN)]
     for side in SIDES:
-        yield _Try(start, side)
+        yield start, side
 
     jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
     eigenvalues, admissible = admissible_spectrum(jacobian, variations(model))
@@ -109,36 +99,25 @@ def _tries(solution: Solution) -> Iterator[_Try]:
         shares = random.standard_normal(unstable.shape[1])
         direction = unstable @ shares
         beside = start + OFF * direction / np.linalg.norm(direction)
-        side = SIDES[k % 2]
-        yield _Try(beside, side)
+        yield beside, SIDES[k % 2]
 
 
-def _descended(solution: Solution, attempt: _Try) -> Iterator[FloatArray]:
-    """Unknowns at the minima that a try leads to, one nearer to the supports than the other."""
-    if solution.model.discrete.constraints:
-        yield from _pulled_in(solution, attempt)
-        return
-    released = _released(solution, attempt)
-    if released is not None:
-        yield released
+def _descended(solution: Solution, start: FloatArray, side: float) -> Iterator[FloatArray]:
+    """Unknowns at the minima that a try leads to: one of a free rod, which relaxes at the full load.
 
-
-def _released(solution: Solution, attempt: _Try) -> FloatArray | None:
-    """Unknowns of a free rod that has relaxed at the full load; None where it comes to no rest."""
-    energy = energy_at(solution.model, solution.inputs, 1.0)
-    limits = DescentSettings()
-    return descend(energy, attempt.start, attempt.side, limits)
-
-
-def _pulled_in(solution: Solution, attempt: _Try) -> Iterator[FloatArray]:
-    """Unknowns of a held rod, multipliers included, that has relaxed at every stage of its springs; the stiff ones."""
+    Of a held rod, which relaxes at every stage of its springs, at the stiff ones, each nearer to the supports.
+    """
     model = solution.model
-    q = attempt.start
+    if not model.discrete.constraints:
+        released = descend(energy_at(model, solution.inputs, 1.0), start, side, DescentSettings())
+        if released is not None:
+            yield released
+        return
+    q = start
     for spring in SPRINGS:
         # λ gap + (1 − λ) multiplier = 0 is a spring of stiffness λ / (1 − λ).
         load_factor = spring / (1.0 + spring)
-        energy = energy_at(model, solution.inputs, load_factor)
-        minimum = descend(energy, q, attempt.side, DescentSettings())
+        minimum = descend(energy_at(model, solution.inputs, load_factor), q, side, DescentSettings())
         if minimum is None:
             return
         # The next stage begins where this one has ended: the springs pull the rod in without a jump.

@@ -61,9 +61,9 @@ class Collocation:
         """Number of stages s."""
         return len(self.nodes)
 
-    def values_at(self, share: float) -> FloatArray:
-        """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,)."""
-        powers = share ** np.arange(self.stages)
+    def values_at(self, share: float | FloatArray) -> FloatArray:
+        """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,), or at k of them, shape (k, s)."""
+        powers = np.asarray(share)[..., None] ** np.arange(self.stages)
         return np.asarray(powers @ self.polynomials)
 
     def integrals_at(self, share: float) -> FloatArray:
@@ -72,21 +72,10 @@ class Collocation:
         powers = share**exponents / exponents
         return np.asarray(powers @ self.polynomials)
 
-    def double_integrals_at(self, share: float) -> FloatArray:
-        """Integrals of the integrals, ∫₀^θ ∫₀^σ ℓ_j, shape (s,)."""
+    def double_integrals_at(self, share: float | FloatArray) -> FloatArray:
+        """Integrals of the integrals, ∫₀^θ ∫₀^σ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(2, self.stages + 2)
-        powers = share**exponents / (exponents * (exponents - 1))
-        return np.asarray(powers @ self.polynomials)
-
-    def values_at_stages(self, shares: FloatArray) -> FloatArray:
-        """Lagrange polynomials at several shares of the step, shape (len(shares), s)."""
-        powers = shares[:, None] ** np.arange(self.stages)
-        return np.asarray(powers @ self.polynomials)
-
-    def double_integrals_at_stages(self, shares: FloatArray) -> FloatArray:
-        """Integrals of their integrals, ∫₀^θ ∫₀^σ ℓ_j, at several shares θ of the step, shape (len(shares), s)."""
-        exponents = np.arange(2, self.stages + 2)
-        powers = shares[:, None] ** exponents / (exponents * (exponents - 1))
+        powers = np.asarray(share)[..., None] ** exponents / (exponents * (exponents - 1))
         return np.asarray(powers @ self.polynomials)
 
 

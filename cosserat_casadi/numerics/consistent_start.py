@@ -91,7 +91,9 @@ class Saddle:
 def saddle_of(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> Saddle:
     """The system of equations that are linearised, some of whose entries have accelerations, shape (n,)."""
     constraints = _constraint_rows(linearisation, differential)
-    return Saddle(constraints, _saddle(linearisation, differential, constraints), differential)
+    matrix = np.where(differential, linearisation.mass, linearisation.stiffness)
+    matrix[constraints] = np.where(differential, linearisation.stiffness[constraints], 0.0)
+    return Saddle(constraints, matrix, differential)
 
 
 def saddle_at(equations: MotionEquations, instant: Instant) -> Saddle:
@@ -267,15 +269,6 @@ def impact(
     for _ in range(CORRECTIONS):
         change = change + inverse @ (wanted - matrix @ change)
     return instant.v + np.where(differential, change, 0.0), np.where(differential, 0.0, change)
-
-
-def _saddle(
-    linearisation: Linearisation, differential: npt.NDArray[np.bool_], constraints: npt.NDArray[np.bool_]
-) -> FloatArray:
-    """Derivatives of the rows with accelerations and algebraic entries, constraints twice differentiated, (n, n)."""
-    matrix = np.where(differential, linearisation.mass, linearisation.stiffness)
-    matrix[constraints] = np.where(differential, linearisation.stiffness[constraints], 0.0)
-    return matrix
 
 
 def _constraint_rows(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

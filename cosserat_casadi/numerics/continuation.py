@@ -208,10 +208,8 @@ def follow(
 
         trial = newton(path.at(target), current.x + predicted, limits.correction(target))
         iterations += trial.iterations
-        if not _corrector_accepted(path, trial, current.x, predicted):
-            step /= 2
-            continue
-        if path.admits is not None and not path.admits((current.x, current.t), (trial.x, target)):
+        accepted = _corrector_accepted(path, trial, current.x, predicted)
+        if not accepted or not (path.admits is None or path.admits((current.x, current.t), (trial.x, target))):
             step /= 2
             continue
 

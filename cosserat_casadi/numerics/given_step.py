@@ -69,4 +69,4 @@ def _first_iterate(run: StepRun, share: float, longest: Longest | None) -> Float
     if longest is None:
         return run.guess()
     shares = run.method.nodes * (share / longest.share)
-    return run.method.values_at_stages(shares) @ longest.solution.unknowns
+    return run.method.values_at(shares) @ longest.solution.unknowns

@@ -148,8 +148,8 @@ def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times
     sizes = of_time["size"]
     shares = (times - of_time["begin"]) / sizes
     accelerations = np.where(differential, of_time["unknowns"], 0.0)
-    values = np.einsum("ts,tsn->tn", method.values_at_stages(shares), of_time["unknowns"])
-    moved = np.einsum("ts,tsn->tn", method.double_integrals_at_stages(shares), accelerations)
+    values = np.einsum("ts,tsn->tn", method.values_at(shares), of_time["unknowns"])
+    moved = np.einsum("ts,tsn->tn", method.double_integrals_at(shares), accelerations)
     displacement = (shares * sizes)[:, None] * of_time["v"] + sizes[:, None] ** 2 * moved
     x = np.where(differential, of_time["x"] + displacement, values)
     # The end of a step may have been put right.
@@ -183,11 +183,11 @@ class CarriedStep:
 def extrapolated(method: Collocation, step: TimeStep | CarriedStep, size: float) -> FloatArray:
     """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
     shares = 1.0 + method.nodes * (size / step.size)
-    return method.values_at_stages(shares) @ step.unknowns
+    return method.values_at(shares) @ step.unknowns
 
 
 def restricted(step: TimeStep, time: float) -> TimeStep:
     """The part of a step up to a time in it: the same polynomial, with its values at the stages of a shorter step."""
     share = (time - step.start.time) / step.size
-    unknowns = step.method.values_at_stages(share * step.method.nodes) @ step.unknowns
+    unknowns = step.method.values_at(share * step.method.nodes) @ step.unknowns
     return replace(step, size=time - step.start.time, unknowns=unknowns, end=step.at(time))

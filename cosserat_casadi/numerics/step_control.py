@@ -121,7 +121,7 @@ def overlooked_error(
         rows = [equations.residual(float(time), middle.x, middle.v, middle.a) for time in at]
         return np.array(rows)
 
-    seen = method.values_at_stages(shares) @ forces(begin + method.nodes * size)
+    seen = method.values_at(shares) @ forces(begin + method.nodes * size)
     missed = forces(times) - seen
     to_end = (1.0 - shares)[:, None]
     impulse = np.asarray(np.trapezoid(missed, shares, axis=0))

@@ -18,7 +18,6 @@ from cosserat_casadi.equilibrium.contact.contact_search import Settling
 from cosserat_casadi.equilibrium.contact.contact_solve import LEAST_TOLERANCE, solve_contact
 from cosserat_casadi.equilibrium.contact.contact_state import TIP, Touch, load_sections, state_in, without_contacts
 from cosserat_casadi.equilibrium.solution import SectionForce, Solution, SolvedPoses
-from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings
@@ -28,7 +27,7 @@ from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, extend
 from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.contact_transitions import ArrangementEntry, changes, entered
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent, tested_stability
 from cosserat_casadi.paths.margins import Key, margins, violated
 
 MOST_CHANGES = 100
@@ -372,9 +371,7 @@ def _record(empty: ContactPath, travel: Travel) -> ContactPath:
     smallest = empty.smallest_eigenvalue
     neutral = empty.neutral
     if smallest is not None:
-        tests = [stability_of(point.spectrum) for _, point in travel.points]
-        smallest = np.array([test.smallest_eigenvalue for test in tests])
-        neutral = np.array([test.neutral for test in tests], dtype=np.bool_)
+        smallest, neutral = tested_stability(point for _, point in travel.points)
     return replace(
         empty,
         outcome=outcome,

@@ -14,10 +14,11 @@ from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.rubbing import RubbingStretch
 from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import ModelType, SectionForce, Solution, SolvedPoses
+from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.arclength import ArcSettings, Curve
+from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
@@ -184,6 +185,13 @@ class InputPath(Result, Generic[ModelType, EventType]):
         before = self.all_inputs[index] - self.factor[index] * self.change
         curve = Curve(input_path(self.model, start, before, before + self.change), DETERMINANT, ArcSettings())
         return curve.at(start, factor)
+
+
+def tested_stability(points: Iterable[ArcPoint]) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+    """Smallest eigenvalue of the second variation at points of a curve, and whether each of them is neutral."""
+    tests = [stability_of(point.spectrum) for point in points]
+    eigenvalues = np.array([test.smallest_eigenvalue for test in tests])
+    return eigenvalues, np.array([test.neutral for test in tests], dtype=np.bool_)
 
 
 def path_events(traced: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:

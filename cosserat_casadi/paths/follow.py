@@ -17,7 +17,7 @@ from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from cosserat_casadi.equilibrium.strain_limits import first_beyond
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -30,7 +30,7 @@ from cosserat_casadi.numerics.events import DETERMINANT, Arc
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
 from cosserat_casadi.paths.contact_path import follow_contact_path
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events, tested_stability
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
 FROM_NOWHERE = (
@@ -124,9 +124,7 @@ class _Followed:
         smallest_eigenvalue = None
         neutral = None
         if self.potential:
-            tests = [stability_of(point.spectrum) for point in traced.points]
-            smallest_eigenvalue = np.array([test.smallest_eigenvalue for test in tests])
-            neutral = np.array([test.neutral for test in tests], dtype=np.bool_)
+            smallest_eigenvalue, neutral = tested_stability(traced.points)
         return EquilibriumPath(
             model=self.model,
             name=self.name,

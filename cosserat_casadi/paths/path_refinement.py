@@ -154,15 +154,7 @@ def _follow_refined(
         if scene.rubs:
             # Friction goes from point to point: their distance is refined with the modes, so that its error shows too.
             limits = replace(limits, load_factor_change=limits.load_factor_change / 2**level)
-        return follow_path(
-            model,
-            name,
-            value,
-            values,
-            branch=branch,
-            settings=limits,
-            progress=progress,
-        )
+        return follow_path(model, name, value, values, branch=branch, settings=limits, progress=progress)
 
     scene = scene.baked()
     accuracy = scene.accuracy
@@ -249,8 +241,4 @@ def _largest_turn(path: EquilibriumPath) -> float:
     samples = np.linspace(0, count - 1, SAMPLES)
     # Short paths have fewer points than samples.
     indices = np.unique(samples.astype(int))
-    turns = []
-    for index in indices:
-        solution = path.solution(int(index))
-        turns.append(largest_turn(solution))
-    return max(turns)
+    return max(largest_turn(path.solution(int(index))) for index in indices)

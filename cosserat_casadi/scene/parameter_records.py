@@ -66,7 +66,7 @@ class Holder:
         table: key of the list that it stands in.
         index: its place there.
         record: the entry; None where it is faulty.
-        name: of the entry; None where it is faulty or no text.
+        name: of the entry, any value where it is faulty.
     """
 
     table: str
