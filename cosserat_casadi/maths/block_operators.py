@@ -7,6 +7,8 @@ only its entries. The points are the nodes of a grid, or the intervals between t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import casadi as ca
 import numpy as np
 
@@ -59,14 +61,23 @@ def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
 
 def hat_operator(field: AnyMatrix) -> AnyMatrix:
     """Operator v ↦ field × v on stacked fields, from a 3×k field: (3k)×(3k), report (A.4) at every point."""
-    x, y, z = (ca.diag(row) for row in ca.vertsplit(field))
-    zero = type(x)(x.shape[0], x.shape[0])
+    return hat_blocks(*(ca.diag(row) for row in ca.vertsplit(field)))
+
+
+def hat_blocks(x: AnyMatrix, y: AnyMatrix, z: AnyMatrix) -> AnyMatrix:
+    """The matrix v^ of a vector, report (A.4), with blocks for the components of the vector."""
+    zero = type(x)(*x.shape)
     rows = [
         [zero, -z, y],
         [z, zero, -x],
         [-y, x, zero],
     ]
     return ca.blockcat(rows)
+
+
+def summed(terms: Sequence[Matrix]) -> Matrix | None:
+    """Sum of the terms in their order; None without any."""
+    return sum(terms[1:], terms[0]) if terms else None
 
 
 def sum_of_products(*factors: tuple[Matrix, Matrix]) -> Matrix:

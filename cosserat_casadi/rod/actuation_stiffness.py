@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
+from cosserat_casadi.maths.block_operators import summed
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import SectionMotions
 from cosserat_casadi.rod.igm import InverseGeometricModel
@@ -23,9 +24,7 @@ def actuation_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> 
         if further is not None:
             parts.append(effort / igm.rod.energy_unit * further)
     parts += _section_stiffness(igm, motions)
-    if not parts:
-        return None
-    return sum(parts[1:], parts[0])
+    return summed(parts)
 
 
 def _section_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> list[Matrix]:
@@ -70,9 +69,9 @@ def _curvature_block(igm: InverseGeometricModel, a: int, b: int) -> Matrix:
             rows.append(effort / igm.rod.energy_unit * curvature)
     phi_a = igm.rod.at_nodes[a]
     phi_b = igm.rod.at_nodes[b]
-    if not rows:
+    total = summed(rows)
+    if total is None:
         return ca.DM(phi_a.shape[1], phi_b.shape[1])
-    total = sum(rows[1:], rows[0])
     left = ca.sparsify(ca.DM(phi_a)).T
     right = ca.sparsify(ca.DM(phi_b))
     block = left @ (ca.diag(total) @ right)

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
+from cosserat_casadi.maths.block_operators import summed
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_zero, rows_of
 from cosserat_casadi.maths.typing import FloatArray, Matrix, check_shape
@@ -127,12 +129,8 @@ class RoutedCable(Cable):
     @cached_property
     def direction(self) -> tuple[Row, Row, Row]:
         """T = T/|T|, three rows."""
-        x, y, z = self.tangent
-        return (
-            _quotient(x, self.stretch),
-            _quotient(y, self.stretch),
-            _quotient(z, self.stretch),
-        )
+        x, y, z = (None if row is None else row / self.stretch for row in self.tangent)
+        return x, y, z
 
     @cached_property
     def lever(self) -> dict[int, Row]:
@@ -159,15 +157,7 @@ class RoutedCable(Cable):
     @cached_property
     def gradient(self) -> Matrix:
         """∂L/∂q, n×1, m."""
-        parts: list[Matrix] = []
-        for c, lever in self.lever.items():
-            phi = self.shape.rod.at_nodes[c][self.routing.nodes]
-            weighted = ca.DM(phi * self._node_lengths[:, None])
-            if lever is None:
-                parts.append(ca.DM(weighted.shape[1], 1))
-            else:
-                parts.append(weighted.T @ lever.T)
-        return ca.vertcat(*parts)
+        return self._work_of(self.lever)
 
     def curvature(self, a: int, b: int) -> Row:
         """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes.
@@ -214,6 +204,18 @@ class RoutedCable(Cable):
             (None, None, unit),
         ]
 
+    def _work_of(self, levers: dict[int, Row]) -> Matrix:
+        """Σ ℓ w lever ∂ξ/∂q over the nodes, n×1, m, of levers of the admitted strains, 1×k each."""
+        parts: list[Matrix] = []
+        for c, lever in levers.items():
+            weighted = ca.DM(self._phi(c) * self._node_lengths[:, None])
+            parts.append(ca.DM(weighted.shape[1], 1) if lever is None else weighted.T @ lever.T)
+        return ca.vertcat(*parts)
+
+    def _phi(self, c: int) -> FloatArray:
+        """Φ of a strain at the nodes of the routing, shape (k, n_c)."""
+        return np.asarray(self.shape.rod.at_nodes[c][self.routing.nodes])
+
     def _metric(self, a: int, b: int) -> Row:
         """Scalar product of the rates of T with two strains, 1×k."""
         pairs = zip(self.tangent_rates[a], self.tangent_rates[b], strict=True)
@@ -241,10 +243,7 @@ def _constant(row: Numbers) -> Row:
 
 def added(*rows: Row) -> Row:
     """Sum of fields."""
-    present = [row for row in rows if row is not None]
-    if not present:
-        return None
-    return sum(present[1:], present[0])
+    return summed([row for row in rows if row is not None])
 
 
 def product(a: Row, b: Row) -> Row:
@@ -252,12 +251,6 @@ def product(a: Row, b: Row) -> Row:
     if a is None or b is None:
         return None
     return a * b
-
-
-def _quotient(a: Row, b: Matrix) -> Row:
-    if a is None:
-        return None
-    return a / b
 
 
 def negative(row: Row) -> Row:

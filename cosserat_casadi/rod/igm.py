@@ -11,7 +11,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.block_operators import stack
+from cosserat_casadi.maths.block_operators import stack, summed
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation, Conjugate
@@ -109,11 +109,8 @@ class InverseGeometricModel:
 
         The stress of actuators, and that of the material beyond Hooke's law.
         """
-        forces = []
-        for effort, conjugate in self.strain_functions:
-            if conjugate.wrench is None:
-                forces.append(effort / self.rod.energy_unit * conjugate.pull)
-        return sum(forces[1:], forces[0]) if forces else None
+        pulls = [(effort, conjugate.pull) for effort, conjugate in self.strain_functions if conjugate.wrench is None]
+        return summed([effort / self.rod.energy_unit * pull for effort, pull in pulls])
 
     @cached_property
     def residual(self) -> Matrix:

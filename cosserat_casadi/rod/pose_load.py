@@ -14,7 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.block_operators import block_diagonal, unstack
+from cosserat_casadi.maths.block_operators import block_diagonal, hat_blocks, unstack
 from cosserat_casadi.maths.numbers import Numbers, as_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -122,18 +122,12 @@ class LoadedSections:
         back in the axes of the base is left to the frozen wrench.
         """
         count = len(self.nodes)
-        none = ca.DM(count, 1)
-        x, y, z = (row.T for row in ca.vertsplit(self.position))
         # δφ × r at every section.
-        levers = [
-            [none, z, -y],
-            [-z, none, x],
-            [y, -x, none],
-        ]
+        levers = hat_blocks(*(row.T for row in ca.vertsplit(-self.position)))
         alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
         no_turn = ca.DM(3 * count, 3)
         shift = ca.vertcat(alike, no_turn)
-        turn = ca.vertcat(ca.blockcat(levers), alike)
+        turn = ca.vertcat(levers, alike)
         return self.stiffness @ shift, self.stiffness @ turn
 
     def changed(self, variation: Matrix) -> Wrench:

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.block_operators import hat_operator
+from cosserat_casadi.maths.block_operators import hat_blocks, hat_operator
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -171,14 +171,7 @@ def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
 
 def _hat_row(field: Matrix) -> Matrix:
     """Operator v ↦ Σ field × v over the sections, from a 3×k field: 3×3k on stacked fields."""
-    x, y, z = ca.vertsplit(field)
-    zero = type(x)(*x.shape)
-    rows = [
-        [zero, -z, y],
-        [z, zero, -x],
-        [-y, x, zero],
-    ]
-    return ca.blockcat(rows)
+    return hat_blocks(*ca.vertsplit(field))
 
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:

@@ -15,6 +15,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.strain import per_reference_length
 from cosserat_casadi.rod.viscosity import Viscosity
 
 
@@ -83,12 +84,12 @@ class Relaxation:
     @cached_property
     def energy(self) -> Matrix:
         """Energy of the springs, ℓ ∫ Σ ½ e_iᵀ c_i H e_i dX, 1×1, J."""
-        return self._lengthened(self._sum_of_squares(self._strain, self._factors / 2))
+        return self._sum_of_squares(self._strain, self._factors / 2)
 
     @cached_property
     def dissipated_power(self) -> Matrix:
         """Power that the dashpots turn into heat, ℓ ∫ Σ ẇ_iᵀ c_i τ_i H ẇ_i dX, 1×1, W; never negative."""
-        return self._lengthened(self._sum_of_squares(self.velocity, self._viscous))
+        return self._sum_of_squares(self.velocity, self._viscous)
 
     @cached_property
     def lengthening_power(self) -> Matrix:
@@ -102,12 +103,9 @@ class Relaxation:
         return self.velocity @ ca.diag(self._times)
 
     def _sum_of_squares(self, columns: Matrix, factors: Matrix) -> Matrix:
-        """Σ column_iᵀ diag(factor_i) K column_i in joules over the unit of the columns, 1×1."""
-        return self.rates.shape.rod.energy_unit * ca.sum1(ca.sum2(columns * (self._stiffness @ columns) * factors))
-
-    def _lengthened(self, per_reference_length: Matrix) -> Matrix:
-        ratio = self.rates.shape.ratio
-        return per_reference_length if ratio is None else per_reference_length * ratio
+        """Σ column_iᵀ diag(factor_i) K column_i of the whole rod, in joules over the unit of the columns, 1×1."""
+        squares = ca.sum1(ca.sum2(columns * (self._stiffness @ columns) * factors))
+        return per_reference_length(self.rates.shape.rod.energy_unit * squares, self.rates.shape.ratio)
 
     @property
     def _stiffness(self) -> Matrix:

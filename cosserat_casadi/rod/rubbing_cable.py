@@ -104,14 +104,7 @@ class RubbingCable(RoutedCable):
     @cached_property
     def pull(self) -> Matrix:
         """Generalised force of a unit of tension at the base, Σ ℓ w exp(−μ p φ) ∂|T|/∂q, n×1, m."""
-        parts: list[Matrix] = []
-        for c, lever in self.lever.items():
-            weighted = ca.DM(self._phi(c) * self._node_lengths[:, None])
-            if lever is None:
-                parts.append(ca.DM(weighted.shape[1], 1))
-            else:
-                parts.append(weighted.T @ (lever * self.shares).T)
-        return ca.vertcat(*parts)
+        return self._work_of({c: product(lever, self.shares) for c, lever in self.lever.items()})
 
     def curvature(self, a: int, b: int) -> Row:
         """Curvature of the cable that does not rub times the share of tension at each node, 1×M, m."""
@@ -256,10 +249,6 @@ class RubbingCable(RoutedCable):
         if row is None or self.is_parallel:
             return None
         return row @ self._differentiate.T
-
-    def _phi(self, c: int) -> FloatArray:
-        """Φ of a strain at the nodes of the routing, shape (k, n_c)."""
-        return np.asarray(self.shape.rod.at_nodes[c][self.routing.nodes])
 
     @property
     def _elements(self) -> FloatArray:

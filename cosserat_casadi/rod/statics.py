@@ -16,6 +16,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.block_operators import summed
 from cosserat_casadi.maths.numbers import (
     Numbers,
     any_symbolic,
@@ -80,25 +81,15 @@ class Statics:
     def moment_covector(self) -> Matrix | None:
         """T × n̂ + ĉ, 3×M, conjugate to the variations of the rotations of the nodes, N m; None without loads."""
         # Turning the sections by δθ moves the tangents by δθ × t.
-        parts = []
         force = self.force_covector
-        if force is not None:
-            parts.append(cross(self.shape.tangent, force))
-        for follower in (False, True):
-            couple = self.couple_covector(follower)
-            if couple is not None:
-                parts.append(couple)
-        return _total(parts)
+        turned = None if force is None else cross(self.shape.tangent, force)
+        parts = (turned, self.couple_covector(follower=False), self.couple_covector(follower=True))
+        return summed([part for part in parts if part is not None])
 
     def couple_covector(self, follower: bool) -> Matrix | None:
         """ĉ of the dead or of the follower moments, 3×M, N m; None without any."""
-        parts = []
-        for wrench in self.wrenches:
-            if wrench.follower != follower or wrench.moment is None:
-                continue
-            couple = self._couple_covector(wrench, wrench.moment)
-            parts.append(couple)
-        return _total(parts)
+        turning = [wrench for wrench in self.wrenches if wrench.follower == follower]
+        return summed([self._couple_covector(w, w.moment) for w in turning if w.moment is not None])
 
     @cached_property
     def interval_moment(self) -> Matrix | None:
@@ -190,13 +181,7 @@ class Statics:
         return np.asarray(whole - grid.integration_matrix)
 
     def _force_covector_of(self, wrenches: Sequence[Wrench]) -> Matrix | None:
-        parts = []
-        for wrench in wrenches:
-            if wrench.force is None:
-                continue
-            covector = self._force_covector(wrench, wrench.force)
-            parts.append(covector)
-        return _total(parts)
+        return summed([self._force_covector(w, w.force) for w in wrenches if w.force is not None])
 
     def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
         rod = self.shape.rod
@@ -290,13 +275,3 @@ def _sums_to_the_tip(row: Matrix) -> Matrix:
     # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
     reversed_row = ca.densify(row[:, ::-1])
     return ca.cumsum(reversed_row, 1)[:, ::-1]
-
-
-def _total(terms: Sequence[Matrix]) -> Matrix | None:
-    """Sum of the terms in their order; None without any."""
-    if not terms:
-        return None
-    total = terms[0]
-    for term in terms[1:]:
-        total = total + term
-    return total

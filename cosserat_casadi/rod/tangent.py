@@ -36,8 +36,10 @@ import numpy as np
 from cosserat_casadi.maths.block_operators import (
     block_diagonal,
     cumulative_sum,
+    hat_blocks,
     hat_operator,
     reversed_places,
+    summed,
     with_product,
 )
 from cosserat_casadi.maths.rotation import cross, hat
@@ -238,15 +240,8 @@ class Tangent:
     def _displacement(self, weights: Matrix) -> Matrix:
         """Weighted sum of the δt of the nodes, 3×n, m; weights are 1×M."""
         weighted = self.shape.tangent * ca.repmat(weights, 3, 1)
-        x, y, z = ca.vertsplit(weighted)
-        none = type(x)(*x.shape)
         # Σ w δθ × t, the sum over the nodes.
-        levers = [
-            [none, z, -y],
-            [-z, none, x],
-            [y, -x, none],
-        ]
-        columns = [ca.blockcat(levers) @ self.rotation]
+        columns = [hat_blocks(*ca.vertsplit(-weighted)) @ self.rotation]
         for c in self.rod.linear:
             stretch = self._stretch(c)
             weighted_stretch = ca.repmat(weights.T, 1, stretch.shape[1]) * stretch
@@ -409,11 +404,11 @@ class Tangent:
             lever = gather @ (force_hat @ tangent_hat) @ gather.T
             parts.append(lever @ self.section_rotation)
         parts += [gather @ part for part in self._turned.moments]
-        if not parts:
+        beyond = summed(parts)
+        if beyond is None:
             return variation
         # An interval feels what acts beyond it: sums from the tip.
-        from_tip = reversed_places(sum(parts[1:], parts[0]), count)
-        return variation + reversed_places(cumulative_sum(from_tip, count), count)
+        return variation + reversed_places(cumulative_sum(reversed_places(beyond, count), count), count)
 
     @cached_property
     def _turned(self) -> TurnedWrenches:
@@ -455,11 +450,9 @@ class Tangent:
         for node, loads in at_sections.items():
             # Loads on one section share its motion.
             motion = ca.vertcat(self.position(node), self.rotation_of(node))
-            stiffness = sum((load.stiffness for load in loads[1:]), loads[0].stiffness)
-            parts.append(motion.T @ (stiffness @ motion))
-        if not parts:
-            return None
-        return sum(parts[1:], parts[0]) / -self.rod.energy_unit
+            parts.append(motion.T @ (sum((load.stiffness for load in loads[1:]), loads[0].stiffness) @ motion))
+        total = summed(parts)
+        return None if total is None else total / -self.rod.energy_unit
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""

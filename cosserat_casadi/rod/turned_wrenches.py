@@ -10,7 +10,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.block_operators import hat_operator
+from cosserat_casadi.maths.block_operators import hat_operator, summed
 from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -36,10 +36,7 @@ class TurnedWrenches:
     def force(self) -> Matrix | None:
         """δn̂ = Sᵀ δf of all forces that follow, base frame, 3M×k, N; None without any."""
         wrenches = [wrench for wrench in self.statics.wrenches if wrench.follower]
-        parts = [self._force_of(wrench, wrench.force) for wrench in wrenches if wrench.force is not None]
-        if not parts:
-            return None
-        return sum(parts[1:], parts[0])
+        return summed([self._force_of(wrench, wrench.force) for wrench in wrenches if wrench.force is not None])
 
     @property
     def moments(self) -> list[Matrix]:

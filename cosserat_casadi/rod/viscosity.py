@@ -13,6 +13,7 @@ import casadi as ca
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.rod_motion import StrainRates
+from cosserat_casadi.rod.strain import per_reference_length
 
 
 @dataclass(frozen=True)
@@ -58,9 +59,7 @@ class Viscosity:
     def dissipated_power(self) -> Matrix:
         """Power that turns into heat, ℓ ∫ ξ̇ᵀ Υ ξ̇ dX, 1×1, W; never negative."""
         power = self.shape.rod.energy_unit * ca.bilin(self._matrix, self.strain_rate, self.strain_rate)
-        if self.shape.ratio is None:
-            return power
-        return power * self.shape.ratio
+        return per_reference_length(power, self.shape.ratio)
 
     @cached_property
     def shrinking_power(self) -> Matrix:
