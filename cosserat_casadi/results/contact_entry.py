@@ -35,7 +35,6 @@ def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, An
     """The stretches of rods that stick or slip on obstacles, row after row; nothing in a scene without friction."""
     if not result.model.scene.rubs:
         return {}
-    stretches = [(row, stretch) for row in range(rows) for stretch in result.rubbing(row)]
     rubbing = [
         {
             "row": row,
@@ -45,9 +44,18 @@ def rubbing_entries(result: EquilibriumPath | Motion, rows: int) -> dict[str, An
             "to": found.end,
             "slips": found.slips,
         }
-        for row, found in stretches
+        for row in range(rows)
+        for found in result.rubbing(row)
     ]
     return {"rubbing": rubbing}
+
+
+def place_entry(contact: Contact | PathContact) -> dict[str, Any]:
+    """Where a rod touches an obstacle; or which body does."""
+    entry: dict[str, Any] = {"obstacle": contact.obstacle}
+    if contact.of_body:
+        return {**entry, "body": contact.owner}
+    return {**entry, "rod": contact.owner, "from": contact.start, "to": contact.end}
 
 
 def point_forces(contact: Contact | PathContact) -> dict[str, Any]:

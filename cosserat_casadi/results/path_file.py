@@ -2,35 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
-from cosserat_casadi.equilibrium.solution import SolvedPoses
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
-from cosserat_casadi.results.contact_entry import contact_entry, point_forces, rubbing_entries
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
+from cosserat_casadi.results.contact_entry import contact_entry, place_entry, point_forces, rubbing_entries
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a tip: position in m, quaternion."""
-
-
-@dataclass(frozen=True)
-class _RodPoints:
-    """Poses of a rod at k points of a path.
-
-    Attributes:
-        tip: of the tip, at k points.
-        X: abscissa of a section that moves although the tip is held; 1 where the tip moves.
-        positions: of that section, shape (k, 3), m.
-    """
-
-    tip: SolvedPoses
-    X: float
-    positions: FloatArray
-
-    def entry(self, index: int) -> dict[str, Any]:
-        """The plain data of one point."""
-        return _rod_entry(self.tip.position[index], self.tip.quaternion[index], self.X, self.positions[index])
 
 
 def _rod_entry(position: FloatArray, quaternion: FloatArray, X: float, section: FloatArray) -> dict[str, Any]:
@@ -79,44 +58,47 @@ def path_table(path: EquilibriumPath) -> tuple[list[str], list[list[Any]]]:
 
 
 def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
-    rods = _rods_along(path)
+    # Of a rod whose tip is held also a section that moves.
+    rods = {}
+    for name in path.model.discrete.rods:
+        X = path.section(name)
+        tip = path.tip(name)
+        along = zip(tip.position, tip.quaternion, path.position(X, name), strict=True)
+        rods[name] = [_rod_entry(position, quaternion, X, section) for position, quaternion, section in along]
     entries = []
     for index, factor in enumerate(path.factor):
         entry: dict[str, Any] = {
             "factor": float(factor),
             **_stability_entry(path, index),
-            "rods": {name: points.entry(index) for name, points in rods.items()},
+            "rods": {name: points[index] for name, points in rods.items()},
         }
         # How deep rods are inside smooth obstacles is told of the whole path.
         if path.model.scene.touches_exactly:
             entry["contacts"] = [
-                {**_contact_entry(contact), **point_forces(contact)} for contact in path.contacts(index)
+                {**place_entry(contact), "kind": contact.kind, **point_forces(contact)}
+                for contact in path.contacts(index)
             ]
         entries.append(entry)
     return entries
 
 
 def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:
+    rods = {}
+    for name in path.model.discrete.rods:
+        X = path.section(name)
+        # An event lies between two points of the path.
+        tip = path.event_tip(event, name)
+        rods[name] = _rod_entry(tip.position, tip.quaternion, X, path.event_position(event, X, name))
     entry = {
         "kind": event.kind,
         "factor": event.factor,
         "multiplicity": event.multiplicity,
         "before": event.position,
-        "rods": _rods_at_event(path, event),
+        "rods": rods,
     }
     if event.contact is not None:
-        entry["contact"] = _contact_entry(event.contact)
+        entry["contact"] = {**place_entry(event.contact), "kind": event.contact.kind}
     return entry
-
-
-def _contact_entry(contact: PathContact) -> dict[str, Any]:
-    """Where and how a rod touches an obstacle; or which body does."""
-    entry: dict[str, Any] = {"obstacle": contact.obstacle}
-    if contact.of_body:
-        entry["body"] = contact.owner
-    else:
-        entry |= {"rod": contact.owner, "from": contact.start, "to": contact.end}
-    return {**entry, "kind": contact.kind}
 
 
 def _stability_entry(path: EquilibriumPath, index: int) -> dict[str, bool | float | None]:
@@ -127,22 +109,3 @@ def _stability_entry(path: EquilibriumPath, index: int) -> dict[str, bool | floa
         "neutral": bool(path.neutral[index]),
         "smallest_eigenvalue": float(path.smallest_eigenvalue[index]),
     }
-
-
-def _rods_along(path: EquilibriumPath) -> dict[str, _RodPoints]:
-    """Every rod at all points of a path."""
-    rods = {}
-    for name in path.model.discrete.rods:
-        X = path.section(name)
-        rods[name] = _RodPoints(path.tip(name), X, path.position(X, name))
-    return rods
-
-
-def _rods_at_event(path: EquilibriumPath, event: PathEvent) -> dict[str, dict[str, Any]]:
-    """The plain data of every rod at one event, which lies between two points of the path."""
-    rods = {}
-    for name in path.model.discrete.rods:
-        X = path.section(name)
-        tip = path.event_tip(event, name)
-        rods[name] = _rod_entry(tip.position, tip.quaternion, X, path.event_position(event, X, name))
-    return rods

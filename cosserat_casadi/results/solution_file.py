@@ -11,7 +11,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.results.contact_entry import point_forces
+from cosserat_casadi.results.contact_entry import place_entry, point_forces
 
 if TYPE_CHECKING:
     from cosserat_casadi.control.inverse_result import Inverse
@@ -84,14 +84,10 @@ def _contact_entry(contact: Contact) -> dict[str, Any]:
     Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap. Of rods that touch
     where they are nearest, and the resultant on the first.
     """
-    entry: dict[str, Any] = {"obstacle": contact.obstacle}
+    entry: dict[str, Any] = place_entry(contact)
     if contact.on_rods is not None:
         entry = {"rods": [contact.owner, contact.obstacle], "at": contact.on_rods}
         entry |= {"from": contact.start, "to": contact.end}
-    elif contact.of_body:
-        entry["body"] = contact.owner
-    else:
-        entry |= {"rod": contact.owner, "from": contact.start, "to": contact.end}
     entry |= {"force": contact.force, "kind": contact.kind}
     if contact.width is None:
         entry |= point_forces(contact)

@@ -114,9 +114,7 @@ def print_modes(console: Console, modes: Modes, written: Sequence[Path]) -> None
 
 
 def _modes_table(modes: Modes) -> Table:
-    table = Table()
-    for heading in ("mode", "frequency, Hz", "|λ|, 1/s", "damping ratio", "estimated error"):
-        table.add_column(heading, justify="right")
+    table = table_of(right=("mode", "frequency, Hz", "|λ|, 1/s", "damping ratio", "estimated error"))
     table.add_column("motion")
     for number, mode in enumerate(modes.modes, start=1):
         table.add_row(str(number), *_cells(mode))
