@@ -63,6 +63,25 @@ class CompiledStep:
 
 
 @dataclass(frozen=True)
+class StepContact:
+    """A section or a body that presses on an obstacle at the end of a step.
+
+    Attributes:
+        owner: name of the rod, or of the body.
+        obstacle: name of the obstacle.
+        of_body: whether a body touches.
+        place: abscissa X of the section; 0 of a body.
+        force: on it along the normal of the obstacle, mean of the last stretch of the step, N.
+    """
+
+    owner: str
+    obstacle: str
+    of_body: bool
+    place: float
+    force: float
+
+
+@dataclass(frozen=True)
 class StepSensitivity:
     """Derivatives of x and v at the end of a step, stacked.
 
@@ -162,6 +181,10 @@ class _Options(ctypes.Structure):
     )
 
 
+class _Contact(ctypes.Structure):
+    _fields_ = (("pair", ctypes.c_int), ("place", ctypes.c_double), ("force", ctypes.c_double))
+
+
 class _Info(ctypes.Structure):
     _fields_ = (
         ("status", ctypes.c_int),
@@ -216,6 +239,37 @@ class CompiledMotion(LoadedLibrary):
     def step_memory(self) -> StepMemory:
         """Memory that steps keep from one to the next, and work in: one for each motion, new for a new one."""
         return StepMemory(room(self._motion_function("step_memory_size")()), self._workspace())
+
+    def contact_start(self) -> StepState:
+        """The start of the scene's motion at rest, at its own inputs, with what touches exactly then.
+
+        Raises:
+            AttributeError: the folder has no motions, or nothing in it touches exactly.
+        """
+        state = np.zeros(3 * self.size)
+        self._motion_function("start")(pointer(state))
+        return self._unpacked(state)
+
+    def step_contacts(self, memory: StepMemory) -> list[StepContact]:
+        """The contacts that press at the end of the last step.
+
+        Args:
+            memory: of the steps.
+
+        Raises:
+            AttributeError: the folder has no motions, or nothing in it touches exactly.
+        """
+        function = self._motion_function("step_contacts")
+        described = self.manifest["motion"]
+        pairs = described["contacts"]
+        in_c = (_Contact * described["most_contacts"])()
+        count = function(memory.kept, in_c)
+        found = []
+        for own in in_c[:count]:
+            pair = pairs[own.pair]
+            owner = pair.get("rod") or pair["body"]
+            found.append(StepContact(owner, pair["obstacle"], "body" in pair, own.place, own.force))
+        return found
 
     def rest(
         self,

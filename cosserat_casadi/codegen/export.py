@@ -105,7 +105,7 @@ def export(
     stale = check_export(folder, chosen)
     if isinstance(model, TubeFunctions):
         files = tube_files(model, chosen, error_estimate, batches=batches)
-    elif model.scene.touches_exactly:
+    elif model.scene.touches_exactly and not dynamics:
         names = scene_names(chosen, without_contacts(model.scene))
         arrangements = chosen_arrangements(model, load_cases, estimate_errors=estimate_errors, stability=stability)
         files = contact_files(
@@ -179,7 +179,8 @@ def folder_files(
     Raises:
         ExportError: the scene has no motion, and that is asked for.
     """
-    refuse_obstacles(model.scene, "exported C")
+    if not dynamics:
+        refuse_obstacles(model.scene, "exported C")
     model = model.in_motion if dynamics else model
     names = model_names(name, model, dynamics=dynamics, estimate_errors=estimate_errors)
     parts = assembled(model, names)

@@ -153,6 +153,7 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         "budget": f"{STEP_TOLERANCE!r}, {STEP_ITERATIONS}, {STEP_PARTS}",
         "step": repr(step),
         "unloaded": int(_starts_unloaded(model)),
+        "starts_in_contact": model.scene.touches_exactly,
         "token": "@{token}",
     }
     return {

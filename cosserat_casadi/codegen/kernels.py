@@ -19,6 +19,7 @@ from cosserat_casadi.codegen.columns import (
     on_path,
     pose_in_columns,
 )
+from cosserat_casadi.codegen.contact.moving import contact_functions
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, differentiable_functions, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.motion_parts import MotionInC
@@ -61,7 +62,9 @@ Handing over what long ones need would take a fifth of its time.
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
     """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
     wanted = functions_in_c(model, names)
-    of_motion = [] if motion is None else motion.kernels
+    of_motion: list[Kernel] = [] if motion is None else list(motion.kernels)
+    if motion is not None:
+        of_motion += [kernel(model, function, name) for name, function in contact_functions(model, names).items()]
     of_parameters = [*_parameter_kernels(model, names, parts), *passage_kernels(model, names)]
     if parts is None:
         most = MOST_IN_COLUMNS if motion is None else MOST_BESIDE_STEPS

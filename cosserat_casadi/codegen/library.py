@@ -16,6 +16,7 @@ from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
+from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, contact_words, touches_in_motion
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
@@ -58,7 +59,10 @@ FOURS = ("fours.h",)
 PROGRAM = ("program.h",)
 LEAST_MISFIT = "least_misfit.c"
 SECOND_VARIATION = "second_variation.c"
-SOLVER_FILES = (*SHARED, *ERROR_FILES, *PASSAGE_FILES, *DENSE, *BLOCKS, *MOTION_FILES, LEAST_MISFIT, SECOND_VARIATION)
+SOLVER_FILES = (
+    *(*SHARED, *ERROR_FILES, *PASSAGE_FILES, *CONTACT_FILES, *DENSE, *BLOCKS, *MOTION_FILES),
+    *(LEAST_MISFIT, SECOND_VARIATION),
+)
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
 """Files of the folder ``c`` that sources of a library include, as they are."""
 
@@ -94,6 +98,9 @@ ROLES = {
     "solver_error.c": "the error of an answer, from modes that the model lacks",
     "solver_recover.c": "a turn of its way back",
     "passages.c": "whether a step leads through something thin",
+    "contact_gaps.c": "gaps to obstacles that are touched exactly",
+    "contact_steps.c": "forces and blows of exact contact in a step",
+    "contact_sensitivity.c": "their part in its derivatives",
     "interpolation.c": "positions between nodes",
     "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
@@ -167,7 +174,8 @@ class FolderContents:
         linear = DENSE if self.parts is None else BLOCKS
         motion = () if self.motion is None else MOTION_FILES
         passages = PASSAGE_FILES if watches_passages(model) else ()
-        return (*SHARED, *estimate, *passages, *linear, *motion)
+        contact = CONTACT_FILES if self.motion is not None and touches_in_motion(model) else ()
+        return (*SHARED, *estimate, *passages, *linear, *motion, *contact)
 
     def to_compile(self, names: Names) -> dict[str, str]:
         """Words of the build file for sources and headers that a plain folder does not have."""
@@ -303,6 +311,7 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     sizes = _sizes(model, names, contents.generated) | {"on_device": contents.on_device}
     sizes |= parameter_words(sizes, model, names, dynamics=motion is not None)
     linear = dense_words(sizes) if parts is None else block_words(sizes, parts)
+    sizes |= {} if motion is None else contact_words(model, names)
     in_motion = {} if motion is None else motion_words(sizes, model, names, motion)
     sizes |= error_words(model, names) | passage_words(model, names)
     sizes |= batch_words(names.name, contents.batch_order) | _words_of_rows(names.name, contents.rows)

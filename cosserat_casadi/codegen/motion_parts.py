@@ -13,6 +13,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
+from cosserat_casadi.codegen.contact.checks import refused_in_motion
+from cosserat_casadi.codegen.contact.moving import contact_pattern
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted, parted_by_rows, placed
@@ -23,6 +25,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.contact_checks import untouchable
 from cosserat_casadi.motion.motion_checks import immovable
 
 MATRICES = ("stiffness", "damping", "mass")
@@ -63,7 +66,7 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
     check_motion(model)
     state, inputs, factor, arguments = _symbols(model)
     matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
-    pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity()
+    pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity() + contact_pattern(model)
     partition = blocks(model.discrete, pattern)
     if partition is not None:
         order = partition
@@ -107,7 +110,9 @@ def check_motion(model: Model) -> None:
     Raises:
         ExportError: with every fault.
     """
-    problems = immovable(model)
+    problems = [*immovable(model), *refused_in_motion(model.scene)]
+    if model.scene.touches_exactly:
+        problems += untouchable(model, None)
     for stop in model.discrete.stops:
         if stop.stiffness is None:
             remedy = "give the joint a stop_stiffness that the steps resolve, or simulate in Python"

@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.block_sources import (
     table,
 )
 from cosserat_casadi.codegen.blocks import Elimination
+from cosserat_casadi.codegen.contact.moving import contact_reals, described_contact
 from cosserat_casadi.codegen.motion_parts import MATRICES, MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import motion_status_words
@@ -92,6 +93,7 @@ def motion_entry(model: Model) -> dict[str, Any]:
         "tolerance": STEP_TOLERANCE,
         "differential": [bool(flag) for flag in unknowns.differential],
         "residual_units": unknowns.units.tolist(),
+        **described_contact(model),
     }
 
 
@@ -103,7 +105,7 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     vectors = 12 * size + 8 * room + 4 * size + 10 * size
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
     rooms = 8 * (words["front_room"] + words["interface_room"] + 2 * size)
-    return int(entries + matrices + vectors + remembered + rooms)
+    return int(entries + matrices + vectors + remembered + rooms + contact_reals(size, room, words))
 
 
 def _limits() -> Words:

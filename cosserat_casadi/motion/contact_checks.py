@@ -31,9 +31,14 @@ CLOSER = 17
 """Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
 
 
-def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
-    """Problems of a scene with exact contact in motion: settings and members that are refused beside it."""
-    if simulation.integrator == "gauss":
+def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem]:
+    """Problems of a scene with exact contact in motion: settings and members that are refused beside it.
+
+    Args:
+        model: the model.
+        simulation: the settings; None of steps in C.
+    """
+    if simulation is not None and simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     yield from _too_thin(model)

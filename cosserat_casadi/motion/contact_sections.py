@@ -110,7 +110,7 @@ class RodFacing(Facing):
         value, slope, bend = (gap[:, 0] / self.length).tolist()
         rows = np.zeros((3, len(nodes)))
         count = len(basis)
-        rows[:, element * count : (element + 1) * count] = basis.T @ self._to_coefficients
+        rows[:, element * count : (element + 1) * count] = basis.T @ self.to_coefficients
         return SectionGap(value, slope, bend, Rows(*rows), normal[:, 0], curvature, tangent[:, 0])
 
     def place(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
@@ -194,8 +194,8 @@ class RodFacing(Facing):
 
     def _coefficients(self, nodes: FloatArray, element: int) -> FloatArray:
         """Chebyshev coefficients of the positions in an element, column after column, shape (3 (N + 1),), m."""
-        count = len(self._to_coefficients)
-        return (self._to_coefficients @ nodes[element * count : (element + 1) * count]).ravel(order="F")
+        count = len(self.to_coefficients)
+        return (self.to_coefficients @ nodes[element * count : (element + 1) * count]).ravel(order="F")
 
     def _level(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the watched sections, rounded so that a flat gap has no hills, shape (k,)."""
@@ -257,8 +257,13 @@ class RodFacing(Facing):
         """Ends of the elements, base to tip: the bend of the gap jumps where curvatures do."""
         return self._grid.known_places
 
+    @property
+    def nodes_of_element(self) -> int:
+        """Number of nodes of an element, both ends among them."""
+        return int(self._grid.intervals) + 1
+
     @cached_property
-    def _to_coefficients(self) -> FloatArray:
+    def to_coefficients(self) -> FloatArray:
         """Chebyshev coefficients of a polynomial from its values at the nodes of an element, (N + 1)×(N + 1)."""
         points = 2.0 * np.asarray(chebyshev.nodes(self._grid.intervals)) - 1.0
         return np.asarray(np.linalg.inv(polynomial.chebvander(points, self._grid.intervals)))
@@ -301,7 +306,7 @@ class RodFacing(Facing):
         tangent = curve[:, 1]
         function = surface(self.obstacle)
         distance, normal, curvature = function.expand().call([curve[:, 0]])
-        base, tip = self._radii
+        base, tip = self.radii
         taper = tip - base
         gap = ca.vertcat(
             distance - base - (start + width * share) * taper,
@@ -328,7 +333,7 @@ class RodFacing(Facing):
         return section_radius(self.model.discrete.rods[self.owner].properties, self.looked_at)
 
     @cached_property
-    def _radii(self) -> tuple[float, float]:
+    def radii(self) -> tuple[float, float]:
         """Radius at base and tip, between which it is linear, m."""
         base, tip = section_radius(self.model.discrete.rods[self.owner].properties, np.array([0.0, 1.0])).tolist()
         return base, tip

@@ -65,6 +65,36 @@ class MovingPoints:
             ca.Function(f"{self._name}_hessian", self._symbols, [ca.vec(second)]),
         ]
 
+    @property
+    def count(self) -> int:
+        """Number of the points."""
+        return int(self._written[0].shape[0]) // 3
+
+    @cached_property
+    def in_steps(self) -> dict[str, ca.Function]:
+        """Functions that steps in C ask for, by name.
+
+        Positions and the derivative of their weighted sum as :attr:`in_iterations`; velocities, of (x, inputs, v,
+        rate); second derivatives of the sum as :attr:`in_derivatives`; and, where inputs move the points, derivatives
+        of the sum and of its derivative with the inputs.
+        """
+        positions, gradient = self.in_iterations
+        _, hessian = self.in_derivatives
+        x, inputs, _ = self._symbols
+        written, total, by_x = self._written
+        v, rate = ca.MX.sym("v", x.shape[0]), ca.MX.sym("rate", inputs.shape[0])
+        moved = ca.jtimes(written, x, v) + ca.jtimes(written, inputs, rate)
+        functions = {
+            "positions": positions,
+            "velocities": ca.Function("velocities", [x, inputs, v, rate], [ca.densify(moved)]),
+            "gradient": gradient,
+            "hessian": hessian,
+        }
+        if ca.jacobian_sparsity(written, inputs).nnz():
+            results = [ca.densify(ca.gradient(total, inputs)), ca.densify(ca.jacobian(by_x, inputs))]
+            functions["by_inputs"] = ca.Function("by_inputs", self._symbols, results)
+        return functions
+
     @cached_property
     def _positions(self) -> RepeatedCall:
         return repeated(self.in_iterations[0], self._libraries.residual)

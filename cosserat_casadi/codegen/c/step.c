@@ -92,6 +92,10 @@ static void stage_at(const step_start *start, int stage, const real *unknowns, i
 
 static real larger(real a, real b) { return a > b ? a : b; }
 
+#ifdef STEPS_IN_CONTACT
+#include "contact_steps.c"
+#endif
+
 /* The matrix of the step at the eigenvalue of the method, K + p C + p^2 M; it has no units of time (C. L. Bottasso et al.,
    Multibody System Dynamics 19, 2008). Zero where it is singular to rounding. */
 static int factorise_step(const real *matrices, real size, const stage_factors *found, workspace *work) {
@@ -118,6 +122,9 @@ static void corrections_of(const stage_factors *factors, const real *residuals, 
     solution[N + i] = TO_EIGENVECTOR[0][1] * residuals[i] + TO_EIGENVECTOR[1][1] * residuals[N + i];
   }
   solve_system(complex_matrix(), 2, factors, solution, work);
+#ifdef STEPS_IN_CONTACT
+  close_gaps(solution, work);
+#endif
   for (int i = 0; i < N; i++) {
     real whole = solution[i];
     real imaginary = solution[N + i];
@@ -138,6 +145,9 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
   for (int stage = 0; stage < STAGES; stage++) {
     stage_at(start, stage, unknowns, &work->at);
     motion_residual_at(&work->at, residuals + stage * N, work);
+#ifdef STEPS_IN_CONTACT
+    push_in_stage(stage, &work->at, residuals + stage * N, work);
+#endif
   }
   for (int i = 0; i < STAGED; i++) {
     if (!isfinite(residuals[i])) return residuals[i];
@@ -177,6 +187,9 @@ static solver_motion_status renew_jacobian(const step_start *start, const real *
   memory->jacobian_size = 0;
   motion_in(start, (real)0.5, MIDDLE_VALUES, MIDDLE_INTEGRALS, MIDDLE_DOUBLE_INTEGRALS, unknowns, &work->at);
   matrices_at(&work->at, work->matrices[0], work);
+#ifdef STEPS_IN_CONTACT
+  curve_middle(work);
+#endif
   info->jacobians++;
   if (!all_finite(work->matrices[0], MATRICES * STAGE_ENTRIES)) return SOLVER_MOTION_NOT_FINITE;
   if (!factorise_step(work->matrices[0], start->size, &factors, work)) return SOLVER_MOTION_SINGULAR;
@@ -204,10 +217,16 @@ static solver_motion_status solve_step(const step_start *start, const solver_ste
   for (int attempt = kept ? 0 : 1; attempt < 2 && status != SOLVER_MOTION_DONE; attempt++) {
     const int iterations = info->iterations;
     memcpy(work->iterate, unknowns, sizeof work->iterate);
+#ifdef STEPS_IN_CONTACT
+    guess_forces(work);
+#endif
     if (attempt == 1) {
       status = renew_jacobian(start, unknowns, memory, work, info);
       if (status != SOLVER_MOTION_DONE) return status;
     }
+#ifdef STEPS_IN_CONTACT
+    if (!border_step(&factors, work)) return SOLVER_MOTION_SINGULAR;
+#endif
     status = solve_stages(start, &factors, allowed, options->max_iterations, work->iterate, &contraction, work, info);
     const int needed = info->iterations - iterations;
     if (attempt == 1) memory->first_iterations = needed;
@@ -244,6 +263,9 @@ static solver_motion_status take_parts(int count, const step_start *whole, const
                                        const solver_step_options *options, solver_step_memory *memory,
                                        workspace *work, solver_step_info *info) {
   work->end = *state;
+#ifdef STEPS_IN_CONTACT
+  recall_touches(memory, state, work);
+#endif
   for (int number = 0; number < count; number++) {
     real *unknowns = work->parts_unknowns[number];
     const step_start start = part_of_step(whole, number, count, work);
@@ -254,11 +276,17 @@ static solver_motion_status take_parts(int count, const step_start *whole, const
     } else {
       guess_stages(0, 1, state, unknowns);
     }
+#ifdef STEPS_IN_CONTACT
+    const solver_motion_status status = part_in_contact(&start, number, memory, options, unknowns, work, info);
+    if (status != SOLVER_MOTION_DONE) return status;
+    if (is_inside(work->at.state, work->at.inputs, DEEPEST, work)) return SOLVER_MOTION_NOT_SOLVED;
+#else
     const solver_motion_status status = solve_step(&start, options, unknowns, memory, work, info);
     if (status != SOLVER_MOTION_DONE) return status;
     /* The last stage is the end. */
     stage_at(&start, STAGES - 1, unknowns, &work->at);
     if (is_beyond(start.x, start.inputs, work->at.state, work->at.inputs, work)) return SOLVER_MOTION_NOT_SOLVED;
+#endif
     memcpy(work->end.x, work->at.state, sizeof work->end.x);
     memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
     memcpy(work->end.a, work->at.state + 2 * N, sizeof work->end.a);
@@ -314,6 +342,9 @@ static solver_motion_status take_step(const step_start *whole, solver_state *sta
   }
   *state = work->end;
   memory->size = whole->size / (real)info->parts;
+#ifdef STEPS_IN_CONTACT
+  keep_touches(memory, work);
+#endif
   memcpy(memory->unknowns, work->parts_unknowns[info->parts - 1], sizeof memory->unknowns);
   return status;
 }

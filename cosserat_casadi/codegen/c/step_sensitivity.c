@@ -89,6 +89,10 @@ static void solve_stage_columns(const stage_factors *factors, real *columns, wor
   for (int i = 0; i < FOUR * STAGED; i++) columns[i] += left[i];
 }
 
+#ifdef STEPS_IN_CONTACT
+#include "contact_sensitivity.c"
+#endif
+
 /* Some columns of a derivative, four at a time. */
 static void differentiate_columns(void (*change)(real, int, real *, const workspace *), real size, int first, int last,
                                   const stage_factors *factors, real *columns, workspace *work) {
@@ -97,6 +101,12 @@ static void differentiate_columns(void (*change)(real, int, real *, const worksp
     memset(stages, 0, FOUR * STAGED * sizeof *stages);
     for (int lane = 0; lane < FOUR && j + lane < last; lane++) change(size, j + lane, stages + lane * STAGED, work);
     solve_stage_columns(factors, stages, work);
+#ifdef STEPS_IN_CONTACT
+    for (int lane = 0; lane < FOUR && j + lane < last; lane++) {
+      (change == change_by_start ? change_gaps_by_start : change_gaps_by_input)(size, j + lane, lane, work);
+    }
+    close_stage_columns(stages, work);
+#endif
     for (int lane = 0; lane < FOUR && j + lane < last; lane++) {
       end_changes(size, stages + lane * STAGED, columns + (j + lane - first) * 2 * N);
     }
@@ -146,11 +156,21 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
     stage_at(start, s, unknowns, &work->at);
     matrices_at(&work->at, work->matrices[s], work);
     if (!all_finite(work->matrices[s], MATRICES * STAGE_ENTRIES)) return 0;
+#ifdef STEPS_IN_CONTACT
+    const int by_inputs = own->by_inputs[0] || own->by_inputs[1] || own->by_inputs[2];
+    if (by_inputs) input_matrices_at(&work->at, work->input_matrices[s], work);
+    curve_stage(s, by_inputs, work);
+#endif
     if (!own->by_inputs[0] && !own->by_inputs[1] && !own->by_inputs[2]) continue;
+#ifndef STEPS_IN_CONTACT
     input_matrices_at(&work->at, work->input_matrices[s], work);
+#endif
     if (!all_finite(work->input_matrices[s], (int)ORDERS * N * INPUTS)) return 0;
   }
   if (!factorise_stages(start->size, &factors, work)) return 0;
+#ifdef STEPS_IN_CONTACT
+  if (!border_stages(&factors, work)) return 0;
+#endif
   if (own->by_start) differentiate_by_start(start->size, &factors, own->by_start, work);
   for (int order = 0; order < ORDERS; order++) {
     const int first = order * INPUTS;
@@ -180,9 +200,16 @@ static int differentiate_step(const step_start *whole, int count, const step_der
   const step_derivatives later = {work->by_start,
                                   {work->by_inputs, work->by_inputs_rate, work->by_inputs_acceleration}};
   work->end = work->begin;
+#ifdef STEPS_IN_CONTACT
+  /* A blow has no derivative. */
+  if (work->was_cut) return 0;
+#endif
   for (int number = 0; number < count; number++) {
     const real *unknowns = work->parts_unknowns[number];
     const step_start start = part_of_step(whole, number, count, work);
+#ifdef STEPS_IN_CONTACT
+    press_in_part(number, work);
+#endif
     if (!differentiate_part(&start, unknowns, number == 0 ? wanted : &later, work)) return 0;
     if (number > 0) add_part(&later, (real)number * start.size, wanted, work);
     stage_at(&start, STAGES - 1, unknowns, &work->at);

@@ -16,10 +16,16 @@ from cosserat_casadi.model.obstacle_checks import held_by_contact, suggested_wid
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
-    "dynamics": "motions in C know no exact contact",
     "cuda": "rods in exact contact have no batches on a GPU",
 }
 """Functions that a folder may hold of other scenes, and why not of these."""
+
+AT_REST = {
+    "derivatives": "derivatives of equilibria",
+    "stability": "the stability of equilibria",
+    "batches": "many equilibria",
+}
+"""Functions of equilibria, which a folder of motions in exact contact does not hold."""
 
 REMEDY = "leave it out, or give each obstacle {width}"
 
@@ -40,14 +46,41 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
     problems = [
         Problem(f"--{word}", SENTENCES[word], remedy) for word, wanted in asked.items() if wanted and word in SENTENCES
     ]
-    problems += _refused_parameters(scene)
+    if asked.get("dynamics"):
+        remedy = "export the scene twice: with --dynamics, and with this"
+        for word, what in AT_REST.items():
+            if asked.get(word):
+                problem = f"{what} in exact contact are in a folder of their own, without --dynamics"
+                problems.append(Problem(f"--{word}", problem, remedy))
+        problems += refused_in_motion(scene)
+    else:
+        problems += _refused_parameters(scene)
+        problems += _refused_obstacles(scene)
+        problems += held_by_contact(scene)
+    refuse(problems, ExportError)
+
+
+def _refused_obstacles(scene: scenes.Scene) -> Iterator[Problem]:
+    """Problems of obstacles on bodies, and of disks."""
     for obstacle in scene.obstacles:
         disks = [body for body in scene.bodies if obstacle.concerns_body(body.name) and body.thickness is not None]
         if obstacle.body is not None or disks:
             problem = "exact contact with an obstacle on a body, or of a disk, is not found in C"
-            problems.append(Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m"))
-    problems += held_by_contact(scene)
-    refuse(problems, ExportError)
+            yield Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m")
+
+
+def refused_in_motion(scene: scenes.Scene) -> Iterator[Problem]:
+    """Problems of exact contact in the steps of a motion in C; none of a scene without."""
+    if not scene.touches_exactly:
+        return
+    remedy = "give each obstacle a width, m"
+    if scene.parameters:
+        problem = "steps in exact contact have the numbers of the scene, and no parameters"
+        yield Problem("parameters", problem, f"leave them out, or {remedy}")
+    for obstacle in scene.obstacles:
+        if obstacle.is_smooth and np.isfinite(obstacle.thickness):
+            problem = "steps in C watch a thin smooth obstacle, or obstacles that are touched exactly, not both"
+            yield Problem(f"obstacles.{obstacle.name}", problem, "give each obstacle a width, m, or none")
 
 
 def _refused_parameters(scene: scenes.Scene) -> Iterator[Problem]:

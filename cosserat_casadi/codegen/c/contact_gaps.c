@@ -1,0 +1,234 @@
+/* Gaps between rods or bodies and obstacles that they touch exactly, along the rods, and where they are least. Positions
+   between nodes are those of the polynomials through the nodes of an element.
+
+   cosserat_casadi/motion/contact_sections.py holds the same in Python. Uses of the scene: FACING, POINTS. Gaps are counted
+   in the length of the rod, or of the longest rod that holds the body. */
+
+/* Gap up to which a section touches. */
+static const real TOUCHING = (real)1e-7;
+
+/* Bend of a gap up to which it is flat: a rod lies there, and is held at sections of its own. */
+static const real FLATTEST = (real)1e-3;
+
+/* Slope of a gap over the length up to which a section is level. */
+static const real SMOOTH = (real)1e-6;
+
+/* Distance along the rod up to which two sections that touch count as one. */
+static const real SAME_PLACE = (real)0.02;
+
+/* Gaps are rounded to so much where hills are told from valleys: a flat gap has none. */
+static const real LEVEL = (real)1e-10;
+
+/* Change of a place from which on Newton's method squares it to rounding. */
+static const real PLACED = (real)1e-8;
+
+/* Way down a gap without a bend. */
+static const real DOWN = (real)5e-3;
+
+enum { PLACINGS = 50 };
+
+/* A gap at a section, with its derivatives along the rod, and what its derivatives by the unknowns are made of. */
+typedef struct {
+  real place; /* abscissa */
+  real value;
+  real slope;
+  real bend;
+  real normal[3];
+  real curvature[9]; /* of the distance, 1/m */
+  real tangent[3];   /* derivative of the position with the abscissa, m */
+  int first;         /* of the nodes of its element */
+  int nodes;
+  real rows[2][MOST_NODES]; /* their weights for the section, and for the tangent */
+} section_gap;
+
+static real clipped(real value, real least, real most) { return value < least ? least : value > most ? most : value; }
+
+static real inner(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* The surface at a point, and what it is along a curve through it: the gap with two derivatives. */
+static void along_surface(const facing *own, const real *point, const real *second, section_gap *gap, workspace *work) {
+  const real taper = own->radius_at_tip - own->radius_at_base;
+  real distance;
+  own->surface(point, &distance, gap->normal, gap->curvature, work);
+  real turned[3];
+  for (int i = 0; i < 3; i++) turned[i] = inner(gap->curvature + 3 * i, gap->tangent);
+  gap->value = (distance - own->radius_at_base - gap->place * taper) / own->length;
+  gap->slope = (inner(gap->normal, gap->tangent) - taper) / own->length;
+  gap->bend = (inner(gap->tangent, turned) + inner(gap->normal, second)) / own->length;
+}
+
+/* The gap at an abscissa; of a body whatever the abscissa. */
+static void look_at(const facing *own, const real *nodes, real place, section_gap *gap, workspace *work) {
+  real values[3][MOST_NODES] = {{1}};
+  real curve[3][3] = {{0}};
+  int e = 0;
+  gap->place = place;
+  gap->nodes = own->nodes;
+  gap->first = 0;
+  if (own->is_body) {
+    for (int i = 0; i < 3; i++) gap->tangent[i] = 0;
+    gap->rows[0][0] = 1;
+    gap->rows[1][0] = 0;
+    gap->place = 0;
+    along_surface(own, nodes, curve[2], gap, work);
+    return;
+  }
+  while (e + 1 < own->elements && place > own->ends[e + 1]) e++;
+  const real width = own->ends[e + 1] - own->ends[e];
+  const real z = 2 * (place - own->ends[e]) / width - 1;
+  const real rate = 2 / width;
+  gap->first = e * own->nodes;
+  values[0][1] = z;
+  values[1][1] = rate;
+  for (int k = 2; k < own->nodes; k++) {
+    values[0][k] = 2 * z * values[0][k - 1] - values[0][k - 2];
+    values[1][k] = 2 * rate * values[0][k - 1] + 2 * z * values[1][k - 1] - values[1][k - 2];
+    values[2][k] = 4 * rate * values[1][k - 1] + 2 * z * values[2][k - 1] - values[2][k - 2];
+  }
+  for (int i = 0; i < own->nodes; i++) {
+    real weights[3] = {0, 0, 0};
+    for (int k = 0; k < own->nodes; k++) {
+      const real share = own->to_coefficients[k * own->nodes + i];
+      for (int order = 0; order < 3; order++) weights[order] += values[order][k] * share;
+    }
+    gap->rows[0][i] = weights[0];
+    gap->rows[1][i] = weights[1];
+    const real *node = nodes + 3 * (gap->first + i);
+    for (int order = 0; order < 3; order++) {
+      for (int j = 0; j < 3; j++) curve[order][j] += weights[order] * node[j];
+    }
+  }
+  memcpy(gap->tangent, curve[1], sizeof gap->tangent);
+  along_surface(own, curve[0], curve[2], gap, work);
+}
+
+/* The section next to another where the gap is least: between the ends of the rod its slope is zero there. Newton's method
+   for the slope, which is continuous where its own slope, the bend, jumps from element to element; halving between sections
+   of slopes that differ in sign, as beside a wire that is thin beside the distance to it. */
+static void look_lowest(const facing *own, const real *nodes, real near, section_gap *gap, workspace *work) {
+  real falls = -1, rises = 2; /* sections where the gap falls, and where it rises */
+  real place = near;
+  look_at(own, nodes, place, gap, work);
+  for (int k = 0; k < PLACINGS && !own->is_body; k++) {
+    const int is_falling = gap->slope < 0;
+    if (!(gap->bend > 0) && !(ABSOLUTE(gap->slope) > SMOOTH)) return;
+    if (is_falling) {
+      falls = place;
+    } else {
+      rises = place;
+    }
+    const real change = gap->bend > 0 ? clipped(-gap->slope / gap->bend, -SAME_PLACE, SAME_PLACE) : is_falling ? DOWN : -DOWN;
+    real next = clipped(place + change, 0, 1);
+    if (next <= falls || next >= rises) next = falls < 0 || rises > 1 ? next : (falls + rises) / 2;
+    const real moved = ABSOLUTE(next - place);
+    if (moved == 0) return;
+    place = next;
+    look_at(own, nodes, place, gap, work);
+    if (moved <= PLACED) return;
+  }
+}
+
+/* Gaps at the sections that are looked at first, rounded; returns their number. */
+static int gaps_along(const facing *own, const real *nodes, real *gaps, workspace *work) {
+  const real taper = own->radius_at_tip - own->radius_at_base;
+  const int count = own->elements * LOOKS + 1;
+  for (int i = 0; i < count; i++) {
+    const int e = i / LOOKS < own->elements ? i / LOOKS : own->elements - 1;
+    const int local = i - e * LOOKS;
+    const real *weights = own->looks + local * own->nodes;
+    const real *node = nodes + 3 * e * own->nodes;
+    const real place = own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)local / LOOKS;
+    real point[3] = {0, 0, 0}, distance, normal[3], curvature[9];
+    for (int k = 0; k < own->nodes; k++) {
+      for (int j = 0; j < 3; j++) point[j] += weights[k] * node[3 * k + j];
+    }
+    own->surface(point, &distance, normal, curvature, work);
+    const real gap = (distance - own->radius_at_base - place * taper) / own->length;
+    gaps[i] = LEVEL * (real)floor((double)(gap / LEVEL) + 0.5);
+  }
+  return count;
+}
+
+static real place_of_look(const facing *own, int i) {
+  const int e = i / LOOKS < own->elements ? i / LOOKS : own->elements - 1;
+  return own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)(i - e * LOOKS) / LOOKS;
+}
+
+static valley valley_at(const section_gap *gap) {
+  const valley found = {gap->place, gap->value, gap->slope, gap->bend};
+  return found;
+}
+
+/* Sections whose gaps are the least about them, and not above a bound; returns their number. Ends that are not watched are
+   none, but where all are asked for. */
+static int valleys_of(const facing *own, const real *nodes, real below, int all, valley *found, workspace *work) {
+  real *gaps = work->gaps_along;
+  section_gap lowest;
+  int count = 0;
+  if (own->is_body) {
+    look_at(own, nodes, 0, &lowest, work);
+    *found = valley_at(&lowest);
+    return found->value <= below;
+  }
+  const int last = gaps_along(own, nodes, gaps, work) - 1;
+  for (int i = 0; i <= last && count < MOST_VALLEYS; i++) {
+    const real fall = i > 0 ? gaps[i - 1] - gaps[i] : 1;
+    const real rise = i < last ? gaps[i + 1] - gaps[i] : 1;
+    /* Of equal ones the first and the last. */
+    const int is_valley = fall >= 0 && rise >= 0 && fall + rise > 0;
+    const int is_watched = all || ((i > 0 || own->watches_base) && (i < last || own->watches_tip));
+    real deeper = i > 0 ? fall : 0;
+    if (i < last && rise > deeper) deeper = rise;
+    if (!is_valley || !is_watched || gaps[i] > below + deeper) continue;
+    const real place = place_of_look(own, i);
+    look_lowest(own, nodes, place, &lowest, work);
+    if (!(ABSOLUTE(lowest.place - place) <= SAME_PLACE) || !(lowest.bend > 0)) look_at(own, nodes, place, &lowest, work);
+    if (!(lowest.value > below)) found[count++] = valley_at(&lowest);
+  }
+  return count;
+}
+
+/* Whether anything is deeper inside an obstacle than a bound, or where that is no number. */
+static int is_inside(const real *x, const real *inputs, real depth, workspace *work) {
+  for (int k = 0; k < FACINGS; k++) {
+    const facing *own = FACING + k;
+    POINTS[own->points].positions(x, inputs, work->nodes, work);
+    if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return 1;
+    if (valleys_of(own, work->nodes, -depth, 1, work->valleys, work) > 0) return 1;
+  }
+  return 0;
+}
+
+/* Positions of the points of a pair at both ends of a way, in the workspace; returns the longest way of one, m. */
+static real way_of_points(const facing *own, const real *x, const real *inputs, const real *next, const real *next_inputs,
+                          workspace *work) {
+  real longest = 0;
+  POINTS[own->points].positions(x, inputs, work->nodes, work);
+  POINTS[own->points].positions(next, next_inputs, work->weights, work);
+  for (int i = 0; i < POINTS[own->points].count; i++) {
+    real way[3];
+    for (int k = 0; k < 3; k++) way[k] = work->weights[3 * i + k] - work->nodes[3 * i + k];
+    const real length = SQUARE_ROOT(inner(way, way));
+    if (!(length <= longest)) longest = length;
+  }
+  return longest;
+}
+
+/* Whether the straight way of all points from one shape to another leads into an obstacle, or through a thin one, or where
+   that is no number. */
+static int leads_inside(const real *x, const real *inputs, const real *next, const real *next_inputs, workspace *work) {
+  for (int number = 0; number < FACINGS; number++) {
+    const facing *own = FACING + number;
+    const real longest = way_of_points(own, x, inputs, next, next_inputs, work);
+    if (!isfinite(longest)) return 1;
+    const int looks = 1 + (int)(longest / own->stride);
+    for (int look = 1; look <= looks; look++) {
+      const real share = (real)look / (real)looks;
+      for (int i = 0; i < 3 * POINTS[own->points].count; i++) {
+        work->between[i] = (1 - share) * work->nodes[i] + share * work->weights[i];
+      }
+      if (valleys_of(own, work->between, -TOUCHING, 1, work->valleys, work) > 0) return 1;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,109 @@
+/* Derivatives of steps in which what presses goes on to press: gaps are equations of both stages, with second derivatives of
+   the gaps in the stiffness. See cosserat_casadi/motion/contact_gap.py for the formulas. */
+
+/* Takes the changes of the forces' directions from the matrices of a stage, and notes the derivatives of the gaps. */
+static void curve_stage(int stage, int by_inputs, workspace *work) {
+  for (int m = 0; m < work->part_pressing; m++) {
+    const touch *own = work->part_touch + m;
+    const facing *faces = FACING + own->facing;
+    const moving_points *points = POINTS + faces->points;
+    const int count = 3 * points->count;
+    const real force = own->forces[stage];
+    section_gap gap;
+    gradient_at(own, work->at.state, work->at.inputs, &gap, work->stage_gradients[stage][m], work);
+    curve_matrices(own, &gap, force, work->matrices[stage], work);
+    for (int j = 0; j < INPUTS; j++) work->gaps_by_inputs[stage][m * INPUTS + j] = 0;
+    if (!by_inputs || !points->by_inputs) continue;
+    move_section(own, &gap, 1, work->moved_by_inputs, work);
+    memset(work->weights, 0, (size_t)count * sizeof *work->weights);
+    add_weights(faces, &gap, 1, work->weights);
+    points->by_inputs(work->at.state, work->at.inputs, work->weights, work->gaps_by_inputs[stage] + m * INPUTS, work->mixed, work);
+    for (int j = 0; j < INPUTS; j++) {
+      for (int i = 0; i < N; i++) {
+        const real turned = turning(own, &gap, work->moved + 4 * i, work->moved_by_inputs + 4 * j);
+        work->input_matrices[stage][j * N + i] -= force * (work->mixed[j * N + i] + turned);
+      }
+    }
+  }
+}
+
+/* Change of a gap at a stage with the unknowns of both. */
+static real gap_of_stages(int stage, int m, const real *unknowns, const workspace *work) {
+  const real *gradient = work->stage_gradients[stage][m];
+  return STAGE_MATRIX_SQUARED[stage][0] * dot(gradient, unknowns) + STAGE_MATRIX_SQUARED[stage][1] * dot(gradient, unknowns + N);
+}
+
+/* How the gaps of both stages answer to forces in these: unknowns that close them. Zero where they depend on each other. */
+static int border_stages(const stage_factors *factors, workspace *work) {
+  const int count = work->part_pressing;
+  const int order = STAGES * count;
+  for (int first = 0; first < order; first += FOUR) {
+    real *columns = work->stage_solution;
+    memset(columns, 0, FOUR * STAGED * sizeof *columns);
+    for (int lane = 0; lane < FOUR && first + lane < order; lane++) {
+      const int stage = (first + lane) / count;
+      const int m = (first + lane) % count;
+      memcpy(columns + lane * STAGED + stage * N, work->stage_gradients[stage][m], N * sizeof *columns);
+    }
+    solve_stage_columns(factors, columns, work);
+    for (int lane = 0; lane < FOUR && first + lane < order; lane++) {
+      memcpy(work->stage_responses[first + lane], columns + lane * STAGED, STAGED * sizeof *columns);
+    }
+  }
+  for (int j = 0; j < order; j++) {
+    for (int i = 0; i < order; i++) {
+      work->border[j * order + i] = gap_of_stages(i / count, i % count, work->stage_responses[j], work);
+    }
+  }
+  return factorise_small(order, work->border, work->border_pivots);
+}
+
+/* Columns whose gaps change as they are to, from those of no change of the forces. */
+static void close_stage_columns(real *columns, workspace *work) {
+  const int count = work->part_pressing;
+  const int order = STAGES * count;
+  for (int lane = 0; lane < FOUR && count > 0; lane++) {
+    real *own = columns + lane * STAGED;
+    real *values = work->border_values;
+    for (int i = 0; i < order; i++) {
+      values[i] = work->gap_changes[lane][i] - gap_of_stages(i / count, i % count, own, work);
+    }
+    solve_small(order, work->border, work->border_pivots, values);
+    for (int j = 0; j < order; j++) {
+      for (int i = 0; i < STAGED; i++) own[i] += values[j] * work->stage_responses[j][i];
+    }
+  }
+}
+
+/* Minus what gaps of both stages change by with a coordinate at the start, or with its rate. */
+static void change_gaps_by_start(real size, int column, int lane, workspace *work) {
+  const int count = work->part_pressing;
+  for (int stage = 0; stage < STAGES; stage++) {
+    const real share = column >= N ? STAGE_NODES[stage] * size : 1;
+    for (int m = 0; m < count; m++) {
+      work->gap_changes[lane][stage * count + m] = -share * work->stage_gradients[stage][m][column % N];
+    }
+  }
+}
+
+/* The same with an input, its rate or its acceleration. */
+static void change_gaps_by_input(real size, int column, int lane, workspace *work) {
+  const int count = work->part_pressing;
+  const int inputs = INPUTS > 0 ? INPUTS : 1;
+  for (int stage = 0; stage < STAGES; stage++) {
+    const real time = STAGE_NODES[stage] * size;
+    const real grown[ORDERS] = {1, time, time * time / 2};
+    for (int m = 0; m < count; m++) {
+      const real by_input = INPUTS > 0 ? work->gaps_by_inputs[stage][m * INPUTS + column % inputs] : 0;
+      work->gap_changes[lane][stage * count + m] = -grown[column / inputs] * by_input;
+    }
+  }
+}
+
+/* The touches that press in a part of a step. */
+static void press_in_part(int number, workspace *work) {
+  work->part_pressing = 0;
+  for (int k = 0; k < work->part_counts[number]; k++) {
+    if (work->part_touches[number][k].presses) work->part_touch[work->part_pressing++] = work->part_touches[number][k];
+  }
+}

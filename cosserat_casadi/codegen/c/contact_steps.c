@@ -1,0 +1,862 @@
+/* Exact contact in the steps of a motion. While a section presses, its gap is zero at both stages, and a force along its
+   gradient, an unknown of each, keeps it so: equations of index 3 as those of joints. Which of the sections that touch at
+   the start press is the complementarity problem of the gaps at the end, 0 <= force, 0 <= gap, one of both zero. Where
+   another gap comes to zero the step is cut: impulses take the speed of approach, and give back the share of it that is the
+   restitution of the obstacle (F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996).
+
+   The gap of a section that slides is the least about it, so that its gradient is that of the gap at its place (E. Polak,
+   Optimization, Springer 1997, section 3.1). cosserat_casadi/motion holds the same law in Python: contact_forces.py,
+   contact_onset.py, exact_contact.py; steps there are cut at all changes of contact. */
+
+/* Gap that counts as closed. */
+static const real GAP_CLOSED = (real)1e-12;
+
+/* Depth up to which a section without a force may come at the end of a step. */
+static const real GAP_OPEN = (real)1e-9;
+
+/* Speed of opening, over that of approach or in lengths a step, that counts as none. */
+static const real STILL = (real)1e-9;
+
+/* Share of a constraint's compliance that active ones must leave, below which it depends on them; fall of a force below
+   which it is rounding: cosserat_casadi/numerics/complementarity.py. */
+static const real DEPENDENT = (real)1e-9;
+static const real FALLS = (real)1e-4;
+
+enum {
+  CUTS = 32,          /* stretches between blows of one part of a step */
+  SETS = 8,           /* sets of pressing sections that are tried for a stretch */
+  LOOKS_IN_TIME = 2,  /* looks for blows in a stretch, at least */
+  MOST_IN_TIME = 64,
+  LOCATIONS = 60,     /* looks at which the time of a blow is found */
+  CLOSINGS = 3        /* changes of the positions that close a gap: the first leaves its square */
+};
+
+typedef solver_touch touch;
+
+/* ---- Small linear systems ---- */
+
+/* Factorises in place by Gauss's method with partial pivoting, column after column. Zero where it is singular. */
+static int factorise_small(int count, real *a, int *pivots) {
+  for (int k = 0; k < count; k++) {
+    int best = k;
+    for (int i = k + 1; i < count; i++) best = ABSOLUTE(a[k * count + i]) > ABSOLUTE(a[k * count + best]) ? i : best;
+    pivots[k] = best;
+    if (!(ABSOLUTE(a[k * count + best]) > 0)) return 0;
+    for (int j = 0; j < count && best != k; j++) {
+      const real kept = a[j * count + k];
+      a[j * count + k] = a[j * count + best];
+      a[j * count + best] = kept;
+    }
+    for (int i = k + 1; i < count; i++) a[k * count + i] /= a[k * count + k];
+    for (int j = k + 1; j < count; j++) {
+      for (int i = k + 1; i < count; i++) a[j * count + i] -= a[k * count + i] * a[j * count + k];
+    }
+  }
+  return 1;
+}
+
+static void solve_small(int count, const real *a, const int *pivots, real *b) {
+  for (int k = 0; k < count; k++) {
+    const real kept = b[k];
+    b[k] = b[pivots[k]];
+    b[pivots[k]] = kept;
+  }
+  for (int k = 0; k < count; k++) {
+    for (int i = k + 1; i < count; i++) b[i] -= a[k * count + i] * b[k];
+  }
+  for (int k = count - 1; k >= 0; k--) {
+    b[k] /= a[k * count + k];
+    for (int i = 0; i < k; i++) b[i] -= a[k * count + i] * b[k];
+  }
+}
+
+/* ---- Which of several push: complementarity.py ---- */
+
+/* Solves with the rows and columns of W of some constraints, for values of theirs, in place. */
+static int solve_active(const real *w, int count, const int *active, int active_count, real *values, workspace *work) {
+  real *a = work->small_matrix;
+  for (int j = 0; j < active_count; j++) {
+    for (int i = 0; i < active_count; i++) a[j * active_count + i] = w[active[j] * count + active[i]];
+  }
+  if (!factorise_small(active_count, a, work->small_pivots)) return 0;
+  solve_small(active_count, a, work->small_pivots, values);
+  return all_finite(values, active_count);
+}
+
+static void leave_active(int *active, int *active_count, int which) {
+  for (int i = which; i + 1 < *active_count; i++) active[i] = active[i + 1];
+  *active_count -= 1;
+}
+
+/* Forces f >= 0 of constraints that open by q + W f >= 0, one of both zero; W is symmetric and positive semidefinite.
+   C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, SIAM 1995, chapter 23. Zero where nothing settles it. */
+static int least_pushes(const real *compliance, const real *rates, int count, real tolerance, real *forces,
+                        workspace *work) {
+  real *w = work->scaled_compliance;
+  real *scale = work->scales;
+  real *values = work->small_values;
+  int *active = work->active;
+  int *passed_over = work->passed_over;
+  int active_count = 0;
+  real largest = 0;
+  for (int k = 0; k < count; k++) {
+    scale[k] = SQUARE_ROOT(larger(compliance[k * count + k], 0));
+    largest = larger(largest, scale[k]);
+  }
+  for (int k = 0; k < count; k++) {
+    passed_over[k] = !(scale[k] > DEPENDENT * largest);
+    scale[k] = passed_over[k] ? 0 : 1 / scale[k];
+    forces[k] = 0;
+  }
+  for (int j = 0; j < count; j++) {
+    for (int i = 0; i < count; i++) w[j * count + i] = scale[i] * compliance[j * count + i] * scale[j];
+  }
+  for (int turn = 0; turn < 10 * count; turn++) {
+    int fastest = -1;
+    real least = 0, summed = 0;
+    for (int k = 0; k < count; k++) {
+      int is_active = passed_over[k];
+      for (int i = 0; i < active_count; i++) is_active |= active[i] == k;
+      if (is_active) continue;
+      real opening = scale[k] * rates[k];
+      for (int i = 0; i < count; i++) opening += w[i * count + k] * forces[i];
+      if (opening < -tolerance * scale[k] && opening < least) {
+        least = opening;
+        fastest = k;
+      }
+    }
+    if (fastest < 0) {
+      for (int k = 0; k < count; k++) forces[k] *= scale[k];
+      return 1;
+    }
+    /* How active forces change with its own, so that their gaps do not. */
+    for (int i = 0; i < active_count; i++) values[i] = -w[fastest * count + active[i]];
+    if (!solve_active(w, count, active, active_count, values, work)) return 0;
+    real left = w[fastest * count + fastest];
+    for (int i = 0; i < active_count; i++) left += w[fastest * count + active[i]] * values[i];
+    if (left < DEPENDENT) {
+      int falling = -1;
+      real lasts = 0;
+      summed = ABSOLUTE(scale[fastest] * rates[fastest]);
+      for (int i = 0; i < count; i++) summed += ABSOLUTE(w[i * count + fastest]) * forces[i];
+      for (int i = 0; i < active_count; i++) {
+        if (!(values[i] < -FALLS)) continue;
+        const real own = forces[active[i]] / -values[i];
+        if (falling < 0 || own < lasts) {
+          falling = i;
+          lasts = own;
+        }
+      }
+      if (least >= -DEPENDENT * summed || falling < 0) {
+        passed_over[fastest] = 1;
+        continue;
+      }
+      for (int i = 0; i < active_count; i++) forces[active[i]] += lasts * values[i];
+      forces[fastest] = lasts;
+      forces[active[falling]] = 0;
+      leave_active(active, &active_count, falling);
+    }
+    active[active_count++] = fastest;
+    while (active_count > 0) {
+      int first = -1;
+      real share = 1;
+      for (int i = 0; i < active_count; i++) values[i] = -scale[active[i]] * rates[active[i]];
+      if (!solve_active(w, count, active, active_count, values, work)) return 0;
+      for (int i = 0; i < active_count; i++) {
+        const real present = forces[active[i]];
+        if (values[i] > 0) continue;
+        const real own = present > values[i] ? present / (present - values[i]) : 0;
+        if (first < 0 || own < share) {
+          first = i;
+          share = own;
+        }
+      }
+      if (first < 0) {
+        for (int i = 0; i < active_count; i++) forces[active[i]] = values[i];
+        break;
+      }
+      for (int i = 0; i < active_count; i++) forces[active[i]] += share * (values[i] - forces[active[i]]);
+      forces[active[first]] = 0;
+      leave_active(active, &active_count, first);
+    }
+  }
+  return 0;
+}
+
+/* ---- What touches ---- */
+
+static void add_touch(int number, int slides, real place, workspace *work) {
+  if (work->touch_count == TOUCHES) {
+    work->too_many = 1;
+    return;
+  }
+  const touch added = {.facing = number, .slides = slides, .presses = 0, .place = place, .end_place = place, .gap = 0, .force = 0, .forces = {0, 0}};
+  work->touches[work->touch_count++] = added;
+}
+
+/* Adds the sections of a rod that lies at which it touches; returns their number where nothing is to be added. */
+static int add_laid(int number, int add, workspace *work) {
+  const facing *own = FACING + number;
+  int count = 0;
+  for (int k = 0; k < own->laid_count; k++) {
+    section_gap gap;
+    look_at(own, work->nodes, own->laid[k], &gap, work);
+    if (gap.value > TOUCHING) continue;
+    count++;
+    if (add) add_touch(number, 0, own->laid[k], work);
+  }
+  return count;
+}
+
+/* Finds what touches. A rod lies where its gap is flat at a section that touches, or where it touches at two of the sections
+   that it is held at then. Zero where there is no room for so many. */
+static int find_touching(const real *x, const real *inputs, workspace *work) {
+  work->touch_count = 0;
+  work->too_many = 0;
+  for (int number = 0; number < FACINGS; number++) {
+    const facing *own = FACING + number;
+    POINTS[own->points].positions(x, inputs, work->nodes, work);
+    const int count = valleys_of(own, work->nodes, TOUCHING, 0, work->valleys, work);
+    int lies = 0;
+    for (int k = 0; k < count && !own->is_body; k++) {
+      lies |= work->valleys[k].bend <= FLATTEST && ABSOLUTE(work->valleys[k].slope) <= SMOOTH;
+    }
+    if (own->is_body) {
+      if (count > 0) add_touch(number, 0, 0, work);
+    } else if (count > 0 && (lies || add_laid(number, 0, work) > 1)) {
+      add_laid(number, 1, work);
+    } else {
+      for (int k = 0; k < count; k++) {
+        int is_new = 1;
+        for (int i = 0; i < k; i++) {
+          is_new &= ABSOLUTE(work->valleys[i].place - work->valleys[k].place) > SAME_PLACE;
+        }
+        if (is_new) add_touch(number, 1, work->valleys[k].place, work);
+      }
+    }
+  }
+  return !work->too_many;
+}
+
+/* Looks at a section that touches, next to where it was; the nodes of its rod are in the workspace then. */
+static void follow_touch(const touch *own, const real *x, const real *inputs, section_gap *gap, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  POINTS[faces->points].positions(x, inputs, work->nodes, work);
+  if (own->slides) {
+    look_lowest(faces, work->nodes, own->place, gap, work);
+  } else {
+    look_at(faces, work->nodes, own->place, gap, work);
+  }
+}
+
+/* Weights of the points of a rod or body of which the sum changes as a gap does, added so many times. */
+static void add_weights(const facing *faces, const section_gap *gap, real times, real *weights) {
+  for (int i = 0; i < gap->nodes; i++) {
+    const real share = times * gap->rows[0][i] / faces->length;
+    for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] += share * gap->normal[k];
+  }
+}
+
+/* Gap and gradient of a section that touches. */
+static void gradient_at(const touch *own, const real *x, const real *inputs, section_gap *gap, real *gradient,
+                        workspace *work) {
+  const facing *faces = FACING + own->facing;
+  const int count = 3 * POINTS[faces->points].count;
+  follow_touch(own, x, inputs, gap, work);
+  memset(work->weights, 0, (size_t)count * sizeof *work->weights);
+  add_weights(faces, gap, 1, work->weights);
+  POINTS[faces->points].gradient(x, inputs, work->weights, gradient, work);
+}
+
+/* Rate of a gap, of velocities and of inputs in motion, 1/s. */
+static real rate_of(const touch *own, const instant *at, const section_gap *gap, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  real rate = 0;
+  POINTS[faces->points].velocities(at->state, at->inputs, at->state + N, at->inputs + INPUTS, work->nodes, work);
+  for (int i = 0; i < gap->nodes; i++) rate += gap->rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->first + i));
+  return rate / faces->length;
+}
+
+/* ---- Blows ---- */
+
+static void mark_constraints(const real *matrices, int *is_constraint);
+
+/* The masses at an instant, factorised, with constraints differentiated twice. Zero where masses do not say what they do. */
+static int factorise_masses(const instant *at, const stage_factors *factors, workspace *work) {
+  const real *stiffness = work->matrices[0];
+  const real *mass = stiffness + 2 * STAGE_ENTRIES;
+  matrices_at(at, work->matrices[0], work);
+  if (!all_finite(work->matrices[0], MATRICES * STAGE_ENTRIES)) return 0;
+  mark_constraints(work->matrices[0], work->is_constraint);
+  for (int k = 0; k < STAGE_ENTRIES; k++) {
+    const int constraint = work->is_constraint[ENTRY_ROWS[k]];
+    const int of_shape = IS_SHAPE[ENTRY_COLUMNS[k]];
+    work->stage_values[k] = of_shape && !constraint ? mass[k] : of_shape || !constraint ? stiffness[k] : 0;
+  }
+  return factorise_system(matrix_of_masses(), work->stage_values, factors);
+}
+
+/* What unit impulses along the gaps do to velocities, and by how much gaps open then, all joints closed. */
+static void respond(const stage_factors *factors, workspace *work) {
+  const int count = work->touch_count;
+  for (int k = 0; k < count; k++) {
+    real *response = work->responses[k];
+    for (int i = 0; i < N; i++) work->stage_solution[i] = work->is_constraint[i] ? 0 : work->gradients[k][i];
+    solve_system(matrix_of_masses(), 1, factors, work->stage_solution, work);
+    for (int i = 0; i < N; i++) response[i] = IS_SHAPE[i] ? work->stage_solution[i] : 0;
+  }
+  for (int j = 0; j < count; j++) {
+    for (int k = 0; k < count; k++) {
+      work->compliance[j * count + k] =
+          (dot(work->gradients[j], work->responses[k]) + dot(work->gradients[k], work->responses[j])) / 2;
+    }
+  }
+}
+
+static int gradients_at(const real *x, const real *inputs, workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    touch *own = work->touches + k;
+    section_gap gap;
+    gradient_at(own, x, inputs, &gap, work->gradients[k], work);
+    own->place = gap.place;
+    own->gap = gap.value;
+    if (!all_finite(work->gradients[k], N) || !isfinite(gap.value)) return 0;
+  }
+  return 1;
+}
+
+/* Closes gaps below zero, and takes speeds of approach from what touches, at an instant, in place: by the smallest changes in
+   the metric of the mass. Of what pressed before, as known says, the rate is no approach but the inexactness of a step: it is
+   taken from both sides. Zero where that is not settled. */
+static int strike(instant *at, real size, workspace *work) {
+  const stage_factors factors = {work->stage_rows, work->stage_columns, work->stage_matrix, work->stage_pivots,
+                                 &work->stages_as_a_whole};
+  const int count = work->touch_count;
+  real *x = at->state;
+  real *v = at->state + N;
+  real *rates = work->rates;
+  real *wanted = work->wanted;
+  if (!gradients_at(x, at->inputs, work) || !factorise_masses(at, &factors, work)) return 0;
+  for (int pass = 0; pass < CLOSINGS; pass++) {
+    int is_open = 0;
+    for (int k = 0; k < count; k++) is_open |= work->touches[k].gap < -GAP_CLOSED;
+    if (!is_open) break;
+    respond(&factors, work);
+    for (int k = 0; k < count; k++) wanted[k] = work->touches[k].gap;
+    if (!least_pushes(work->compliance, wanted, count, GAP_CLOSED, work->pushes, work)) return 0;
+    for (int k = 0; k < count; k++) {
+      for (int i = 0; i < N; i++) x[i] += work->pushes[k] * work->responses[k][i];
+    }
+    if (!gradients_at(x, at->inputs, work)) return 0;
+  }
+  respond(&factors, work);
+  /* Rates of what pressed, first: nothing of it is a blow. */
+  int known = 0;
+  real fastest = 1 / size;
+  for (int k = 0; k < count; k++) {
+    section_gap gap;
+    follow_touch(work->touches + k, x, at->inputs, &gap, work);
+    rates[k] = rate_of(work->touches + k, at, &gap, work);
+    if (!isfinite(rates[k])) return 0;
+    fastest = larger(fastest, ABSOLUTE(rates[k]));
+    if (work->touches[k].presses) work->active[known++] = k;
+  }
+  for (int i = 0; i < known; i++) work->pushes[i] = -rates[work->active[i]];
+  if (known > 0 && solve_active(work->compliance, count, work->active, known, work->pushes, work)) {
+    for (int m = 0; m < known; m++) {
+      const int own = work->active[m];
+      for (int i = 0; i < N; i++) v[i] += work->pushes[m] * work->responses[own][i];
+      for (int k = 0; k < count; k++) rates[k] += work->pushes[m] * work->compliance[own * count + k];
+    }
+  }
+  /* Newton's law of impact: what closes leaves with a share of its speed. */
+  const real still = STILL * fastest;
+  for (int k = 0; k < count; k++) {
+    const real restitution = work->touches[k].presses ? 0 : FACING[work->touches[k].facing].restitution;
+    wanted[k] = rates[k] - (rates[k] < -still ? -restitution * rates[k] : 0);
+  }
+  if (!least_pushes(work->compliance, wanted, count, still, work->pushes, work)) return 0;
+  for (int k = 0; k < count; k++) {
+    for (int i = 0; i < N; i++) v[i] += work->pushes[k] * work->responses[k][i];
+  }
+  return all_finite(at->state, 2 * N);
+}
+
+/* ---- Forces in the stages ---- */
+
+/* Takes the forces of what presses from the equations of a stage, and notes the gaps. */
+static void push_in_stage(int stage, const instant *at, real *residual, workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    touch *own = work->touches + k;
+    section_gap gap;
+    if (!own->presses) continue;
+    gradient_at(own, at->state, at->inputs, &gap, work->stage_gradients[stage][k], work);
+    work->stage_gaps[stage][k] = gap.value;
+    for (int i = 0; i < N; i++) residual[i] -= own->forces[stage] * work->stage_gradients[stage][k][i];
+  }
+}
+
+/* Weights of the points of which the sum changes as a section, or its tangent, does along a direction. */
+static void section_weights(const section_gap *gap, int order, const real *direction, int count, real *weights) {
+  memset(weights, 0, (size_t)count * sizeof *weights);
+  for (int i = 0; i < gap->nodes; i++) {
+    for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] = gap->rows[order][i] * direction[k];
+  }
+}
+
+/* Derivatives of a section by unknowns or by inputs, so many columns of four numbers: of its position, and of the slope of
+   the gap, over lengths. */
+static void move_section(const touch *own, const section_gap *gap, int by_inputs, real *moved, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  const moving_points *points = POINTS + faces->points;
+  const int columns = by_inputs ? INPUTS : N;
+  real *one = work->moved_row;
+  for (int row = 0; row < 4; row++) {
+    const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
+    section_weights(gap, row == 3, row == 3 ? gap->normal : axis, 3 * points->count, work->weights);
+    if (by_inputs) {
+      points->by_inputs(work->at.state, work->at.inputs, work->weights, one, work->mixed, work);
+    } else {
+      points->gradient(work->at.state, work->at.inputs, work->weights, one, work);
+    }
+    for (int i = 0; i < columns; i++) moved[4 * i + row] = one[i];
+  }
+  for (int i = 0; i < columns; i++) {
+    for (int k = 0; k < 3; k++) moved[4 * i + 3] += inner(gap->curvature + 3 * k, gap->tangent) * moved[4 * i + k];
+  }
+}
+
+/* Second derivative of a gap by two numbers that move its section, without that of the points. */
+static real turning(const touch *own, const section_gap *gap, const real *moved, const real *other) {
+  const facing *faces = FACING + own->facing;
+  real sum = 0;
+  for (int k = 0; k < 3; k++) sum += moved[k] * inner(gap->curvature + 3 * k, other);
+  if (own->slides && gap->place > 0 && gap->place < 1) sum -= moved[3] * other[3] / (gap->bend * faces->length);
+  return sum / faces->length;
+}
+
+/* Takes the change of a force's direction, as normals turn and sections slide, from the stiffness at the instant in the
+   workspace. */
+static void curve_matrices(const touch *own, const section_gap *gap, real force, real *stiffness, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  const moving_points *points = POINTS + faces->points;
+  move_section(own, gap, 0, work->moved, work);
+  memset(work->weights, 0, (size_t)(3 * points->count) * sizeof *work->weights);
+  add_weights(faces, gap, 1, work->weights);
+  points->hessian(work->at.state, work->at.inputs, work->weights, work->second, work);
+  for (int k = 0; k < STAGE_ENTRIES; k++) {
+    const int i = ENTRY_ROWS[k];
+    const int j = ENTRY_COLUMNS[k];
+    stiffness[k] -= force * (work->second[j * N + i] + turning(own, gap, work->moved + 4 * i, work->moved + 4 * j));
+  }
+}
+
+/* The same of all that presses, at the middle of a step, by the mean forces. */
+static void curve_middle(workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    section_gap gap;
+    if (!own->presses || own->forces[0] + own->forces[1] == 0) continue;
+    follow_touch(own, work->at.state, work->at.inputs, &gap, work);
+    curve_matrices(own, &gap, (own->forces[0] + own->forces[1]) / 2, work->matrices[0], work);
+  }
+}
+
+/* First iterate of the forces. */
+static void guess_forces(workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    touch *own = work->touches + k;
+    for (int stage = 0; stage < STAGES; stage++) own->forces[stage] = own->force;
+  }
+}
+
+/* What unit forces do to positions by the factorised matrix of the step, and how gaps answer, for all that touches. */
+static void answer_gaps(const stage_factors *factors, workspace *work) {
+  const int count = work->touch_count;
+  for (int k = 0; k < count; k++) {
+    real *response = work->responses[k];
+    memcpy(response, work->gradients[k], N * sizeof *response);
+    memset(response + N, 0, N * sizeof *response);
+    solve_system(complex_matrix(), 2, factors, response, work);
+    for (int j = 0; j < count; j++) {
+      work->answers[0][j * count + k] = dot(work->gradients[j], response);
+      work->answers[1][j * count + k] = dot(work->gradients[j], response + N);
+    }
+  }
+}
+
+/* The complex system of the gaps of what presses, as a real one of twice the size. Zero where it is singular. */
+static int factorise_border(workspace *work) {
+  const int count = work->touch_count;
+  int pressing = 0;
+  for (int k = 0; k < count; k++) {
+    if (work->touches[k].presses) work->active[pressing++] = k;
+  }
+  work->pressing = pressing;
+  const int order = 2 * pressing;
+  for (int j = 0; j < pressing; j++) {
+    for (int i = 0; i < pressing; i++) {
+      const real whole = work->answers[0][work->active[i] * count + work->active[j]];
+      const real imaginary = work->answers[1][work->active[i] * count + work->active[j]];
+      work->border[j * order + i] = whole;
+      work->border[j * order + pressing + i] = imaginary;
+      work->border[(pressing + j) * order + i] = -imaginary;
+      work->border[(pressing + j) * order + pressing + i] = whole;
+    }
+  }
+  for (int i = 0; i < pressing; i++) work->border_members[i] = work->active[i];
+  return factorise_small(order, work->border, work->border_pivots);
+}
+
+/* What the corrections of a step need of its contacts, for the factorised matrix at hand. Zero where gaps depend on each
+   other. */
+static int border_step(const stage_factors *factors, workspace *work) {
+  answer_gaps(factors, work);
+  return factorise_border(work);
+}
+
+/* Corrections along the eigenvector that close the gaps of what presses, from those without; moves the forces. */
+static void close_gaps(real *solution, workspace *work) {
+  const int pressing = work->pressing;
+  real *values = work->border_values;
+  for (int m = 0; m < pressing; m++) {
+    const int k = work->border_members[m];
+    const real first = work->stage_gaps[0][k];
+    const real second = work->stage_gaps[1][k];
+    values[m] = TO_EIGENVECTOR[0][0] * first + TO_EIGENVECTOR[1][0] * second - dot(work->gradients[k], solution);
+    values[pressing + m] =
+        TO_EIGENVECTOR[0][1] * first + TO_EIGENVECTOR[1][1] * second - dot(work->gradients[k], solution + N);
+  }
+  solve_small(2 * pressing, work->border, work->border_pivots, values);
+  for (int m = 0; m < pressing; m++) {
+    const int k = work->border_members[m];
+    const real whole = values[m];
+    const real imaginary = values[pressing + m];
+    const real *response = work->responses[k];
+    for (int i = 0; i < N; i++) {
+      solution[i] += response[i] * whole - response[N + i] * imaginary;
+      solution[N + i] += response[i] * imaginary + response[N + i] * whole;
+    }
+    for (int stage = 0; stage < STAGES; stage++) {
+      work->touches[k].forces[stage] += FROM_EIGENVECTOR[stage][1] * imaginary - FROM_EIGENVECTOR[stage][0] * whole;
+    }
+  }
+}
+
+/* ---- Stretches between blows ---- */
+
+static solver_motion_status solve_step(const step_start *start, const solver_step_options *options, real *unknowns,
+                                       solver_step_memory *memory, workspace *work, solver_step_info *info);
+static void guess_stages(const real *before, real ratio, const solver_state *state, real *unknowns);
+
+/* Whether those that press do, and the others are open, at the end of a stretch that was solved with these; else others are
+   chosen, by how the gaps at the end answer to forces that last all along. Negative where nothing settles it. */
+static int choose_pressing(const step_start *start, const real *unknowns, workspace *work) {
+  const int count = work->touch_count;
+  const real whole = TO_EIGENVECTOR[0][0] + TO_EIGENVECTOR[1][0];
+  const real imaginary = TO_EIGENVECTOR[0][1] + TO_EIGENVECTOR[1][1];
+  real *wanted = work->wanted;
+  int holds = 1;
+  stage_at(start, STAGES - 1, unknowns, &work->at);
+  for (int k = 0; k < count; k++) {
+    touch *own = work->touches + k;
+    section_gap gap;
+    follow_touch(own, work->at.state, work->at.inputs, &gap, work);
+    own->gap = gap.value;
+    own->end_place = gap.place;
+    own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
+    holds &= own->presses ? own->force >= 0 : gap.value >= -GAP_OPEN;
+  }
+  if (holds) return 1;
+  for (int j = 0; j < count; j++) {
+    for (int k = 0; k < count; k++) {
+      const real share = work->answers[0][j * count + k];
+      const real share_imaginary = work->answers[1][j * count + k];
+      work->compliance[j * count + k] = FROM_EIGENVECTOR[1][0] * (whole * share - imaginary * share_imaginary) -
+                                        FROM_EIGENVECTOR[1][1] * (whole * share_imaginary + imaginary * share);
+    }
+  }
+  for (int j = 0; j < count; j++) {
+    wanted[j] = work->touches[j].gap;
+    for (int k = 0; k < j; k++) {
+      const real mean = (work->compliance[j * count + k] + work->compliance[k * count + j]) / 2;
+      work->compliance[j * count + k] = work->compliance[k * count + j] = mean;
+    }
+  }
+  for (int j = 0; j < count; j++) {
+    for (int k = 0; k < count; k++) wanted[j] -= work->compliance[k * count + j] * work->touches[k].force;
+  }
+  if (!least_pushes(work->compliance, wanted, count, GAP_OPEN / 10, work->pushes, work)) return -1;
+  for (int k = 0; k < count; k++) {
+    touch *own = work->touches + k;
+    const int presses = work->pushes[k] > 0;
+    own->force = work->pushes[k];
+    own->presses = presses;
+  }
+  return 0;
+}
+
+/* Lets go all that presses, whose gaps may depend on each other; zero where nothing does. */
+static int release_all(workspace *work) {
+  int released = 0;
+  for (int k = 0; k < work->touch_count; k++) {
+    touch *own = work->touches + k;
+    released |= own->presses;
+    own->presses = 0;
+    own->force = 0;
+  }
+  return released;
+}
+
+/* Solves a stretch with the forces of what touches at its start. */
+static solver_motion_status solve_stretch(const step_start *start, const solver_step_options *options, real *unknowns,
+                                          solver_step_memory *memory, workspace *work, solver_step_info *info) {
+  int tried_again = 0;
+  for (int set = 0; set < SETS; set++) {
+    if (set > 0) {
+      /* Where places slide far within the step, gradients at its end serve better than those at its start. */
+      section_gap gap;
+      stage_at(start, STAGES - 1, unknowns, &work->at);
+      for (int k = 0; k < work->touch_count; k++) {
+        gradient_at(work->touches + k, work->at.state, work->at.inputs, &gap, work->gradients[k], work);
+        if (!all_finite(work->gradients[k], N)) return SOLVER_MOTION_NOT_FINITE;
+      }
+    }
+    const solver_motion_status status = solve_step(start, options, unknowns, memory, work, info);
+    if (status == SOLVER_MOTION_SINGULAR && release_all(work)) continue;
+    if (status == SOLVER_MOTION_NOT_SOLVED && work->pressing > 0 && !tried_again) {
+      tried_again = 1;
+      continue;
+    }
+    if (status != SOLVER_MOTION_DONE) return status;
+    const int holds = choose_pressing(start, unknowns, work);
+    if (holds > 0) return SOLVER_MOTION_DONE;
+    if (holds < 0) return SOLVER_MOTION_NOT_SOLVED;
+  }
+  return SOLVER_MOTION_NOT_SOLVED;
+}
+
+/* The instant after a share of a stretch, by its polynomial. */
+static void instant_in(const step_start *start, real share, const real *unknowns, instant *at) {
+  real values[STAGES], integrals[STAGES], double_integrals[STAGES];
+  for (int j = 0; j < STAGES; j++) {
+    const real constant = STAGE_POLYNOMIALS[0][j];
+    const real slope = STAGE_POLYNOMIALS[1][j];
+    values[j] = constant + share * slope;
+    integrals[j] = share * (constant + share / 2 * slope);
+    double_integrals[j] = share * share * (constant / 2 + share / 6 * slope);
+  }
+  motion_in(start, share, values, integrals, double_integrals, unknowns, at);
+}
+
+/* Whether one of the sections that touch is this one, or of one that slides next to it. */
+static int is_touch(int number, real place, const workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    if (own->facing != number) continue;
+    if (!own->slides && (FACING[number].is_body || own->place == place)) return 1;
+    if (own->slides && (ABSOLUTE(own->place - place) <= SAME_PLACE || ABSOLUTE(own->end_place - place) <= SAME_PLACE)) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+static int lies_now(int number, const workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    if (work->touches[k].facing == number && !work->touches[k].slides && !FACING[number].is_body) return 1;
+  }
+  return 0;
+}
+
+/* The least gap of all that does not touch, up to a bound beyond which nobody asks; not finite where a position is not. */
+static real lowest_other(const instant *at, workspace *work) {
+  real lowest = SAME_PLACE;
+  for (int number = 0; number < FACINGS; number++) {
+    const facing *own = FACING + number;
+    POINTS[own->points].positions(at->state, at->inputs, work->nodes, work);
+    if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return NAN;
+    if (lies_now(number, work)) {
+      for (int k = 0; k < own->laid_count; k++) {
+        section_gap gap;
+        if (is_touch(number, own->laid[k], work)) continue;
+        look_at(own, work->nodes, own->laid[k], &gap, work);
+        if (!(gap.value > lowest)) lowest = gap.value;
+      }
+      continue;
+    }
+    const int count = valleys_of(own, work->nodes, lowest, 0, work->valleys, work);
+    for (int k = 0; k < count; k++) {
+      if (is_touch(number, work->valleys[k].place, work)) continue;
+      if (!(work->valleys[k].value > lowest)) lowest = work->valleys[k].value;
+    }
+  }
+  return lowest;
+}
+
+/* Looks for blows that a stretch takes: so many that nothing thin is passed between two; zero where these are too many. */
+static int looks_in(const step_start *start, const real *unknowns, workspace *work) {
+  int looks = LOOKS_IN_TIME;
+  instant_in(start, 1, unknowns, &work->at);
+  for (int number = 0; number < FACINGS; number++) {
+    const facing *own = FACING + number;
+    const real longest = way_of_points(own, start->x, start->inputs, work->at.state, work->at.inputs, work);
+    if (!(longest < MOST_IN_TIME * own->stride)) return 0;
+    while (looks * own->stride < longest) looks++;
+  }
+  return looks;
+}
+
+/* The share of a stretch after which another gap comes to zero, to less than what touches: 1 where none does. Zero where
+   what moves is too fast to be looked at. */
+static real first_blow(const step_start *start, const real *unknowns, workspace *work) {
+  const int looks = looks_in(start, unknowns, work);
+  real before = 0;
+  if (looks == 0) return 0;
+  for (int look = 1; look <= looks; look++) {
+    real low = before, high = (real)look / (real)looks;
+    instant_in(start, high, unknowns, &work->at);
+    real gap = lowest_other(&work->at, work);
+    if (!isfinite(gap)) return 0;
+    before = high;
+    if (gap >= -TOUCHING) continue;
+    for (int k = 0; k < LOCATIONS; k++) {
+      const real middle = (low + high) / 2;
+      instant_in(start, middle, unknowns, &work->at);
+      gap = lowest_other(&work->at, work);
+      if (ABSOLUTE(gap) <= TOUCHING / 4 || high - low <= (real)1e-13) return middle;
+      if (gap > 0) {
+        low = middle;
+      } else {
+        high = middle;
+      }
+    }
+    return low > 0 ? low : high;
+  }
+  return 1;
+}
+
+/* The accelerations at the stages of the first share of a stretch. */
+static void shorten(real share, real *unknowns) {
+  for (int i = 0; i < N; i++) {
+    const real first = unknowns[i];
+    const real second = unknowns[N + i];
+    for (int stage = 0; stage < STAGES; stage++) {
+      const real at = share * STAGE_NODES[stage];
+      unknowns[stage * N + i] = (STAGE_POLYNOMIALS[0][0] + at * STAGE_POLYNOMIALS[1][0]) * first +
+                                (STAGE_POLYNOMIALS[0][1] + at * STAGE_POLYNOMIALS[1][1]) * second;
+    }
+  }
+}
+
+/* Those that touch now and pressed before go on to press. */
+static void know_touches(workspace *work) {
+  const touch *before = work->known;
+  for (int k = 0; k < work->touch_count; k++) {
+    touch *own = work->touches + k;
+    for (int i = 0; i < work->known_count; i++) {
+      const int is_same = own->slides ? ABSOLUTE(before[i].place - own->place) <= SAME_PLACE : before[i].place == own->place;
+      if (!before[i].presses || before[i].facing != own->facing || before[i].slides != own->slides || !is_same) continue;
+      own->presses = 1;
+      own->force = before[i].force;
+    }
+  }
+}
+
+/* What touches at the start of a stretch, and the blows that are struck there: x and v of the start are written over then.
+   Zero where nothing settles it. */
+static int begin_stretch(const step_start *start, real *x, real *v, workspace *work) {
+  instant *at = &work->at;
+  int strikes = 0;
+  if (!find_touching(x, start->inputs, work)) return 0;
+  know_touches(work);
+  if (work->touch_count == 0) return 1;
+  memcpy(at->state, x, N * sizeof *x);
+  memcpy(at->state + N, v, N * sizeof *v);
+  memset(at->state + 2 * N, 0, N * sizeof *v);
+  inputs_of(start, 0, at);
+  if (!gradients_at(at->state, at->inputs, work)) return 0;
+  for (int k = 0; k < work->touch_count; k++) {
+    touch *own = work->touches + k;
+    section_gap gap;
+    follow_touch(own, at->state, at->inputs, &gap, work);
+    const real rate = rate_of(own, at, &gap, work);
+    if (!isfinite(rate)) return 0;
+    strikes |= !own->presses && (rate < -STILL / start->size || own->gap < -GAP_OPEN);
+  }
+  if (!strikes) return 1;
+  work->was_cut = 1;
+  if (!strike(at, start->size, work)) return 0;
+  memcpy(x, at->state, N * sizeof *x);
+  memcpy(v, at->state + N, N * sizeof *v);
+  return 1;
+}
+
+/* Notes what touches at the end of a stretch, for the next one. */
+static void note_touches(workspace *work) {
+  memcpy(work->known, work->touches, sizeof work->known);
+  for (int k = 0; k < work->touch_count; k++) work->known[k].place = work->touches[k].end_place;
+  work->known_count = work->touch_count;
+}
+
+/* What touched at the end of the last step, where this one goes on from there. */
+static void recall_touches(const solver_step_memory *memory, const solver_state *state, workspace *work) {
+  int goes_on = 1;
+  for (int i = 0; i < N; i++) goes_on &= !IS_SHAPE[i] || memory->unknowns[N + i] == state->a[i];
+  work->was_cut = 0;
+  work->known_count = goes_on ? memory->touch_count : 0;
+  memcpy(work->known, memory->touches, sizeof work->known);
+}
+
+static void keep_touches(solver_step_memory *memory, workspace *work) {
+  note_touches(work);
+  memcpy(memory->touches, work->known, sizeof memory->touches);
+  memory->touch_count = work->known_count;
+  /* After a cut the polynomial is that of the last stretch. */
+  if (work->was_cut) memory->size = 0;
+}
+
+/* A part of a step, from the state in work->end to that in work->at; leaves the unknowns of its last stretch. */
+static solver_motion_status part_in_contact(const step_start *whole, int number, solver_step_memory *memory,
+                                            const solver_step_options *options, real *unknowns, workspace *work,
+                                            solver_step_info *info) {
+  real done = 0;
+  if (number > 0) note_touches(work);
+  for (int cut = 0; cut < CUTS; cut++) {
+    step_start start = *whole;
+    real share = 1;
+    start.size = whole->size - done;
+    inputs_after(whole, done, work->stretch_inputs, work->stretch_rates);
+    start.inputs = work->stretch_inputs;
+    start.inputs_rate = work->stretch_rates;
+    if (cut > 0) guess_stages(0, 1, &work->end, unknowns);
+    if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
+    for (int tries = 0;; tries++) {
+      const solver_motion_status status = solve_stretch(&start, options, unknowns, memory, work, info);
+      if (status == SOLVER_MOTION_NOT_SOLVED && work->touch_count > 0 && tries < SETS) {
+        /* What presses may slide, or come and go, faster than the step: a part of it does not. */
+        work->was_cut = 1;
+        start.size /= 2;
+        guess_stages(0, 1, &work->end, unknowns);
+        continue;
+      }
+      if (status != SOLVER_MOTION_DONE) return status;
+      share = first_blow(&start, unknowns, work);
+      if (!(share > 0) || tries == SETS) return SOLVER_MOTION_NOT_SOLVED;
+      if (share == 1) break;
+      work->was_cut = 1;
+      start.size *= share;
+      shorten(share, unknowns);
+    }
+    stage_at(&start, STAGES - 1, unknowns, &work->at);
+    done += start.size;
+    work->part_counts[number] = work->touch_count;
+    memcpy(work->part_touches[number], work->touches, sizeof work->touches);
+    if (done >= whole->size * (1 - (real)1e-12)) return SOLVER_MOTION_DONE;
+    memcpy(work->end.x, work->at.state, sizeof work->end.x);
+    memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
+    memcpy(work->end.a, work->at.state + 2 * N, sizeof work->end.a);
+    note_touches(work);
+  }
+  return SOLVER_MOTION_NOT_SOLVED;
+}

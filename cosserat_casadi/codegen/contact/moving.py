@@ -1,0 +1,261 @@
+"""The words of the sources of steps in exact contact: what may touch what, the functions of points and surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_bodies import BodyFacing
+from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_sections import RodFacing, facings, touching_points
+from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
+
+CONTACT_FILES = ("contact_gaps.c", "contact_steps.c", "contact_sensitivity.c")
+"""Files of the folder ``c`` that a library with steps in exact contact includes."""
+
+LOOKS = 64
+"""Sections of an element at which gaps are looked at first."""
+
+MOST_TOUCHES = 64
+"""Sections that may touch at once, at most."""
+
+FEWEST_TOUCHES = 8
+"""Sections of a rod that slide on an obstacle, at most."""
+
+STRIDE = 0.25
+"""Longest way between two looks, over the radius of an obstacle and the rod: what passes deeper than 1/128 is seen."""
+
+FAR = 1e30
+"""Way, m, that nothing goes in a step: no obstacle is passed in it."""
+
+
+def touches_in_motion(model: Model) -> bool:
+    """Whether anything of a model may touch an obstacle exactly."""
+    return model.scene.touches_exactly
+
+
+def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
+    """Functions of the points that may touch, then surfaces of the obstacles, by their names in C."""
+    if not touches_in_motion(model):
+        return {}
+    found: dict[str, ca.Function] = {}
+    for number, points in enumerate(touching_points(model)):
+        found |= {f"{_stem(names, number)}_{word}": function for word, function in points.in_steps.items()}
+    for number, obstacle in enumerate(_obstacles(model)):
+        name = names.kernel(f"surface_{number}")
+        found[name] = _surface_function(obstacle, name)
+    return found
+
+
+def contact_words(model: Model, names: Names) -> Words:
+    """Words of a library on what its steps keep apart; sizes of its arrays.
+
+    Args:
+        model: the exported model, with its motion.
+        names: of the library.
+    """
+    if not touches_in_motion(model):
+        return {"steps_in_contact": False}
+    faces = facings(model)
+    points = touching_points(model)
+    rods = [own for own in faces if isinstance(own, RodFacing)]
+    nodes = [own.nodes_of_element for own in rods]
+    words: Words = {
+        "steps_in_contact": True,
+        "facings": len(faces),
+        "most_touches": _most_touches(faces),
+        "most_nodes": max([*nodes, 2]),
+        "most_points": max(count.count for count in points),
+        "looks": LOOKS,
+        "most_looks": max([LOOKS * (len(own.ends) - 1) + 1 for own in rods] + [1]),
+        "deepest": repr(float(model.scene.accuracy.tolerance)),
+        "pair_words": "; ".join(f"{k} {_words_of(own)}" for k, own in enumerate(faces)),
+        "start_shape": numbers(start_shape(model).tolist()),
+    }
+    return words | {
+        "contact_functions": "".join(_functions(model, names)),
+        "contact_tables": "\n".join(_tables(model, faces)),
+    }
+
+
+def contact_pattern(model: Model) -> ca.Sparsity:
+    """Pairs of unknowns by which the gap of something that touches has a second derivative."""
+    together = np.zeros((model.size, model.size), dtype=bool)
+    for points in touching_points(model) if touches_in_motion(model) else ():
+        positions = points.in_steps["positions"]
+        moving = sorted(set(positions.jac_sparsity(0, 0).get_col()))
+        together[np.ix_(moving, moving)] = True
+    rows, columns = np.nonzero(together)
+    return ca.Sparsity.triplet(model.size, model.size, rows.tolist(), columns.tolist())
+
+
+def _words_of(facing: Facing) -> str:
+    """A pair for a comment in C, which its names can not end."""
+    return f"{facing.owner} and {facing.obstacle.name}".replace("*/", "* /").replace("/*", "/ *")
+
+
+def contact_reals(size: int, inputs: int, words: Words) -> int:
+    """Numbers that the workspace has for contact, of 8 bytes as those of touches are counted.
+
+    Args:
+        size: number of unknowns.
+        inputs: number of inputs.
+        words: of the library.
+    """
+    if not words["steps_in_contact"]:
+        return 0
+    touches = words["most_touches"]
+    of_touch = 8
+    records = of_touch * touches * (3 + words["most_step_parts"]) + 4 * touches
+    vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 9 * words["most_points"]
+    return int(records + vectors + 9 * touches**2 + 22 * touches + words["most_looks"] + 8 * inputs)
+
+
+def described_contact(model: Model) -> dict[str, Any]:
+    """Entries of the manifest: who may touch what, in the order of the numbers in C, and most sections that touch."""
+    if not touches_in_motion(model):
+        return {}
+    faces = facings(model)
+    pairs = [{"body" if own.of_body else "rod": own.owner, "obstacle": own.obstacle.name} for own in faces]
+    return {"contacts": pairs, "most_contacts": _most_touches(faces)}
+
+
+def _most_touches(faces: Sequence[Facing]) -> int:
+    """Sections that may touch at once: of a rod those at which it lies, if they are more than slide."""
+    return min(MOST_TOUCHES, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
+
+
+def start_shape(model: Model) -> FloatArray:
+    """Unknowns at the start of the scene's motion, at rest, shape (size,).
+
+    Raises:
+        ExportError: the scene begins in an equilibrium, and none is found.
+    """
+    if any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded:
+        return unloaded_start(model).x
+    start = equilibrium_start(model, model.pack())
+    if not start.found:
+        raise ExportError(Problem("simulation.start", start.sentence, 'give start = "unloaded"'))
+    return start.x
+
+
+def _functions(model: Model, names: Names) -> Iterator[str]:
+    """Calls of the kernels."""
+    for number, points in enumerate(touching_points(model)):
+        words = {"number": number, "stem": _stem(names, number), "moved_by_inputs": "by_inputs" in points.in_steps}
+        yield render("points_in_motion.c.in", words)
+    for number in range(len(_obstacles(model))):
+        yield render("surface_in_motion.c.in", {"number": number, "kernel": names.kernel(f"surface_{number}")})
+
+
+def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
+    """Tables of points, and of pairs of a rod or body and an obstacle."""
+    points = touching_points(model)
+    words = ("positions", "velocities", "gradient", "hessian")
+    records = []
+    for number, own in enumerate(points):
+        fields: dict[str, object] = {"count": own.count, **{word: f"{word}_of_{number}" for word in words}}
+        fields["by_inputs"] = f"input_gradient_of_{number}" if "by_inputs" in own.in_steps else "0"
+        records.append(record(fields))
+    yield record_table("moving_points", "POINTS", "", records)
+    obstacles = _obstacles(model)
+    records = []
+    for number, facing in enumerate(faces):
+        fields = {
+            "points": points.index(facing.points),
+            "is_body": int(facing.of_body),
+            "length": _real(facing.length),
+            "force_unit": _real(facing.force_unit),
+            "restitution": _real(facing.obstacle.restitution),
+            "surface": f"surface_of_{obstacles.index(facing.obstacle)}",
+        }
+        if isinstance(facing, RodFacing):
+            yield from _rod_tables(facing, number)
+            fields |= _rod_fields(facing, number)
+        elif isinstance(facing, BodyFacing):
+            fields |= _ball_fields(facing)
+        records.append(record(fields))
+    yield record_table("facing", "FACING", "FACINGS", records)
+
+
+def _rod_tables(facing: RodFacing, number: int) -> Iterator[str]:
+    yield reals(f"FACING_ENDS_{number}", np.array(facing.ends))
+    yield reals(f"TO_COEFFICIENTS_{number}", facing.to_coefficients.ravel())
+    yield reals(f"LOOKS_{number}", looks_in_element(facing).ravel())
+    yield reals(f"LAID_{number}", facing.laid_at)
+
+
+def looks_in_element(facing: RodFacing) -> FloatArray:
+    """Weights of the nodes of an element at sections evenly spread over it, ends included, shape (LOOKS + 1, N + 1)."""
+    local = 2.0 * np.linspace(0.0, 1.0, LOOKS + 1) - 1.0
+    return np.asarray(chebyshev.chebvander(local, facing.nodes_of_element - 1) @ facing.to_coefficients)
+
+
+def _rod_fields(facing: RodFacing, number: int) -> dict[str, object]:
+    base, tip = facing.radii
+    return {
+        "elements": len(facing.ends) - 1,
+        "nodes": facing.nodes_of_element,
+        "ends": f"FACING_ENDS_{number}",
+        "to_coefficients": f"TO_COEFFICIENTS_{number}",
+        "looks": f"LOOKS_{number}",
+        "watches_base": int(facing.watched_ends[0]),
+        "watches_tip": int(facing.watched_ends[1]),
+        "laid": f"LAID_{number}",
+        "laid_count": len(facing.laid_at),
+        "radius_at_base": _real(base),
+        "radius_at_tip": _real(tip),
+        "stride": _stride(facing, min(base, tip)),
+    }
+
+
+def _ball_fields(facing: BodyFacing) -> dict[str, object]:
+    radius = facing.radius
+    return {
+        "elements": 1,
+        "nodes": 1,
+        "radius_at_base": _real(radius),
+        "radius_at_tip": _real(radius),
+        "stride": _stride(facing, radius),
+    }
+
+
+def _stride(facing: Facing, radius: float) -> str:
+    return _real(min(FAR, STRIDE * (float(facing.obstacle.thickness) / 2.0 + radius)))
+
+
+def _real(value: float) -> str:
+    return numbers([float(value)])
+
+
+def _surface_function(obstacle: scenes.ObstacleRecord, name: str) -> ca.Function:
+    """Point ↦ distance from an obstacle, its gradient and its second derivative."""
+    point = ca.SX.sym("point", 3)
+    parts = surface(obstacle).expand().call([point])
+    return ca.Function(name, [point], ca.cse([ca.densify(part) for part in parts]))
+
+
+def _obstacles(model: Model) -> list[scenes.ObstacleRecord]:
+    """Obstacles that something may touch."""
+    found: list[scenes.ObstacleRecord] = []
+    for facing in facings(model):
+        if facing.obstacle not in found:
+            found.append(facing.obstacle)
+    return found
+
+
+def _stem(names: Names, number: int) -> str:
+    """Beginning of the names of the kernels of some points."""
+    return names.kernel(f"points_{number}")

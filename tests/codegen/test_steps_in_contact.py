@@ -1,0 +1,310 @@
+"""Steps of motions in C in exact contact: against a linear beam, against steps in Python, closed forms, differences."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, build, export, load, scene_from_dict, simulate
+from cosserat_casadi.codegen.compiled import Compiled
+from cosserat_casadi.codegen.compiled_motion import StepMemory, StepOptions, StepState
+from cosserat_casadi.codegen.status import MotionStatus
+from cosserat_casadi.errors import ExportError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_sections import facings
+from tests.motion.test_exact_contact_in_motion import beam_on_a_stop
+
+LENGTH = 0.4
+WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
+BALL = {"name": "ball", "kind": "sphere", "centre": [0.25, 0, -0.09], "radius": 0.03}
+EXACT = StepOptions(tolerance=1e-14, iterations=20)
+
+
+def floor(height: float, **more: Any) -> dict[str, Any]:
+    return {"name": "floor", "kind": "plane", "point": [0, 0, height], "normal": [0, 0, 1], **more}
+
+
+def rod(**more: Any) -> dict[str, Any]:
+    return {
+        "name": "rod",
+        "length": LENGTH,
+        "strain": "planar",
+        "stiffness": {"bending_y": 0.016},
+        "linear_density": 0.2,
+        "rotary_inertia": [1e-7, 1e-7, 2e-7],
+        "base": {"position": [0, 0, 0], "tangent": [1, 0, 0]},
+        "damping": {"retardation_time": 0.005},
+        **more,
+    }
+
+
+def scene(obstacle: dict[str, Any], record: dict[str, Any] | None = None, **more: Any) -> dict[str, Any]:
+    return {
+        "schema": 1,
+        "accuracy": {"modes": 3, "nodes": 12, "tolerance": 1e-4},
+        "loads": [WEIGHT],
+        "obstacles": [obstacle],
+        "simulation": {"duration": 0.4, "start": "unloaded", "tolerance": 1e-5},
+        "rods": [record or rod()],
+        **more,
+    }
+
+
+@dataclass
+class Moving:
+    """A scene, its model, and its exported folder.
+
+    Attributes:
+        tables: the scene.
+        folder: where it is exported.
+    """
+
+    tables: dict[str, Any]
+    folder: Path
+
+    @cached_property
+    def model(self) -> Model:
+        return build(scene_from_dict(self.tables), moving=True)
+
+    @cached_property
+    def compiled(self) -> Compiled:
+        made = load(export(self.model, self.folder / "robot", dynamics=True))
+        assert isinstance(made, Compiled)
+        return made
+
+    def steps(self, dt: float, count: int, memory: StepMemory | None = None) -> list[StepState]:
+        """States at the ends of steps from the start of the scene."""
+        kept = memory or self.compiled.step_memory()
+        states = [self.compiled.contact_start()]
+        for _ in range(count):
+            step = self.compiled.step(states[-1], dt, self.model.pack(), memory=kept)
+            assert step.done, step.status.value
+            states.append(step.state)
+        return states
+
+    def tips(self, states: Sequence[Any]) -> FloatArray:
+        """Positions of the tip over the length, shape (k, 3)."""
+        name = self.model.scene.rods[0].name
+        poses = [self.model.tip[name](state.x, self.model.pack())[0] for state in states]
+        return np.array([pose.full()[:, 0] for pose in poses]) / LENGTH
+
+    def energies(self, states: Sequence[Any]) -> FloatArray:
+        inputs = self.model.pack()
+        parts = [self.model.energies(state.x, state.v, inputs, 0.0 * inputs)[:3] for state in states]
+        return np.array([sum(float(part) for part in row) for row in parts])
+
+    def least_gap(self, states: Sequence[Any]) -> float:
+        """The least gap at any section of any state, over the length."""
+        return min(
+            facing.deepest(facing.nodes(state.x, self.model.pack())).gap
+            for state in states
+            for facing in facings(self.model)
+        )
+
+
+def test_a_beam_falls_on_a_stop_as_a_linear_beam_does(tmp_path: Path) -> None:
+    depth, stiffness = 4e-4, 20.0
+    record = rod(stiffness={"bending_y": stiffness}, damping={"retardation_time": 1e-4})
+    made = Moving(scene(floor(-depth), record), tmp_path)
+    counts = 40, 160, 640
+    errors = []
+    for count in counts:
+        times = np.linspace(0.0, 0.04, count + 1)
+        deflections, impacts, _ = beam_on_a_stop(depth, stiffness, times)
+        assert len(impacts) >= 3
+        states = made.steps(0.04 / count, count)
+        errors.append(np.abs(made.tips(states)[:, 2] * LENGTH - deflections).max() / depth)
+        # Neither a blow nor a step gives energy.
+        assert np.diff(made.energies(states)).max() <= 1e-12
+        assert made.least_gap(states) >= -2e-7
+    # Lift-off in the course of a step leaves the second power of its length; 1e-4 is what is not linear.
+    assert errors[1] < errors[0] / 8.0
+    assert errors[2] < 2e-3
+
+
+def test_steps_are_those_of_python_and_converge(tmp_path: Path) -> None:
+    made = Moving(scene(BALL | {"restitution": 0.5}), tmp_path)
+    motion = simulate(made.model)
+    assert motion.converged, motion.message
+    assert sum(event.kind == "impact" for event in motion.events) > 8
+    errors = []
+    for dt in (4e-3, 1e-3):
+        count = round(0.4 / dt)
+        memory = made.compiled.step_memory()
+        states = made.steps(dt, count, memory)
+        wanted = made.tips([motion.at(min(dt * k, 0.4)) for k in range(count + 1)])
+        errors.append(np.linalg.norm(made.tips(states) - wanted, axis=1).max())
+        assert np.diff(made.energies(states)).max() <= 1e-9
+        assert made.least_gap(states) >= -2e-7
+        (contact,) = made.compiled.step_contacts(memory)
+        (in_python,) = motion.contacts[-1]
+        assert (contact.owner, contact.obstacle, contact.of_body) == ("rod", "ball", False)
+        assert_allclose(contact.place, in_python.at, rtol=0, atol=1e-4)
+        assert_allclose(contact.force, np.linalg.norm(in_python.force), rtol=0.05, atol=0)
+    assert errors[1] < errors[0] / 4.0
+    assert errors[1] < 2e-5
+
+
+@pytest.mark.slow
+def test_a_straight_rod_that_falls_flat_bounces_as_a_point_does(tmp_path: Path) -> None:
+    base = {"position": [0, 0, 0.0], "tangent": [1, 0, 0], "free": True}
+    made = Moving(scene(floor(-0.05, restitution=0.5), rod(base=base)), tmp_path)
+    dt, g = 2e-3, 9.81
+    memory = made.compiled.step_memory()
+    states = made.steps(dt, 160, memory)
+    first = np.sqrt(2 * 0.05 / g)
+    speed, began = 0.5 * g * first, first
+    heights = []
+    for time in dt * np.arange(161):
+        while time > began + 2 * speed / g and speed > 1e-6:
+            began += 2 * speed / g
+            speed *= 0.5
+        flown = time - began
+        heights.append(0.05 - g * time**2 / 2 if flown < 0 else max(0.0, speed * flown - g * flown**2 / 2))
+    found = made.tips(states)[:, 2] * LENGTH + 0.05
+    # Blows less than a step apart are one.
+    assert_allclose(found, heights, rtol=0, atol=5e-6)
+    assert_allclose(found[-1], 0.0, rtol=0, atol=1e-7)
+    weight = sum(contact.force for contact in made.compiled.step_contacts(memory))
+    assert_allclose(weight, 0.2 * LENGTH * g, rtol=1e-6, atol=0)
+
+
+@pytest.mark.slow
+def test_a_free_rod_strikes_a_floor_end_after_end(tmp_path: Path) -> None:
+    base = {"position": [0, 0, 0.05], "tangent": [1, 0, 0.3], "free": True}
+    made = Moving(scene(floor(-0.1), rod(base=base, stiffness={"bending_y": 0.5})), tmp_path)
+    motion = simulate(made.model)
+    assert motion.converged, motion.message
+    states = made.steps(1e-3, 400)
+    wanted = made.tips([motion.at(min(1e-3 * k, 0.4)) for k in range(401)])
+    assert_allclose(made.tips(states), wanted, rtol=0, atol=1e-3)
+    assert np.diff(made.energies(states)).max() <= 1e-9
+    assert made.least_gap(states) >= -2e-7
+
+
+@pytest.mark.slow
+def test_the_ball_of_a_body_bounces_on_a_floor_as_in_python(tmp_path: Path) -> None:
+    head = {
+        "bodies": [{"name": "head", "mass": 0.05, "radius": 0.02}],
+        "joints": [{"body": "head", "rod": "rod", "kind": "fixed"}],
+    }
+    made = Moving(scene(floor(-0.1, bodies=["head"], restitution=0.5), **head), tmp_path)
+    motion = simulate(made.model)
+    states = made.steps(1e-3, 400)
+    wanted = made.tips([motion.at(min(1e-3 * k, 0.4)) for k in range(401)])
+    assert_allclose(made.tips(states), wanted, rtol=0, atol=2e-6)
+    assert np.diff(made.energies(states)).max() <= 1e-9
+
+
+@pytest.mark.slow
+def test_a_rod_out_of_the_plane_goes_round_a_ball_as_in_python(tmp_path: Path) -> None:
+    stiffness = {"bending_y": 0.016, "bending_x": 0.016, "torsion": 0.012}
+    record = rod(strain="kirchhoff", stiffness=stiffness)
+    made = Moving(scene(BALL | {"centre": [0.25, 0.01, -0.09]}, record), tmp_path)
+    motion = simulate(made.model)
+    states = made.steps(1e-3, 400)
+    wanted = made.tips([motion.at(min(1e-3 * k, 0.4)) for k in range(401)])
+    assert_allclose(made.tips(states), wanted, rtol=0, atol=1e-4)
+    assert made.least_gap(states) >= -2e-7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("moved", [False, True])
+def test_derivatives_of_a_step_in_contact_are_those_of_differences(moved: bool, tmp_path: Path) -> None:
+    inputs = ["weight.acceleration", *(["rod.base.position"] if moved else [])]
+    made = Moving(scene(BALL, inputs=inputs), tmp_path)
+    memory = made.compiled.step_memory()
+    start = made.steps(1e-3, 160, memory)[-1]
+    assert len(made.compiled.step_contacts(memory)) == 1
+    values, still = made.model.pack(), np.zeros(made.model.inputs.size)
+    dt, n = 1e-3, made.model.size
+
+    def end(x: FloatArray, v: FloatArray, *given: FloatArray) -> FloatArray:
+        state = StepState(x, v, start.a)
+        step = made.compiled.step(state, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
+        assert step.done
+        return np.concatenate([step.state.x, step.state.v])
+
+    given = [values, still, still]
+    call = made.compiled.step_sensitivity
+    step, found = call(start, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
+    assert step.done and found is not None
+    columns = []
+    small = 1e-8
+    for k in range(2 * n):
+        change = np.eye(2 * n)[k] * (small if k < n else small / dt)
+        ends = [end(start.x + sign * change[:n], start.v + sign * change[n:], *given) for sign in (1.0, -1.0)]
+        columns.append((ends[0] - ends[1]) / (2.0 * change[k]))
+    largest = np.abs(found.by_start).max()
+    assert_allclose(found.by_start, np.array(columns).T, rtol=0, atol=1e-6 * largest)
+    by_each = (found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration)
+    # A base that moves opens or closes the gap, which stays below what touches.
+    sizes = zip((1.0, 1e3, 1e6), (1e-8, 1e-5, 1e-2), strict=True)
+    for which, (derivative, (of_weight, of_base)) in enumerate(zip(by_each, sizes, strict=True)):
+        for j in range(len(values)):
+            size = of_weight if j < 3 else of_base
+            ends = []
+            for sign in (1.0, -1.0):
+                changed = [own.copy() for own in given]
+                changed[which][j] += sign * size
+                ends.append(end(start.x, start.v, *changed))
+            difference = (ends[0] - ends[1]) / (2.0 * size)
+            assert_allclose(derivative[:, j], difference, rtol=0, atol=1e-5 * np.abs(difference).max())
+
+
+@pytest.mark.slow
+def test_a_blow_has_no_derivative_and_a_wire_is_not_passed(tmp_path: Path) -> None:
+    wire = {"name": "wire", "kind": "capsule", "from": [0.3, -0.1, -0.05], "to": [0.3, 0.1, -0.05], "radius": 5e-4}
+    made = Moving(scene(wire, rod()), tmp_path)
+    states = made.steps(2e-3, 60)
+    assert made.least_gap(states) >= -2e-7
+    motion = simulate(made.model)
+    wanted = made.tips([motion.at(2e-3 * k) for k in range(61)])
+    assert_allclose(made.tips(states), wanted, rtol=0, atol=2e-3)
+    memory, state, without = made.compiled.step_memory(), states[0], 0
+    for _ in range(60):
+        step, found = made.compiled.step_sensitivity(state, 2e-3, made.model.pack(), memory=memory)
+        without += step.done and found is None
+        state = step.state
+    assert_allclose(state.x, states[-1].x, rtol=0, atol=1e-8)
+    assert 1 <= without <= 8
+    # What is too fast to be looked at is told.
+    fast = StepState(states[0].x, np.array([-60.0, 0.0, 0.0]), states[0].a)
+    assert made.compiled.step(fast, 1e-2, made.model.pack()).status is MotionStatus.NOT_SOLVED
+    # A solve knows of no contact, and does not go through.
+    assert not made.compiled.solve().converged
+
+
+def test_functions_of_equilibria_and_parameters_are_refused(tmp_path: Path) -> None:
+    tables = scene(BALL)
+    with pytest.raises(ExportError, match="in a folder of their own"):
+        export(build(scene_from_dict(tables), moving=True), tmp_path / "robot", dynamics=True, stability=True)
+    tables["parameters"] = ["rod.linear_density"]
+    with pytest.raises(ExportError, match="have the numbers of the scene"):
+        export(build(scene_from_dict(tables), moving=True), tmp_path / "robot", dynamics=True)
+
+
+@pytest.mark.slow
+def test_a_motion_begins_in_contact_where_python_begins_it(tmp_path: Path) -> None:
+    push = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.02]}
+    tables = scene(floor(-0.02), loads=[push], inputs=["push.force"])
+    tables["simulation"]["start"] = "equilibrium"
+    made = Moving(tables, tmp_path)
+    start = made.compiled.contact_start()
+    memory = made.compiled.step_memory()
+    states = made.steps(1e-3, 50, memory)
+    assert_allclose(states[-1].x, start.x, rtol=0, atol=1e-9)
+    (contact,) = made.compiled.step_contacts(memory)
+    assert contact.place == 1.0
+    assert contact.force > 1e-3
+    # Without contact there is none; a solve tells so.
+    assert not made.compiled.solve().converged
+    assert made.compiled.solve({"push.force": [0, 0, -1e-3]}).converged
