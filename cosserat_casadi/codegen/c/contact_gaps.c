@@ -57,27 +57,13 @@ static void along_surface(const facing *own, const real *point, const real *seco
   gap->bend = (inner(gap->tangent, turned) + inner(gap->normal, second)) / own->length;
 }
 
-/* The gap at an abscissa; of a body whatever the abscissa. */
-static void look_at(const facing *own, const real *nodes, real place, section_gap *gap, workspace *work) {
-  real values[3][MOST_NODES] = {{1}};
-  real curve[3][3] = {{0}};
-  int e = 0;
-  gap->place = place;
-  gap->nodes = own->nodes;
-  gap->first = 0;
-  if (own->is_body) {
-    for (int i = 0; i < 3; i++) gap->tangent[i] = 0;
-    gap->rows[0][0] = 1;
-    gap->rows[1][0] = 0;
-    gap->place = 0;
-    along_surface(own, nodes, curve[2], gap, work);
-    return;
-  }
-  while (e + 1 < own->elements && place > own->ends[e + 1]) e++;
-  const real width = own->ends[e + 1] - own->ends[e];
-  const real z = 2 * (place - own->ends[e]) / width - 1;
+/* Values of the Chebyshev polynomials of an element at a section, and two derivatives along the rod. */
+static void polynomials_at(const facing *own, int element, real place, real values[3][MOST_NODES]) {
+  const real width = own->ends[element + 1] - own->ends[element];
+  const real z = 2 * (place - own->ends[element]) / width - 1;
   const real rate = 2 / width;
-  gap->first = e * own->nodes;
+  values[0][0] = 1;
+  values[1][0] = values[2][0] = values[2][1] = 0;
   values[0][1] = z;
   values[1][1] = rate;
   for (int k = 2; k < own->nodes; k++) {
@@ -85,30 +71,84 @@ static void look_at(const facing *own, const real *nodes, real place, section_ga
     values[1][k] = 2 * rate * values[0][k - 1] + 2 * z * values[1][k - 1] - values[1][k - 2];
     values[2][k] = 4 * rate * values[1][k - 1] + 2 * z * values[2][k - 1] - values[2][k - 2];
   }
-  for (int i = 0; i < own->nodes; i++) {
-    real weights[3] = {0, 0, 0};
-    for (int k = 0; k < own->nodes; k++) {
-      const real share = own->to_coefficients[k * own->nodes + i];
-      for (int order = 0; order < 3; order++) weights[order] += values[order][k] * share;
+}
+
+static int element_of(const facing *own, real place) {
+  int e = 0;
+  while (e + 1 < own->elements && place > own->ends[e + 1]) e++;
+  return e;
+}
+
+/* Coefficients of the polynomials through the nodes, which sections are looked at by from now on; of a body its origin. */
+static void fit_nodes(const facing *own, const real *nodes, workspace *work) {
+  real *coefficients = work->coefficients;
+  if (own->is_body) {
+    memcpy(coefficients, nodes, 3 * sizeof *nodes);
+    return;
+  }
+  for (int e = 0; e < own->elements; e++) {
+    const real *node = nodes + 3 * e * own->nodes;
+    for (int k = 0; k < own->nodes; k++, coefficients += 3) {
+      const real *weights = own->to_coefficients + k * own->nodes;
+      real sum[3] = {0, 0, 0};
+      for (int i = 0; i < own->nodes; i++) {
+        for (int j = 0; j < 3; j++) sum[j] += weights[i] * node[3 * i + j];
+      }
+      memcpy(coefficients, sum, sizeof sum);
     }
-    gap->rows[0][i] = weights[0];
-    gap->rows[1][i] = weights[1];
-    const real *node = nodes + 3 * (gap->first + i);
+  }
+}
+
+/* The gap at an abscissa; of a body whatever the abscissa. */
+static void look_at(const facing *own, real place, section_gap *gap, workspace *work) {
+  real values[3][MOST_NODES];
+  real curve[3][3] = {{0}};
+  gap->place = own->is_body ? 0 : place;
+  gap->nodes = own->nodes;
+  gap->first = 0;
+  if (own->is_body) {
+    memset(gap->tangent, 0, sizeof gap->tangent);
+    along_surface(own, work->coefficients, curve[2], gap, work);
+    return;
+  }
+  const int element = element_of(own, place);
+  polynomials_at(own, element, place, values);
+  gap->first = element * own->nodes;
+  const real *coefficients = work->coefficients + 3 * gap->first;
+  for (int k = 0; k < own->nodes; k++) {
     for (int order = 0; order < 3; order++) {
-      for (int j = 0; j < 3; j++) curve[order][j] += weights[order] * node[j];
+      for (int j = 0; j < 3; j++) curve[order][j] += values[order][k] * coefficients[3 * k + j];
     }
   }
   memcpy(gap->tangent, curve[1], sizeof gap->tangent);
   along_surface(own, curve[0], curve[2], gap, work);
 }
 
+/* Weights of the nodes of its element for a section, and for its tangent. */
+static void weigh_nodes(const facing *own, section_gap *gap) {
+  real values[3][MOST_NODES];
+  memset(gap->rows, 0, sizeof gap->rows);
+  if (own->is_body) {
+    gap->rows[0][0] = 1;
+    return;
+  }
+  polynomials_at(own, gap->first / own->nodes, gap->place, values);
+  for (int k = 0; k < own->nodes; k++) {
+    const real *weights = own->to_coefficients + k * own->nodes;
+    for (int i = 0; i < own->nodes; i++) {
+      gap->rows[0][i] += values[0][k] * weights[i];
+      gap->rows[1][i] += values[1][k] * weights[i];
+    }
+  }
+}
+
 /* The section next to another where the gap is least: between the ends of the rod its slope is zero there. Newton's method
    for the slope, which is continuous where its own slope, the bend, jumps from element to element; halving between sections
    of slopes that differ in sign, as beside a wire that is thin beside the distance to it. */
-static void look_lowest(const facing *own, const real *nodes, real near, section_gap *gap, workspace *work) {
+static void look_lowest(const facing *own, real near, section_gap *gap, workspace *work) {
   real falls = -1, rises = 2; /* sections where the gap falls, and where it rises */
   real place = near;
-  look_at(own, nodes, place, gap, work);
+  look_at(own, place, gap, work);
   for (int k = 0; k < PLACINGS && !own->is_body; k++) {
     const int is_falling = gap->slope < 0;
     if (!(gap->bend > 0) && !(ABSOLUTE(gap->slope) > SMOOTH)) return;
@@ -123,7 +163,7 @@ static void look_lowest(const facing *own, const real *nodes, real near, section
     const real moved = ABSOLUTE(next - place);
     if (moved == 0) return;
     place = next;
-    look_at(own, nodes, place, gap, work);
+    look_at(own, place, gap, work);
     if (moved <= PLACED) return;
   }
 }
@@ -165,8 +205,9 @@ static int valleys_of(const facing *own, const real *nodes, real below, int all,
   real *gaps = work->gaps_along;
   section_gap lowest;
   int count = 0;
+  fit_nodes(own, nodes, work);
   if (own->is_body) {
-    look_at(own, nodes, 0, &lowest, work);
+    look_at(own, 0, &lowest, work);
     *found = valley_at(&lowest);
     return found->value <= below;
   }
@@ -181,8 +222,8 @@ static int valleys_of(const facing *own, const real *nodes, real below, int all,
     if (i < last && rise > deeper) deeper = rise;
     if (!is_valley || !is_watched || gaps[i] > below + deeper) continue;
     const real place = place_of_look(own, i);
-    look_lowest(own, nodes, place, &lowest, work);
-    if (!(ABSOLUTE(lowest.place - place) <= SAME_PLACE) || !(lowest.bend > 0)) look_at(own, nodes, place, &lowest, work);
+    look_lowest(own, place, &lowest, work);
+    if (!(ABSOLUTE(lowest.place - place) <= SAME_PLACE) || !(lowest.bend > 0)) look_at(own, place, &lowest, work);
     if (!(lowest.value > below)) found[count++] = valley_at(&lowest);
   }
   return count;

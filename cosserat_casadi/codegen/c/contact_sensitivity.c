@@ -10,7 +10,7 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
     const int count = 3 * points->count;
     const real force = own->forces[stage];
     section_gap gap;
-    gradient_at(own, work->at.state, work->at.inputs, &gap, work->stage_gradients[stage][m], work);
+    gradient_at(own, own->places[stage], work->at.state, work->at.inputs, &gap, work->stage_gradients[stage][m], work);
     curve_matrices(own, &gap, force, work->matrices[stage], work);
     for (int j = 0; j < INPUTS; j++) work->gaps_by_inputs[stage][m * INPUTS + j] = 0;
     if (!by_inputs || !points->by_inputs) continue;

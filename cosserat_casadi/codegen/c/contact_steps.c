@@ -190,7 +190,7 @@ static void add_touch(int number, int slides, real place, workspace *work) {
     work->too_many = 1;
     return;
   }
-  const touch added = {.facing = number, .slides = slides, .presses = 0, .place = place, .end_place = place, .gap = 0, .force = 0, .forces = {0, 0}};
+  const touch added = {.facing = number, .slides = slides, .presses = 0, .place = place, .end_place = place, .gap = 0, .force = 0, .forces = {0, 0}, .places = {place, place}};
   work->touches[work->touch_count++] = added;
 }
 
@@ -200,7 +200,7 @@ static int add_laid(int number, int add, workspace *work) {
   int count = 0;
   for (int k = 0; k < own->laid_count; k++) {
     section_gap gap;
-    look_at(own, work->nodes, own->laid[k], &gap, work);
+    look_at(own, own->laid[k], &gap, work);
     if (gap.value > TOUCHING) continue;
     count++;
     if (add) add_touch(number, 0, own->laid[k], work);
@@ -238,15 +238,18 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
   return !work->too_many;
 }
 
-/* Looks at a section that touches, next to where it was; the nodes of its rod are in the workspace then. */
-static void follow_touch(const touch *own, const real *x, const real *inputs, section_gap *gap, workspace *work) {
+/* Looks at a section that touches, of one that slides next to a place. */
+static void follow_touch(const touch *own, real near, const real *x, const real *inputs, section_gap *gap,
+                         workspace *work) {
   const facing *faces = FACING + own->facing;
   POINTS[faces->points].positions(x, inputs, work->nodes, work);
+  fit_nodes(faces, work->nodes, work);
   if (own->slides) {
-    look_lowest(faces, work->nodes, own->place, gap, work);
+    look_lowest(faces, near, gap, work);
   } else {
-    look_at(faces, work->nodes, own->place, gap, work);
+    look_at(faces, own->place, gap, work);
   }
+  weigh_nodes(faces, gap);
 }
 
 /* Weights of the points of a rod or body of which the sum changes as a gap does, added so many times. */
@@ -258,11 +261,11 @@ static void add_weights(const facing *faces, const section_gap *gap, real times,
 }
 
 /* Gap and gradient of a section that touches. */
-static void gradient_at(const touch *own, const real *x, const real *inputs, section_gap *gap, real *gradient,
+static void gradient_at(const touch *own, real near, const real *x, const real *inputs, section_gap *gap, real *gradient,
                         workspace *work) {
   const facing *faces = FACING + own->facing;
   const int count = 3 * POINTS[faces->points].count;
-  follow_touch(own, x, inputs, gap, work);
+  follow_touch(own, near, x, inputs, gap, work);
   memset(work->weights, 0, (size_t)count * sizeof *work->weights);
   add_weights(faces, gap, 1, work->weights);
   POINTS[faces->points].gradient(x, inputs, work->weights, gradient, work);
@@ -317,7 +320,7 @@ static int gradients_at(const real *x, const real *inputs, workspace *work) {
   for (int k = 0; k < work->touch_count; k++) {
     touch *own = work->touches + k;
     section_gap gap;
-    gradient_at(own, x, inputs, &gap, work->gradients[k], work);
+    gradient_at(own, own->place, x, inputs, &gap, work->gradients[k], work);
     own->place = gap.place;
     own->gap = gap.value;
     if (!all_finite(work->gradients[k], N) || !isfinite(gap.value)) return 0;
@@ -355,7 +358,7 @@ static int strike(instant *at, real size, workspace *work) {
   real fastest = 1 / size;
   for (int k = 0; k < count; k++) {
     section_gap gap;
-    follow_touch(work->touches + k, x, at->inputs, &gap, work);
+    follow_touch(work->touches + k, work->touches[k].place, x, at->inputs, &gap, work);
     rates[k] = rate_of(work->touches + k, at, &gap, work);
     if (!isfinite(rates[k])) return 0;
     fastest = larger(fastest, ABSOLUTE(rates[k]));
@@ -390,7 +393,8 @@ static void push_in_stage(int stage, const instant *at, real *residual, workspac
     touch *own = work->touches + k;
     section_gap gap;
     if (!own->presses) continue;
-    gradient_at(own, at->state, at->inputs, &gap, work->stage_gradients[stage][k], work);
+    gradient_at(own, own->places[stage], at->state, at->inputs, &gap, work->stage_gradients[stage][k], work);
+    if (gap.bend > FLATTEST) own->places[stage] = gap.place;
     work->stage_gaps[stage][k] = gap.value;
     for (int i = 0; i < N; i++) residual[i] -= own->forces[stage] * work->stage_gradients[stage][k][i];
   }
@@ -457,7 +461,7 @@ static void curve_middle(workspace *work) {
     const touch *own = work->touches + k;
     section_gap gap;
     if (!own->presses || own->forces[0] + own->forces[1] == 0) continue;
-    follow_touch(own, work->at.state, work->at.inputs, &gap, work);
+    follow_touch(own, own->place, work->at.state, work->at.inputs, &gap, work);
     curve_matrices(own, &gap, (own->forces[0] + own->forces[1]) / 2, work->matrices[0], work);
   }
 }
@@ -466,7 +470,10 @@ static void curve_middle(workspace *work) {
 static void guess_forces(workspace *work) {
   for (int k = 0; k < work->touch_count; k++) {
     touch *own = work->touches + k;
-    for (int stage = 0; stage < STAGES; stage++) own->forces[stage] = own->force;
+    for (int stage = 0; stage < STAGES; stage++) {
+      own->forces[stage] = own->force;
+      own->places[stage] = own->place;
+    }
   }
 }
 
@@ -561,7 +568,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
   for (int k = 0; k < count; k++) {
     touch *own = work->touches + k;
     section_gap gap;
-    follow_touch(own, work->at.state, work->at.inputs, &gap, work);
+    follow_touch(own, own->presses ? own->places[1] : own->place, work->at.state, work->at.inputs, &gap, work);
     own->gap = gap.value;
     own->end_place = gap.place;
     own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
@@ -618,7 +625,7 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
       section_gap gap;
       stage_at(start, STAGES - 1, unknowns, &work->at);
       for (int k = 0; k < work->touch_count; k++) {
-        gradient_at(work->touches + k, work->at.state, work->at.inputs, &gap, work->gradients[k], work);
+        gradient_at(work->touches + k, work->touches[k].place, work->at.state, work->at.inputs, &gap, work->gradients[k], work);
         if (!all_finite(work->gradients[k], N)) return SOLVER_MOTION_NOT_FINITE;
       }
     }
@@ -677,10 +684,11 @@ static real lowest_other(const instant *at, workspace *work) {
     POINTS[own->points].positions(at->state, at->inputs, work->nodes, work);
     if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return NAN;
     if (lies_now(number, work)) {
+      fit_nodes(own, work->nodes, work);
       for (int k = 0; k < own->laid_count; k++) {
         section_gap gap;
         if (is_touch(number, own->laid[k], work)) continue;
-        look_at(own, work->nodes, own->laid[k], &gap, work);
+        look_at(own, own->laid[k], &gap, work);
         if (!(gap.value > lowest)) lowest = gap.value;
       }
       continue;
@@ -779,7 +787,7 @@ static int begin_stretch(const step_start *start, real *x, real *v, workspace *w
   for (int k = 0; k < work->touch_count; k++) {
     touch *own = work->touches + k;
     section_gap gap;
-    follow_touch(own, at->state, at->inputs, &gap, work);
+    follow_touch(own, own->place, at->state, at->inputs, &gap, work);
     const real rate = rate_of(own, at, &gap, work);
     if (!isfinite(rate)) return 0;
     strikes |= !own->presses && (rate < -STILL / start->size || own->gap < -GAP_OPEN);

@@ -117,9 +117,9 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
     if not words["steps_in_contact"]:
         return 0
     touches = words["most_touches"]
-    of_touch = 8
+    of_touch = 10
     records = of_touch * touches * (3 + words["most_step_parts"]) + 4 * touches
-    vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 9 * words["most_points"]
+    vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 12 * words["most_points"]
     return int(records + vectors + 9 * touches**2 + 22 * touches + words["most_looks"] + 8 * inputs)
 
 
