@@ -191,6 +191,36 @@ def test_a_free_rod_strikes_a_floor_end_after_end(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_soft_rod_rolls_onto_its_tip_and_back(tmp_path: Path) -> None:
+    base = {"position": [0, 0, 0.0], "tangent": [1, 0, 0.1], "free": True}
+    record = rod(base=base, stiffness={"bending_y": 0.005}, damping={"retardation_time": 0.02})
+    tables = scene(floor(-0.1), record, accuracy={"modes": 4, "nodes": 12, "tolerance": 1e-4})
+    made = Moving(tables, tmp_path)
+    motion = simulate(made.model)
+    # A section that rolls ever faster towards the tip, which strikes, is no section that slides there.
+    assert [event.place for event in motion.events if event.kind == "impact"][:2] == [0.0, 1.0]
+    states = made.steps(5e-4, 800)
+    wanted = made.tips([motion.at(min(5e-4 * k, 0.4)) for k in range(801)])
+    assert_allclose(made.tips(states), wanted, rtol=0, atol=5e-4)
+    assert np.diff(made.energies(states)).max() <= 1e-9
+    assert made.least_gap(states) >= -2e-7
+
+
+@pytest.mark.slow
+def test_rods_that_join_and_two_obstacles_at_once(tmp_path: Path) -> None:
+    second = rod(name="second", length=0.2, base={"rod": "rod", "at": 1.0})
+    tables = scene(BALL, accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-4})
+    tables |= {"obstacles": [floor(-0.12), BALL], "rods": [rod(), second]}
+    made = Moving(tables, tmp_path)
+    motion = simulate(made.model)
+    memory = made.compiled.step_memory()
+    states = made.steps(1e-3, 400, memory)
+    wanted = made.tips([motion.at(min(1e-3 * k, 0.4)) for k in range(401)])
+    assert_allclose(made.tips(states), wanted, rtol=0, atol=5e-4)
+    assert len(made.compiled.step_contacts(memory)) == len(motion.contacts[-1])
+
+
+@pytest.mark.slow
 def test_the_ball_of_a_body_bounces_on_a_floor_as_in_python(tmp_path: Path) -> None:
     head = {
         "bodies": [{"name": "head", "mass": 0.05, "radius": 0.02}],

@@ -22,6 +22,10 @@ static const real LEVEL = (real)1e-10;
 /* Change of a place from which on Newton's method squares it to rounding. */
 static const real PLACED = (real)1e-8;
 
+/* How much lower a gap may be between two sections that are looked at than it falls from one to the next: that of a bend of
+   one, halfway. */
+static const real BETWEEN = (real)0.125 / (LOOKS * LOOKS);
+
 /* Way down a gap without a bend. */
 static const real DOWN = (real)5e-3;
 
@@ -218,7 +222,9 @@ static int valleys_of(const facing *own, const real *nodes, real below, int all,
     /* Of equal ones the first and the last. */
     const int is_valley = fall >= 0 && rise >= 0 && fall + rise > 0;
     const int is_watched = all || ((i > 0 || own->watches_base) && (i < last || own->watches_tip));
-    real deeper = i > 0 ? fall : 0;
+    /* Between two sections as low as each other the gap may be lower, by its bend. */
+    real deeper = BETWEEN;
+    if (i > 0 && fall > deeper) deeper = fall;
     if (i < last && rise > deeper) deeper = rise;
     if (!is_valley || !is_watched || gaps[i] > below + deeper) continue;
     const real place = place_of_look(own, i);

@@ -14,6 +14,9 @@ static const real GAP_CLOSED = (real)1e-12;
 /* Depth up to which a section without a force may come at the end of a step. */
 static const real GAP_OPEN = (real)1e-9;
 
+/* Way along the rod, in a stretch, from which on a section that presses may have come to another valley of its gap. */
+static const real FARTHEST = (real)0.05;
+
 /* Speed of opening, over that of approach or in lengths a step, that counts as none. */
 static const real STILL = (real)1e-9;
 
@@ -208,8 +211,16 @@ static int add_laid(int number, int add, workspace *work) {
   return count;
 }
 
-/* Finds what touches. A rod lies where its gap is flat at a section that touches, or where it touches at two of the sections
-   that it is held at then. Zero where there is no room for so many. */
+/* Whether a rod lay at the end of the stretch before. */
+static int lay_before(int number, const workspace *work) {
+  for (int k = 0; k < work->known_count; k++) {
+    if (work->known[k].facing == number && !work->known[k].slides && !FACING[number].is_body) return 1;
+  }
+  return 0;
+}
+
+/* Finds what touches. A rod lies where its gap is flat at a section that touches, or where it lay and touches at two of the
+   sections that it is held at then. Zero where there is no room for so many. */
 static int find_touching(const real *x, const real *inputs, workspace *work) {
   work->touch_count = 0;
   work->too_many = 0;
@@ -223,13 +234,14 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
     }
     if (own->is_body) {
       if (count > 0) add_touch(number, 0, 0, work);
-    } else if (count > 0 && (lies || add_laid(number, 0, work) > 1)) {
+    } else if (count > 0 && (lies || (lay_before(number, work) && add_laid(number, 0, work) > 1))) {
       add_laid(number, 1, work);
     } else {
       for (int k = 0; k < count; k++) {
         int is_new = 1;
         for (int i = 0; i < k; i++) {
-          is_new &= ABSOLUTE(work->valleys[i].place - work->valleys[k].place) > SAME_PLACE;
+          /* Less than what counts as one along a stretch: what touches at its start is never overlooked in it. */
+          is_new &= ABSOLUTE(work->valleys[i].place - work->valleys[k].place) > SAME_PLACE / 2;
         }
         if (is_new) add_touch(number, 1, work->valleys[k].place, work);
       }
@@ -615,6 +627,15 @@ static int release_all(workspace *work) {
   return released;
 }
 
+/* Whether a section that presses is elsewhere at the end of a stretch: the gap may have another valley there. */
+static int slides_too_far(const workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    if (own->presses && ABSOLUTE(own->end_place - own->place) > FARTHEST) return 1;
+  }
+  return 0;
+}
+
 /* Solves a stretch with the forces of what touches at its start. */
 static solver_motion_status solve_stretch(const step_start *start, const solver_step_options *options, real *unknowns,
                                           solver_step_memory *memory, workspace *work, solver_step_info *info) {
@@ -637,7 +658,7 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
     }
     if (status != SOLVER_MOTION_DONE) return status;
     const int holds = choose_pressing(start, unknowns, work);
-    if (holds > 0) return SOLVER_MOTION_DONE;
+    if (holds > 0) return slides_too_far(work) ? SOLVER_MOTION_NOT_SOLVED : SOLVER_MOTION_DONE;
     if (holds < 0) return SOLVER_MOTION_NOT_SOLVED;
   }
   return SOLVER_MOTION_NOT_SOLVED;
@@ -732,14 +753,16 @@ static real first_blow(const step_start *start, const real *unknowns, workspace 
       const real middle = (low + high) / 2;
       instant_in(start, middle, unknowns, &work->at);
       gap = lowest_other(&work->at, work);
-      if (ABSOLUTE(gap) <= TOUCHING / 4 || high - low <= (real)1e-13) return middle;
+      if (ABSOLUTE(gap) <= TOUCHING / 4) return middle;
       if (gap > 0) {
         low = middle;
       } else {
         high = middle;
       }
+      /* A valley has come that was none before, below zero already. */
+      if (high - low <= (real)1e-9) break;
     }
-    return low > 0 ? low : high;
+    return high;
   }
   return 1;
 }
@@ -841,7 +864,7 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
     if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
     for (int tries = 0;; tries++) {
       const solver_motion_status status = solve_stretch(&start, options, unknowns, memory, work, info);
-      if (status == SOLVER_MOTION_NOT_SOLVED && work->touch_count > 0 && tries < SETS) {
+      if (status != SOLVER_MOTION_DONE && work->touch_count > 0 && tries < SETS) {
         /* What presses may slide, or come and go, faster than the step: a part of it does not. */
         work->was_cut = 1;
         start.size /= 2;
