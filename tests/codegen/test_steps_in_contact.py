@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -16,6 +17,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Model, build, export, load, scene_from_dict, simulate
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepOptions, StepState
+from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
@@ -338,3 +340,20 @@ def test_a_motion_begins_in_contact_where_python_begins_it(tmp_path: Path) -> No
     # Without contact there is none; a solve tells so.
     assert not made.compiled.solve().converged
     assert made.compiled.solve({"push.force": [0, 0, -1e-3]}).converged
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("touches", [False, True])
+def test_an_fmu_takes_the_steps_of_the_library(touches: bool, tmp_path: Path) -> None:
+    tables = scene(BALL)
+    if touches:
+        # It lies on the ball at rest.
+        tables["simulation"]["start"] = "equilibrium"
+    made = Moving(tables, tmp_path)
+    unit = write_fmu(made.model, tmp_path / "robot.fmu", "robot")
+    height = "rod.tip.position.z"
+    found = fmpy.simulate_fmu(str(unit), stop_time=0.3, step_size=1e-3, output_interval=1e-3, output=[height])
+    states = made.steps(1e-3, 300)
+    assert_allclose(found[height], made.tips(states)[:, 2] * LENGTH, rtol=0, atol=1e-9)
+    if touches:
+        assert_allclose(found[height], found[height][0], rtol=0, atol=1e-8)
