@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.loads.load_trace import expressions_in
 from cosserat_casadi.loads.load import coefficients, constant
+from cosserat_casadi.loads.load_trace import expressions_in
 from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.scene_rods import base_pose
