@@ -43,6 +43,8 @@ class Statement:
         binding: how tightly the expression binds, of ATOM, PRODUCT, SUM and CHOICE; a written text takes any operand.
         sides: how tightly each operand must bind to stand without parentheses.
         asked: whether it writes only where a result is asked for.
+        whole: places of the operands of which the expression is a whole number of C if they are, as comparisons are
+            without; None where it never is.
     """
 
     text: str
@@ -51,6 +53,7 @@ class Statement:
     binding: int = 0
     sides: Sequence[int] = ()
     asked: bool = False
+    whole: Sequence[int] | None = None
 
     def stores(self, value: int | None) -> bool:
         """Whether it stores a value as it is, whatever is asked for."""
@@ -129,6 +132,10 @@ class Block:
         return [f"  {self.type} {', '.join(names[i : i + 16])};" for i in range(0, len(names), 16)]
 
 
+VALUES_OF_CHOICES: Mapping[int, Sequence[int]] = {ca.OP_IF_ELSE_ZERO: (1,), ca.OP_SIGN: (0,)}
+"""Places of the operands that are chosen; other choices answer a question."""
+
+
 @dataclass(frozen=True)
 class Arithmetic:
     """How numbers and operations on them are written.
@@ -158,9 +165,12 @@ class Arithmetic:
         if operation in BINARY:
             binding = SUM if operation in SUMS else PRODUCT
             # Operands on the right keep their parentheses: a sum is rounded in the order in which it is written.
-            return Statement(f"{{0}} {BINARY[operation]} {{1}}", operands, made, binding, (binding, binding + 1))
+            sides = (binding, binding + 1)
+            whole = None if operation == ca.OP_DIV else (0, 1)
+            return Statement(f"{{0}} {BINARY[operation]} {{1}}", operands, made, binding, sides, whole=whole)
         if operation in self.choices:
-            return Statement(self.choices[operation], operands, made, CHOICE, [ATOM] * len(operands))
+            chosen = VALUES_OF_CHOICES.get(operation, ())
+            return Statement(self.choices[operation], operands, made, CHOICE, [ATOM] * len(operands), whole=chosen)
         if operation not in self.functions:
             raise UnknownOperationError(FUNCTIONS.get(operation, f"operation {operation}"))
         places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
@@ -197,18 +207,25 @@ def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None
     written: list[Statement] = []
     for statement in statements:
         place = 0
-        while place < len(statement.operands):
-            other = waiting.pop(statement.operands[place], None)
+        not_whole = list(statement.whole or ())
+        for i, operand in enumerate(statement.operands):
+            other = waiting.pop(operand, None)
             if other is None:
                 place += 1
                 continue
             longer = statement.with_operand(place, other)
-            if _length(longer, text_of) > LONGEST_LINE:
+            # C leaves out the rest of a quotient of whole numbers; in a variable they are numbers as others.
+            divides = other.whole == () and statement.whole is None and statement.binding == PRODUCT
+            if divides or _length(longer, text_of) > LONGEST_LINE:
                 written.append(other)
                 place += 1
-            else:
-                statement = longer
-                place += len(other.operands)
+                continue
+            statement = longer
+            place += len(other.operands)
+            if other.whole == () and i in not_whole:
+                not_whole.remove(i)
+        if statement.whole is not None:
+            statement = replace(statement, whole=None if not_whole else ())
         if statement.made is not None and reads[statement.made] == 1:
             waiting[statement.made] = statement
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 
 import casadi as ca
 import pytest
@@ -96,6 +97,19 @@ def test_a_value_is_not_computed_within_a_product_that_is_stored(operands: tuple
     _, *lines = [line.strip() for line in block.lines(lambda number: f"x{number}" if number < 2 else None)]
     stored = {(2, 3): "r0 = a0 * factor;", (3, 2): "r0 = factor * a0;"}
     assert lines == ["a0 = x0 * x1;", stored[operands], "r1 = a0 + a0;"]
+
+
+@pytest.mark.parametrize(
+    ("operation", "stored"), [(ca.OP_DIV, "r0 = a1 / a2;"), (ca.OP_MUL, "r0 = ((x0 < x1) + (x1 < x0)) * (x0 < x1);")]
+)
+def test_whole_numbers_of_c_are_not_divided(operation: int, stored: str) -> None:
+    """A quotient of comparisons, and of their sums, would be one without its rest."""
+    less = [SINGLE.operation(ca.OP_LT, [i, j], 2 + k) for k, (i, j) in enumerate([(0, 1), (1, 0), (0, 1)])]
+    both = SINGLE.operation(ca.OP_ADD, [2, 3], 5)
+    wanted = SINGLE.operation(operation, [5, 4], 6)
+    block = Block("casadi_real", "a", [*less, both, wanted, Statement("r0 = {0};", [6])])
+    lines = [line.strip() for line in block.lines(lambda number: f"x{number}" if number < 2 else None)]
+    assert re.sub(r"a\d", "a", lines[-1]) == re.sub(r"a\d", "a", stored)
 
 
 @pytest.mark.parametrize("fewest_at", [9, 10, 11])
