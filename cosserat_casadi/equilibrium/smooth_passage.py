@@ -49,6 +49,9 @@ SAME = 1e-6
 SHORTEST = 2.0**-9
 """Share of a step below which no part is halved: it counts as barred."""
 
+REMEMBERED = 16
+"""Shares of a way of parameters whose places are remembered: all cases ask for the same."""
+
 ROUGHLY = 8
 """Sections of which one is looked at where many states follow each other: rods are nearly straight between them."""
 
@@ -65,6 +68,10 @@ class _Way(NamedTuple):
     start: FloatArray
     end: FloatArray
     bend: float
+
+
+PlacesAt = Callable[[float, FloatArray, FloatArray], list[FloatArray]]
+"""Places of rods and bodies at a share of a step on which the model changes, at the unknowns and inputs there."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,7 @@ class SmoothBarriers:
         before: FloatArray,
         after: FloatArray,
         inputs: tuple[FloatArray, FloatArray],
-        earlier: SmoothBarriers | None = None,
+        places: PlacesAt | None = None,
     ) -> bool:
         """Whether a rod or body is deep inside one on the way between two shapes, and at neither of its ends.
 
@@ -113,23 +120,18 @@ class SmoothBarriers:
             before: unknowns at the start, shape (model.size,).
             after: unknowns at the end, likewise.
             inputs: stacked inputs at start and end.
-            earlier: of the model with the parameters at the start; where they are other ones.
+            places: of rods and bodies on the way; by default those of this model.
         """
         last = self.model.inputs.nearer(*inputs)
 
         def places_at(share: float) -> list[FloatArray]:
             x, given = between(before, after, share), between(inputs[0], last, share)
-            own = self._places(x, given)
-            if earlier is None or earlier is self:
-                return own
-            # Other parameters take what moves there in straight lines.
-            others = earlier._places(x, given)
-            return [between(*places, share) for places in zip(others, own, strict=True)]
+            return self.places(x, given) if places is None else places(share, x, given)
 
         lengths = [self.model.length(pair.rods[0], inputs[1]) for pair in self.model.discrete.pairs]
         return self._barred(places_at, lengths, (0.0, 1.0), (places_at(0.0), places_at(1.0)))
 
-    def _places(self, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
+    def places(self, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
         """Positions of sections of rods and of bodies in the axes of obstacles, then of sections of pairs, m."""
         of_rods = [self._looked_at[rod].positions(obstacle, x, inputs) for rod, obstacle in self.watched]
         of_bodies = [self._place(layer, x, inputs)[None] for layer in self.watched_bodies]
@@ -286,13 +288,34 @@ def _as_far_as_bent(is_barred: Callable[[float], bool], bend: float, admitted: f
 
 def quaternions_of(model: Model) -> list[int]:
     """Places of the first numbers of quaternions among the inputs, behind which the parameters stand."""
-    whole = [
-        span.start
-        for entry, span in model.parameters
-        # The sign of that of a support says by which way round a tip is turned.
-        if entry.keys[-1] == "quaternion" and entry.size == 4 and entry.holder.table != "supports"
-    ]
-    return model.inputs.quaternions + [model.inputs.size + start for start in whole]
+    return model.inputs.quaternions + [model.inputs.size + start for start in model.parameters.quaternions]
+
+
+def places_along(model: Model, parameters: tuple[FloatArray, FloatArray]) -> PlacesAt:
+    """Places on the straight way from some parameters to others.
+
+    Args:
+        model: with parameters.
+        parameters: at the shares 0 and 1, shape (model.parameters.size,) each.
+    """
+    last = model.parameters.nearer(*parameters)
+
+    @lru_cache(maxsize=REMEMBERED)
+    def at(share: float) -> SmoothBarriers:
+        p = model.parameters.between(parameters[0], last, share)
+        return SmoothBarriers(model.unjudged(model.parameters.split(p)))
+
+    return lambda share, x, inputs: at(share).places(x, inputs)
+
+
+def places_between(earlier: SmoothBarriers, later: SmoothBarriers) -> PlacesAt:
+    """Places that go in straight lines from those of one model to those of another, between which nothing is known."""
+
+    def places(share: float, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
+        both = zip(earlier.places(x, inputs), later.places(x, inputs), strict=True)
+        return [between(*own, share) for own in both]
+
+    return places
 
 
 def has_barriers(scene: scenes.Scene) -> bool:
@@ -334,7 +357,7 @@ def past_no_obstacle(
     model: Model,
     inputs: tuple[FloatArray, FloatArray],
     parameters: tuple[FloatArray, FloatArray] | None = None,
-    before_it: Model | None = None,
+    before_it: PlacesAt | None = None,
 ) -> Path:
     """A path without steps through smooth bars, balls and rods; the path itself in a scene that has none.
 
@@ -343,28 +366,24 @@ def past_no_obstacle(
         model: the model.
         inputs: stacked inputs at t = 0 and 1.
         parameters: of a model that has them, at t = 0 and 1.
-        before_it: the model that the start of the path is an equilibrium of, where it is another.
+        before_it: places on the way from the model that its start is an equilibrium of; where it is another.
     """
     barriers = SmoothBarriers(model)
     if not barriers.any:
         return path
 
-    # A step is looked at from the end of the last one.
-    @lru_cache(maxsize=2)
-    def barriers_at(t: float) -> SmoothBarriers:
-        return barriers if parameters is None else SmoothBarriers(model.at(between(*parameters, t)))
-
     def admits(before: PathPoint, after: PathPoint) -> bool:
         (first, t), (last, target) = before, after
         at_ends = (between(*inputs, t), between(*inputs, target))
+        own, places = barriers, before_it if t == target == 0.0 else None
         try:
-            earlier, later = barriers_at(t), barriers_at(target)
+            if parameters is not None:
+                step = (between(*parameters, t), between(*parameters, target))
+                own = SmoothBarriers(model.unjudged(model.parameters.split(model.parameters.between(*step, 1.0))))
+                places = places_along(model, step)
+            return not own.are_between(first, last, at_ends, places)
         except SceneError:
             # The scene refuses such parameters: where its rods would be is not known.
             return False
-        of_start = None if before_it is None else SmoothBarriers(before_it)
-        if of_start is not None and t == target == 0.0 and of_start.compares_with(later):
-            earlier = of_start
-        return not later.are_between(first, last, at_ends, earlier)
 
     return replace(path, admits=admits)

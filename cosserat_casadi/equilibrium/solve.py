@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -21,11 +22,19 @@ from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import backwards, column, continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.locking import with_locking_note
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, are_one, past_no_obstacle
+from cosserat_casadi.equilibrium.smooth_passage import (
+    PlacesAt,
+    SmoothBarriers,
+    are_one,
+    past_no_obstacle,
+    places_along,
+    places_between,
+)
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discrete_scene import with_parameters
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.parameters import parameter_layout
@@ -60,7 +69,6 @@ class _Task:
 
     Attributes:
         model: what to solve.
-        parametric: the same with its parameters.
         inputs: stacked inputs, shape (model.inputs.size,).
         start: where to start.
         limits: limits of the continuation.
@@ -68,7 +76,6 @@ class _Task:
     """
 
     model: Model
-    parametric: Model
     inputs: FloatArray
     start: Start
     limits: ContinuationSettings
@@ -80,6 +87,39 @@ class _Task:
         if not isinstance(self.start, Solution) or self.start.model is self.model:
             return None
         return self.start.model
+
+    @cached_property
+    def parametric(self) -> Model:
+        """The model with the parameters that its scene names."""
+        nominal = self.model.discrete.nominal
+        return Model(with_parameters(nominal)) if nominal.scene.parameters else self.model
+
+    @cached_property
+    def parameters(self) -> tuple[FloatArray, FloatArray] | None:
+        """Parameters of the model of the start, and of this one; None where not these alone are others."""
+        before, model = self.model_of_start, self.parametric
+        if before is None or not model.parameters.size:
+            return None
+        named = model.scene.parameters
+        scenes = (bound.scene.model_copy(update={"parameters": named}) for bound in (before, self.model))
+        try:
+            first, last = (parameter_layout(scene).pack() for scene in scenes)
+            is_alike = model.at(first).scene == before.scene
+        except SceneError:
+            # Of another scene: its numbers are refused here, or it has none by these names.
+            is_alike = False
+        return (first, model.parameters.nearer(first, last)) if is_alike else None
+
+    @property
+    def places_of_start(self) -> PlacesAt | None:
+        """Places of rods and bodies on the way from the model of the start; None where that is this one."""
+        later = SmoothBarriers(self.model)
+        if self.model_of_start is None or not later.any:
+            return None
+        if self.parameters is not None:
+            return places_along(self.parametric, self.parameters)
+        earlier = SmoothBarriers(self.model_of_start)
+        return places_between(earlier, later) if earlier.compares_with(later) else None
 
     @property
     def first_iterate(self) -> FloatArray:
@@ -126,7 +166,7 @@ def solve(
     Raises:
         SceneError, SolveError, ValueError: likewise.
     """
-    parametric, model = model, model.at(parameters)
+    model = model.at(parameters)
     limits = settings or continuation_limits(model)
     if model.scene.touches_exactly:
         values = _values_in_contact(model, values)
@@ -140,7 +180,7 @@ def solve(
             raise SolveError(solution.message)
         return solution
     inputs = _stacked(model, values)
-    task = _Task(model, parametric, inputs, start, limits, progress)
+    task = _Task(model, inputs, start, limits, progress)
     unknowns = len(task.first_iterate)
     if unknowns != model.size:
         raise ValueError(f"the start has {unknowns} unknowns, the model {model.size}")
@@ -318,7 +358,7 @@ def _continuation(task: _Task) -> _End:
         path = load_path(task.model, task.inputs)
     first = task.start.inputs if isinstance(task.start, Solution) else task.inputs
     inputs = (first, task.model.inputs.nearer(first, task.inputs))
-    path = past_no_obstacle(path, task.model, inputs, before_it=task.model_of_start)
+    path = past_no_obstacle(path, task.model, inputs, before_it=task.places_of_start)
     result = follow(path, task.limits, task.progress)
     if result.outcome is not Outcome.CONVERGED:
         result = _with_parameters(task, result)
@@ -327,22 +367,13 @@ def _continuation(task: _Task) -> _End:
 
 def _with_parameters(task: _Task, failed: ContinuationResult) -> ContinuationResult:
     """The end of the path on which parameters change with the inputs, where it leads to one; else that which failed."""
-    start, model, model_of_start = task.start, task.parametric, task.model_of_start
-    if not isinstance(start, Solution) or model_of_start is None or not model.parameters.size:
+    start = task.start
+    if not isinstance(start, Solution) or task.parameters is None:
         return failed
-    named = model.scene.parameters
-    scenes = (bound.scene.model_copy(update={"parameters": named}) for bound in (model_of_start, task.model))
-    try:
-        before, after = (parameter_layout(scene).pack() for scene in scenes)
-        is_alike = model.at(before).scene == model_of_start.scene
-    except SceneError:
-        # Of another scene: its numbers are refused here, or it has none by these names.
-        is_alike = False
-    if not is_alike:
-        return failed
+    model, parameters = task.parametric, task.parameters
     inputs = (start.inputs, model.inputs.nearer(start.inputs, task.inputs))
-    path = input_path(model, start.x, *inputs, (before, after))
-    path = past_no_obstacle(path, model, inputs, (before, after))
+    path = input_path(model, start.x, *inputs, parameters)
+    path = past_no_obstacle(path, model, inputs, parameters)
     result = follow(path, task.limits, task.progress)
     iterations = failed.iterations + result.iterations
     return replace(result if result.outcome is Outcome.CONVERGED else failed, iterations=iterations)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -16,7 +15,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, past_no_obstacle, places_along
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -83,11 +82,8 @@ class Equilibria:
         self.barred: Flags = np.zeros(cases, dtype=bool)
         self._tolerance = NewtonSettings()
         self._mapped: dict[str, ca.Function] = {}
-        self._barriers_at: Callable[[bytes], SmoothBarriers] | None = None
-        """Smooth bars, balls and rods at given parameters, as bytes; None in a scene that has none."""
-        if not isinstance(model, TubeFunctions) and SmoothBarriers(model).any:
-            # A step leads between two sets of parameters.
-            self._barriers_at = lru_cache(maxsize=2)(lambda p: SmoothBarriers(model.at(np.frombuffer(p))))
+        self._watched = None if isinstance(model, TubeFunctions) or not SmoothBarriers(model).any else model
+        """The model where it has smooth bars, balls or rods that no step may lead through."""
 
     def _over_cases(self, name: str, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ca.DM:
         """A function of the model at all cases, side by side; it is mapped when it is first asked for."""
@@ -302,24 +298,25 @@ class Equilibria:
     def _path(self, near: Point, case: int, inputs: FloatArray, p: FloatArray) -> Path:
         """The path of one case on the straight line to other inputs and parameters, past no obstacle."""
         model = self.model
-        ends = (near.inputs[case], inputs)
-        parameters = (near.p, p) if model.parameters.size else None
+        ends = (near.inputs[case], model.inputs.nearer(near.inputs[case], inputs))
+        parameters = (near.p, model.parameters.nearer(near.p, p)) if model.parameters.size else None
         path = input_path(model, near.x[case], *ends, parameters)
         return path if isinstance(model, TubeFunctions) else past_no_obstacle(path, model, ends, parameters)
 
     def _barred(self, near: Point, x: FloatArray, inputs: FloatArray, p: FloatArray, reached: Flags) -> Flags:
         """Which of the cases reached would go through a smooth bar, ball or rod on the way, shape (cases,)."""
         barred: Flags = np.zeros(self.cases, dtype=bool)
-        if self._barriers_at is None:
+        if self._watched is None:
             return barred
         try:
-            before, after = (self._barriers_at(parameters.tobytes()) for parameters in (near.p, p))
+            places = None if np.array_equal(near.p, p) else places_along(self._watched, (near.p, p))
+            after = SmoothBarriers(self._watched.at(p))
+            for case in np.flatnonzero(reached & self.sought):
+                ends = (near.inputs[case], inputs[case])
+                barred[case] = after.are_between(near.x[case], x[case], ends, places)
         except SceneError:
             # The scene refuses such parameters: where its rods would be is not known.
             return reached
-        for case in np.flatnonzero(reached & self.sought):
-            ends = (near.inputs[case], inputs[case])
-            barred[case] = after.are_between(near.x[case], x[case], ends, before)
         self.barred |= barred
         return barred
 

@@ -63,16 +63,24 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         """Names, order and default values of the parameters."""
         return self.discrete.parameters
 
-    def _bound(self, values: Mapping[str, npt.ArrayLike] | None) -> Model:
+    def unjudged(self, values: Mapping[str, npt.ArrayLike] | None) -> Model:
+        """The model with constants for its parameters, whose loads, obstacles and pairs may be where none can be.
+
+        On the way between parameters rods may be inside each other where nothing acts.
+        """
         nominal = self.discrete.nominal
-        discrete = with_numbers(nominal, self.parameters.set_in(nominal.scene, values))
+        return Model(with_numbers(nominal, self.parameters.set_in(nominal.scene, values)))
+
+    def _bound(self, values: Mapping[str, npt.ArrayLike] | None) -> Model:
+        bound = self.unjudged(values)
+        nominal, discrete = self.discrete.nominal, bound.discrete
         check_loads(discrete)
         check_directions(nominal.constraints, discrete.own_unloaded)
         if discrete.scene.obstacles:
             check_obstacles(discrete)
         if discrete.pairs:
             check_pairs(self, values)
-        return Model(discrete)
+        return bound
 
     def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
         """The model, without parameters, of a scene with other constraints, on the same modes and nodes.

@@ -155,19 +155,6 @@ class InputLayout(StackedLayout[Input]):
         """Places of the first numbers of quaternions."""
         return [span.start for entry, span in self if entry.field == "base.quaternion"]
 
-    def nearer(self, first: FloatArray, last: FloatArray) -> FloatArray:
-        """Inputs with those signs of quaternions that are nearer to other inputs: Q and −Q are one rotation.
-
-        Args:
-            first: the other inputs, shape (size,).
-            last: inputs, shape (size,).
-        """
-        signed = np.array(last, dtype=float)
-        for start in self.quaternions:
-            if first[start : start + 4] @ signed[start : start + 4] < 0.0:
-                signed[start : start + 4] *= -1.0
-        return signed
-
 
 def scene_value(record: Entry, field: str) -> Numbers:
     """An input of a load or an actuator as the scene has it, shape (1, k) or (3, k); zero where it is left out."""

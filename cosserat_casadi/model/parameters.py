@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Self
 
 import casadi as ca
+import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
@@ -52,6 +53,24 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
     def symbol(self) -> ca.MX:
         """p, size×1: one symbol for all functions of a model."""
         return ca.MX.sym("p", self.size)
+
+    @property
+    def quaternions(self) -> list[int]:
+        """Places of the first numbers of quaternions of which either sign will do."""
+        # The sign of that of a support says by which way round a tip is turned.
+        return [span.start for entry, span in self._turns if entry.holder.table != "supports"]
+
+    @property
+    def _turns(self) -> list[tuple[scenes.NamedNumbers, slice]]:
+        """Whole quaternions."""
+        return [(entry, span) for entry, span in self if entry.keys[-1] == "quaternion" and entry.size == 4]
+
+    def between(self, first: FloatArray, last: FloatArray, share: float) -> FloatArray:
+        """Parameters on the straight line between two sets of them, quaternions of unit length, as a scene has them."""
+        p = (1.0 - share) * first + share * last
+        for _, span in self._turns:
+            p[span] /= max(float(np.linalg.norm(p[span])), float(np.finfo(float).tiny))
+        return p
 
     @property
     def turning_axes(self) -> list[tuple[str, int]]:

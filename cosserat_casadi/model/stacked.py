@@ -133,6 +133,24 @@ class StackedLayout(Generic[EntryType]):
             raise SceneError(Problem(self.several, problem, f"they are {names}"))
         return self.unpack(vector)
 
+    @property
+    def quaternions(self) -> list[int]:
+        """Places of the first numbers of quaternions of which either sign will do."""
+        return []
+
+    def nearer(self, first: FloatArray, last: FloatArray) -> FloatArray:
+        """Values with those signs of quaternions that are nearer to other values: Q and −Q are one rotation.
+
+        Args:
+            first: the other values, shape (size,).
+            last: values, shape (size,).
+        """
+        signed = np.array(last, dtype=float)
+        for start in self.quaternions:
+            if first[start : start + 4] @ signed[start : start + 4] < 0.0:
+                signed[start : start + 4] *= -1.0
+        return signed
+
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
         """Values by name from the stacked vector, each shaped as its default."""
         return {entry.name: stacked[span].reshape(entry.default.shape, order="F") for entry, span in self}

@@ -68,7 +68,7 @@ AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
-"""Remedy for an input that has a speed where nothing can follow it."""
+"""The remedy where nothing can follow an input that has a speed."""
 
 
 def equations_of(
@@ -656,7 +656,7 @@ def _check_start(
         touches: whether rods touch where it starts.
         sags: how much longer cables are than their ways, over the lengths of their rods, by cable.
         moving: names of inputs with a speed where it starts.
-        grow: inputs of these that are lengths of free rods.
+        grow: names of inputs among them that are lengths of free rods.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.

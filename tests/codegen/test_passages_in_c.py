@@ -29,7 +29,7 @@ from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.codegen.status import OUTCOMES, MotionStatus
 from cosserat_casadi.codegen.texts import fill, resource
 from cosserat_casadi.equilibrium.contact.passing_through import LookedAt, admitted_depth
-from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, depth_allowed
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, depth_allowed, places_along
 from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import C99, HARNESS, Exported, compile_quickly, gcc
@@ -147,14 +147,18 @@ def test_steps_that_are_barred_vs_python(name: str, tmp_path: Path) -> None:
     inputs, p = np.split(given, [model.inputs.size], axis=2)
     wanted = []
     for row in range(STEPS):
-        before, after = (SmoothBarriers(model.at(own) if own.size else model) for own in p[row])
-        wanted.append(after.are_between(x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]), before))
+        after = SmoothBarriers(model.at(p[row, 1]) if p.size else model)
+        places = places_along(model, (p[row, 0], p[row, 1])) if p.size else None
+        wanted.append(after.are_between(x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]), places))
     assert STEPS / 10 < sum(wanted) < STEPS - STEPS / 10
     found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(STEPS, -1))
     assert found == wanted
 
 
 TURNS = 30
+
+WITH_PARAMETERS = 9
+"""Turns of which a parameter does the same."""
 
 TURNED = 'inputs = ["rod.base.quaternion"]\n' + SOLID + PUSH + THIN
 
@@ -184,6 +188,8 @@ def least_room(model: Model, x: FloatArray, inputs: FloatArray) -> float:
 def test_steps_in_which_a_base_turns_are_judged_by_where_sections_go(tmp_path: Path) -> None:
     """Turns of up to 170 degrees, against many places on the way; chords lead past the wire, or cut it."""
     model = build(parse_scene(TURNED, list(FEW)))
+    of_parameters = TURNED.replace("inputs", "parameters").replace("tangent = [1, 0, 0]", "quaternion = [1, 0, 0, 0]")
+    named = build(parse_scene(of_parameters, list(FEW)))
     rng = np.random.default_rng(11)
     start = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])
     steps, wanted, kept = [], [], []
@@ -200,6 +206,10 @@ def test_steps_in_which_a_base_turns_are_judged_by_where_sections_go(tmp_path: P
         kept.append(abs(room) > 0.5)
         in_python = SmoothBarriers(model).are_between(*x, (first, last))
         assert not kept[-1] or in_python == wanted[-1]
+        if row < WITH_PARAMETERS:
+            none = np.zeros(0)
+            moved = SmoothBarriers(named.at(last))
+            assert moved.are_between(*x, (none, none), places_along(named, (first, last))) == in_python
     assert sum(kept) > 0.9 * TURNS
     assert TURNS / 10 < sum(wanted) < TURNS - TURNS / 10
     found = barred_in_c(model, tmp_path, np.array(steps))

@@ -984,3 +984,35 @@ def test_a_refusal_names_a_width_that_does_what_it_says() -> None:
     smooth = build(read_scene(example, [loose, f"bar.width={width}"]))
     tips = [solve(model).tip("rod").position for model in (exact, smooth)]
     assert 0.5 < np.linalg.norm(tips[1] - tips[0]) / float(width) < 2.0
+
+
+def test_a_base_that_a_parameter_turns_takes_no_rod_through_a_wire() -> None:
+    """The chord from upright to level passes below the wire, the arc does not; either sign of a quaternion will do."""
+    model = build(parse_scene(UPRIGHT))
+    above = solve(model)
+    for angle, passes in ((0.5, True), (1.5, False)):
+        turned = {"rod.base.quaternion": [-np.cos(angle / 2), 0.0, -np.sin(angle / 2), 0.0]}
+        led = solve(model, parameters=turned, start=above)
+        assert led.converged is passes
+        if passes:
+            assert_allclose(led.tip().position, 0.5 * np.array([np.sin(angle), 0.0, np.cos(angle)]), rtol=0, atol=1e-6)
+
+
+UPRIGHT = """
+schema = 1
+parameters = ["rod.base.quaternion"]
+accuracy = { modes = 1, nodes = 5 }
+[[rods]]
+name = "rod"
+length = 0.5
+strain = "planar"
+stiffness = { bending_y = 0.5 }
+base = { position = [0, 0, 0], quaternion = [1, 0, 0, 0] }
+[[obstacles]]
+name = "wire"
+kind = "capsule"
+from = [0.33, -0.1, 0.31]
+to = [0.33, 0.1, 0.31]
+radius = 0.01
+width = 5e-3
+"""
