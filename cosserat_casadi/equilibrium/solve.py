@@ -90,9 +90,11 @@ class _Task:
 
     @cached_property
     def parametric(self) -> Model:
-        """The model with the parameters that its scene names."""
-        nominal = self.model.discrete.nominal
-        return Model(with_parameters(nominal)) if nominal.scene.parameters else self.model
+        """The model with the parameters that its scene names; this one where it names none, or remembers friction."""
+        own, nominal = self.model.discrete, self.model.discrete.nominal
+        if not nominal.scene.parameters or nominal.layout is not own.layout:
+            return self.model
+        return Model(with_parameters(nominal).with_layers(own.layers))
 
     @cached_property
     def parameters(self) -> tuple[FloatArray, FloatArray] | None:
