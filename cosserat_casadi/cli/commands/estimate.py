@@ -7,13 +7,12 @@ from typing import Annotated
 
 import typer
 from rich.markup import escape
-from rich.table import Table
 
 from cosserat_casadi import estimation
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_files, given_files, read_checked
 from cosserat_casadi.cli.progress import RateColumn, count_display
-from cosserat_casadi.cli.reports.format import print_written, title_line
+from cosserat_casadi.cli.reports.format import print_written, table_of, title_line
 from cosserat_casadi.cli.reports.model import error_words
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
@@ -67,11 +66,8 @@ def _print(console: Console, found: Estimate, title: str | None) -> None:
     console.print(title_line(title))
     endings = ", ".join(f"{word}: {counted(count, 'row')}" for word, count in found.counts.items())
     console.print(f"{endings}.", soft_wrap=True)
-    table = Table()
-    for heading in ("unknown", "unit"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("least", "largest", "deviation"):
-        table.add_column(heading, justify="right")
+    headings = ("unknown", "unit")
+    table = table_of(*headings, right=("least", "largest", "deviation"), unbroken=headings)
     rows = found.found
     if not rows.any():
         return

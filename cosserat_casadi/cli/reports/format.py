@@ -28,16 +28,20 @@ def print_written(console: Console, files: Iterable[Path], *, soft_wrap: bool = 
         console.print(f"wrote {escape(str(file))}", soft_wrap=soft_wrap)
 
 
-def table_of(*headings: str, right: Sequence[str] = ()) -> Table:
+def table_of(
+    *headings: str, right: Sequence[str] = (), unbroken: Sequence[str] = (), fold: Sequence[str] = ()
+) -> Table:
     """An empty table.
 
     Args:
         headings: of columns of text.
         right: headings of the columns of numbers behind them, which stand on the right.
+        unbroken: which of the first have words that stay on one line.
+        fold: which of the first have words that are broken where they are too long: a name cut off names nothing.
     """
     table = Table()
     for heading in headings:
-        table.add_column(heading)
+        table.add_column(heading, no_wrap=heading in unbroken, overflow="fold" if heading in fold else "ellipsis")
     for heading in right:
         table.add_column(heading, justify="right")
     return table

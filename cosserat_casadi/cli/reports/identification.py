@@ -44,11 +44,7 @@ def print_refused_scene(console: Console, refusal: SceneError) -> None:
 
 
 def _unknowns(found: Identification) -> Table:
-    table = Table()
-    # A name that is cut off names nothing.
-    table.add_column("unknown", overflow="fold")
-    for heading in ("value", "σ", "95 % from", "to", "unit"):
-        table.add_column(heading)
+    table = table_of("unknown", "value", "σ", "95 % from", "to", "unit", fold=["unknown"])
     units = [entry.unit for entry in found.layout.shared for _ in entry.labels]
     for label, value, sigma, interval, unit in zip(
         found.labels, found.shared, found.sigma, found.intervals, units, strict=True

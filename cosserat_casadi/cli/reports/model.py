@@ -208,11 +208,7 @@ def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
     """Print base and tip of what varies along a rod, and how each plain list was read."""
     if not varying:
         return
-    table = Table()
-    table.add_column("along a rod", overflow="fold")
-    table.add_column("given by")
-    table.add_column("at the base", justify="right")
-    table.add_column("at the tip", justify="right")
+    table = table_of("along a rod", "given by", right=["at the base", "at the tip"], fold=["along a rod"])
     for value in varying:
         base, tip = value.profile.ends
         notation = value.profile.notation.value
@@ -228,9 +224,8 @@ def _print_parameters(console: Console, model: Model) -> None:
     """Print the numbers of the scene that are arguments of its functions, with their values."""
     if not model.parameters.size:
         return
-    table = Table()
-    table.add_column("parameter", overflow="fold")
-    table.add_column("value in the scene", overflow="fold")
+    headings = ("parameter", "value in the scene")
+    table = table_of(*headings, fold=headings)
     for parameter in model.parameters.entries:
         # One component a row, (3, k) with k coefficients: a reader expects single numbers without brackets.
         value = parameter.default.squeeze()

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import print_outcome, print_written
+from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 from cosserat_casadi.results.facts import digits
 
@@ -39,9 +39,8 @@ def _merit_sentence(path: EquilibriumPath) -> str:
 
 def _path_table(path: EquilibriumPath) -> Table:
     """The start, the events and the end of a path, with the stability of what follows."""
-    table = Table()
-    for heading in ("point", "factor", path.name, "beyond it", "rod", "position, m"):
-        table.add_column(escape(heading), no_wrap=heading in ("point", "factor", "beyond it"))
+    headings = ("point", "factor", escape(path.name), "beyond it", "rod", "position, m")
+    table = table_of(*headings, unbroken=("point", "factor", "beyond it"))
     # Of a rod whose tip is held another section is shown: its tip does not move.
     abscissae = {name: path.section(name) for name in path.model.discrete.rods}
     along = [path.position(X, name) for name, X in abscissae.items()]

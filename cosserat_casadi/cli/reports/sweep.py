@@ -201,11 +201,7 @@ def _within(error: float, tolerance: float) -> str:
 
 def print_sobol(console: Console, indices: SobolIndices) -> None:
     """Print the indices of every result, and the draws that they leave out."""
-    table = Table()
-    for heading in ("result", "input"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("first (95 %)", "total (95 %)"):
-        table.add_column(heading)
+    table = table_of("result", "input", "first (95 %)", "total (95 %)", unbroken=["result", "input"])
     constant = []
     for name, found in indices.results.items():
         if not np.all(np.isfinite(found.first)):
