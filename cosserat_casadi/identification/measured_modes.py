@@ -19,6 +19,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import refuse
 from cosserat_casadi.identification.measured_cases import Datum
 from cosserat_casadi.identification.measured_quantities import QUANTITIES
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.eigenproblem import ComplexArray, eigenpairs
@@ -26,8 +27,6 @@ from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.motion.vibration_modes import small_motions
 from cosserat_casadi.scene.measurements import ModeMeasurement
-
-Indices = npt.NDArray[np.int64]
 
 ONE_FREQUENCY = 1e-6
 """Distance of two eigenvalues, relative to their size, at which they are one: rounding splits them by less."""

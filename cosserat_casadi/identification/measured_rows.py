@@ -13,10 +13,9 @@ import numpy.typing as npt
 from cosserat_casadi.identification.case_equilibria import split
 from cosserat_casadi.identification.measured_cases import Datum
 from cosserat_casadi.identification.measured_quantities import QUANTITIES, difference
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.tubes.tube_functions import AnyModel
-
-Indices = npt.NDArray[np.int64]
 
 
 class MeasuredRows:

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.strain_limits import BeyondLimit, first_beyond
@@ -20,11 +19,10 @@ from cosserat_casadi.identification.fit_unknowns import UnknownLayout
 from cosserat_casadi.identification.measured_cases import Case
 from cosserat_casadi.identification.measured_modes import JointModes, MeasuredModes, Vibrations
 from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.measurements import ModeMeasurement
 from cosserat_casadi.tubes.tube_functions import AnyModel, TubeFunctions
-
-Indices = npt.NDArray[np.int64]
 
 ROUNDING = 1e-10
 """Share of the largest derivative, each times the size of its unknown, below which one is rounding."""

@@ -11,13 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
-import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.maths.block_operators import mirror_factors
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-
-Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths.grid import gauss_legendre
@@ -23,9 +22,7 @@ from cosserat_casadi.maths.numbers import (
     legendre_table,
     side_by_side,
 )
-from cosserat_casadi.maths.typing import Matrix
-
-Array = npt.NDArray[np.float64]
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
 """Names of the six strain components, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
@@ -158,7 +155,7 @@ class RodProperties:
         return side_by_side(columns)
 
     @cached_property
-    def mean_hooke(self) -> Array:
+    def mean_hooke(self) -> FloatArray:
         """Mean of the Hooke tensor's diagonal along the rod that scales the equations, shape (6,)."""
         if self.nominal is not None:
             return self.nominal.mean_hooke

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.block_operators import hat_blocks, hat_operator
+from cosserat_casadi.maths.block_operators import hat_blocks
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -46,7 +46,7 @@ class Reaction:
         force = ca.DM(3, self.tangent.rod.size)
         for wrench in self._followers:
             if wrench.force is not None:
-                turned = self._turned(wrench, wrench.force)
+                turned = self.tangent.turned(wrench, wrench.force)
                 force = force - self._resultant(turned, wrench)
         for load in self._statics.pose_loads:
             forces, _ = _halves(self.tangent.wrench_variation(load))
@@ -63,10 +63,10 @@ class Reaction:
             moment = moment + _hat_row(covector) @ self.tangent.tangent
         for wrench in self._followers:
             if wrench.force is not None:
-                turned = self._turned(wrench, wrench.force)
+                turned = self.tangent.turned(wrench, wrench.force)
                 moment = moment - self._lever(wrench) @ turned
             if wrench.moment is not None:
-                turned = self._turned(wrench, wrench.moment)
+                turned = self.tangent.turned(wrench, wrench.moment)
                 moment = moment - self._resultant(turned, wrench)
         for load in self._statics.pose_loads:
             # The δr × f of these are in the covector already, with the other frozen forces.
@@ -78,29 +78,21 @@ class Reaction:
     def with_turn(self) -> Variation:
         """Derivatives with a turn of the base, base axes, rad."""
         # Pose-dependent wrenches turn back as dead ones do, and change with the motion of their sections besides.
-        frozen = [load.frozen for load in self._statics.pose_loads]
+        loads = self._statics.pose_loads
+        fixed = [*self.dead, *(load.frozen for load in loads)]
         variations = []
         for axis in range(3):
-            wrenches = [_turned_back(wrench, axis) for wrench in (*self.dead, *frozen)]
-            for load in self._statics.pose_loads:
-                _, turned = load.with_base
-                wrenches.append(load.changed(turned[:, axis]))
-            variations.append(wrenches)
+            turned_back = [_turned_back(wrench, axis) for wrench in fixed]
+            variations.append([*turned_back, *(load.changed(load.with_base[1][:, axis]) for load in loads)])
         return self._side_by_side(variations)
 
     @cached_property
     def with_shift(self) -> Variation | None:
         """Derivatives with a shift of the base, base axes, m; None where no load depends on where the rod is."""
-        if not self._statics.pose_loads:
+        loads = self._statics.pose_loads
+        if not loads:
             return None
-        variations = []
-        for axis in range(3):
-            wrenches = []
-            for load in self._statics.pose_loads:
-                shifted, _ = load.with_base
-                wrenches.append(load.changed(shifted[:, axis]))
-            variations.append(wrenches)
-        return self._side_by_side(variations)
+        return self._side_by_side([[load.changed(load.with_base[0][:, axis]) for load in loads] for axis in range(3)])
 
     @property
     def _statics(self) -> Statics:
@@ -121,20 +113,6 @@ class Reaction:
             forces.append(model.statics.base_force)
             moments.append(model.statics.base_moment)
         return ca.horzcat(*residuals), ca.horzcat(*forces), ca.horzcat(*moments)
-
-    def _turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
-        """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n."""
-        shape = self.tangent.shape
-        if isinstance(wrench, WrenchAt):
-            node = shape.rod.grid.node_at(wrench.at)
-            in_base = shape.rotation_at(node) @ vector
-            # δ(R v) = δθ × R v = −(R v)^ δθ.
-            turning = self.tangent.rotation_of(node)
-            return -(hat(in_base) @ turning)
-        per_length = self._statics.line(wrench, vector)
-        angular = -(hat_operator(per_length) @ self.tangent.rotation)
-        no_column = ca.DM(angular.shape[0], self.tangent.rod.size - angular.shape[1])
-        return ca.horzcat(angular, no_column)
 
     def _resultant(self, variation: Matrix, wrench: Wrench) -> Matrix:
         """Sum over the sections of variations of a vector, 3×n."""

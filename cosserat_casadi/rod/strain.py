@@ -20,7 +20,6 @@ from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
@@ -41,15 +40,13 @@ from cosserat_casadi.maths.numbers import (
     reciprocal,
     without_rounding,
 )
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_matrix import section_matrix
 
-Array = npt.NDArray[np.float64]
-
-_POLYNOMIALS: dict[str, Callable[[int, Array], Array]] = {
+_POLYNOMIALS: dict[str, Callable[[int, FloatArray], FloatArray]] = {
     "legendre": chebyshev.legendre_polynomials,
     "chebyshev": chebyshev.chebyshev_polynomials,
 }
@@ -140,7 +137,7 @@ class DiscreteRod:
             start = end
         return columns
 
-    def shape_functions(self, component: int, X: Array, element: Indices) -> Array:
+    def shape_functions(self, component: int, X: FloatArray, element: Indices) -> FloatArray:
         """Φ_c at places X of the grid's coordinate, seen from the given elements, report (2.4): shape (len(X), n_c)."""
         number = self.admitted.index(component)
         modes = self.discretisation.modes[number]
@@ -163,7 +160,7 @@ class DiscreteRod:
         degrees = np.arange(self.discretisation.modes[number])
         return np.tile(degrees, self.discretisation.elements)
 
-    def parities(self, component: int) -> Array:
+    def parities(self, component: int) -> FloatArray:
         """1 for a polynomial that is even about the middle of its element, −1 for an odd one, shape (n_c,)."""
         even = self.degrees(component) % 2 == 0
         return np.where(even, 1.0, -1.0)
@@ -195,7 +192,7 @@ class DiscreteRod:
         return folded(matrix, np.concatenate(mirror), np.concatenate(signs), np.concatenate(parities))
 
     @cached_property
-    def at_nodes(self) -> dict[int, Array]:
+    def at_nodes(self) -> dict[int, FloatArray]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
         grid = self.grid
         values = {}
@@ -204,7 +201,7 @@ class DiscreteRod:
         return values
 
     @cached_property
-    def reference_lengths(self) -> Array:
+    def reference_lengths(self) -> FloatArray:
         """Length of each node in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
         return np.asarray(self.length * self.grid.weights)
 
@@ -218,7 +215,7 @@ class DiscreteRod:
         """Rate dX of the rod's abscissa at the nodes, shape (M,); None where it is one."""
         return self.grid.rates_in(self.grid.element_of_node)
 
-    def strain_of(self, component: int, X: Array) -> Array:
+    def strain_of(self, component: int, X: FloatArray) -> FloatArray:
         """Strain by each coordinate of a component at abscissae of a rod whose elements have known ends, (len(X), n_c).
 
         A break is seen from the element it ends.
@@ -260,7 +257,7 @@ class DiscreteRod:
         viscosity = self.viscosity
         return viscosity if is_symbolic(viscosity) else ca.sparsify(as_matrix(viscosity))
 
-    def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
+    def at(self, q: Matrix, X: FloatArray, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
         intrinsic = self.properties.intrinsic_strain(X)
         rows = []
@@ -304,7 +301,7 @@ class DiscreteRod:
         return int(self.discretisation.transport.removeprefix("magnus"))
 
     @cached_property
-    def taylor_matrices(self) -> list[dict[int, Array]]:
+    def taylor_matrices(self) -> list[dict[int, FloatArray]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
         X, element, *_ = self._taylor_samples
         samples = np.zeros((len(X), self.size))
@@ -348,13 +345,13 @@ class DiscreteRod:
         return ca.vertcat(*rows)
 
     @cached_property
-    def intrinsic_taylor(self) -> list[Array]:
+    def intrinsic_taylor(self) -> list[FloatArray]:
         """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
         X, element, *_ = self._taylor_samples
         curvature = self.properties.intrinsic_curvature(self.grid.on_rod(X, element))
         return self._taylor(self._per_coordinate(curvature, element))
 
-    def _per_coordinate(self, values: Numbers, element: Indices) -> Array:
+    def _per_coordinate(self, values: Numbers, element: Indices) -> FloatArray:
         """Values per length of the rod, at places in elements, as values per length of the grid's coordinate."""
         return known(each_times(values, self.grid.rates_in(element)))
 
@@ -384,12 +381,12 @@ class DiscreteRod:
         rates = self.grid.rates_in(element)
         return as_matrix(each_times(column(curvature, axis), rates))
 
-    def _turn_of_samples(self, count: int) -> list[Array]:
+    def _turn_of_samples(self, count: int) -> list[FloatArray]:
         """Taylor coefficients of all intervals by so many samples of each element, (intervals, E·count) for each l."""
         points, _ = gauss_legendre(count)
         to_coefficients = np.linalg.inv(legendre.legvander(points, count - 1))
 
-        def local_polynomials(X: Array, element: Indices) -> Array:
+        def local_polynomials(X: FloatArray, element: Indices) -> FloatArray:
             breaks = np.asarray(self.grid.breaks)
             local = 2 * (X - breaks[element]) / np.diff(breaks)[element] - 1
             polynomials = np.zeros((len(X), self.grid.elements, count))
@@ -407,7 +404,7 @@ class DiscreteRod:
             return 1
         return magnus.coefficient_count(self.magnus_order)
 
-    def _taylor(self, samples: Array) -> list[Array]:
+    def _taylor(self, samples: FloatArray) -> list[FloatArray]:
         """Taylor coefficients over every interval of ℓ h times a field, from its samples at the Gauss points."""
         _, _, lengths, to_taylor = self._taylor_samples
         samples = samples.reshape(len(lengths), -1, samples.shape[1])
@@ -415,7 +412,7 @@ class DiscreteRod:
         return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]
 
     @cached_property
-    def _taylor_samples(self) -> tuple[Array, Indices, Array, Array]:
+    def _taylor_samples(self) -> tuple[FloatArray, Indices, FloatArray, FloatArray]:
         """Gauss points of all intervals with their elements, lengths ℓ h of the intervals, and samples ↦ coefficients.
 
         Places are in the grid's coordinate; the matrix is one for all intervals, shape (count, points).

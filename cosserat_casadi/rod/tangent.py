@@ -53,7 +53,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.turned_wrenches import TurnedWrenches
-from cosserat_casadi.rod.wrenches import WrenchAt
+from cosserat_casadi.rod.wrenches import Wrench, WrenchAt
 
 
 @dataclass(frozen=True)
@@ -276,6 +276,10 @@ class Tangent:
         """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""
         variation = load.stiffness @ self.motion(load)
         return load.weighted(variation)
+
+    def turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
+        """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n, base frame."""
+        return self._with_linear_columns(self._turned.turned(wrench, vector))
 
     @cached_property
     def jacobian(self) -> Matrix:

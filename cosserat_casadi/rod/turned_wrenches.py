@@ -49,34 +49,29 @@ class TurnedWrenches:
             moments.append(-(hat_operator(couple) @ self.rotation))
         return moments
 
-    def _force_of(self, wrench: Wrench, force: Matrix) -> Matrix:
-        """δn̂ of one wrench."""
+    def turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
+        """δ of a vector that turns with its section, 3×k, or with the sections at all nodes, 3M×k, base frame."""
         if isinstance(wrench, LineWrench):
-            return self._force_per_length(wrench, force)
-        return self._force_at_point(wrench, force)
-
-    def _force_at_point(self, wrench: WrenchAt, force: Matrix) -> Matrix:
+            return -(hat_operator(self.statics.line(wrench, vector)) @ self.rotation)
         shape = self.statics.shape
         grid = shape.rod.grid
         node = grid.node_at(wrench.at)
-        components = ca.vertsplit(self.rotation, grid.size)
-        turning = ca.vertcat(*[component[node, :] for component in components])
-        in_base = shape.rotation_at(node) @ force
-        # δθ × f = −f^ δθ.
-        turned = -(hat(in_base) @ turning)
-        to_covector = ca.DM(grid.integration_matrix[node])
-        return ca.vertcat(*[to_covector @ component for component in ca.vertsplit(turned)])
+        turning = ca.vertcat(*[component[node, :] for component in ca.vertsplit(self.rotation, grid.size)])
+        # δ(R v) = δθ × R v = −(R v)^ δθ.
+        return -(hat(shape.rotation_at(node) @ vector) @ turning)
 
-    def _force_per_length(self, wrench: LineWrench, force: Matrix) -> Matrix:
+    def _force_of(self, wrench: Wrench, force: Matrix) -> Matrix:
+        """δn̂ of one wrench."""
         rod = self.statics.shape.rod
         grid = rod.grid
-        per_length = self.statics.line(wrench, force)
-        turned = -(hat_operator(per_length) @ self.rotation)
         lengths = rod.node_lengths
-        if is_symbolic(lengths):
+        turned = self.turned(wrench, force)
+        if isinstance(wrench, WrenchAt):
+            to_covector = ca.DM(grid.integration_matrix[grid.node_at(wrench.at)])
+        elif is_symbolic(lengths):
             to_covector = ca.DM(grid.integration_matrix).T
             turned = ca.diag(ca.repmat(lengths, 3, 1)) @ turned
         else:
             to_covector = ca.DM(known(lengths)[:, None] * grid.integration_matrix).T
-        components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]
-        return ca.vertcat(*components)
+        components = ca.vertsplit(turned, turned.shape[0] // 3)
+        return ca.vertcat(*[to_covector @ component for component in components])
