@@ -40,15 +40,16 @@ REST = SAFETY / UNKNOWN_ORDER
 LAST = 3
 """One of so many coefficients counts as one of the last."""
 
-AT_FRONT = 0.65
-"""Displacement that is missing where a front arrives, over that by the last coefficients and their number.
+AT_FRONT = 0.6
+"""Displacement that is missing where a front arrives, over that by the last of many coefficients and their number.
 
 A strain that jumps by J leaves 0.6 J / n at the tip on n coefficients, and its n-th coefficient moves 0.3 J / n², or up
-to three times as much once waves are dispersed. From above for the rods of tests/motion/test_wave_estimates.py.
+to three times as much once waves are dispersed. On few coefficients the share is larger by 2 / n. From above for the
+rods of tests/motion/test_wave_estimates.py.
 """
 
 LAST_AT_FRONT = 4
-"""At most so many coefficients, and half of them, count as the last ones there."""
+"""At most so many coefficients, and half of them, count as the last ones there: by the root of their mean square."""
 
 ANGLES = np.pi * np.arange(1, 40) / 40.0
 """Angles θ of the sections at which an element is asked for its impedance."""
@@ -226,8 +227,8 @@ def lacking_at_fronts(history: History, duration: float) -> float:
     for name, rod in model.discrete.rods.items():
         fronts = [
             AT_FRONT
-            * len(moved)
-            * float(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :].max())
+            * (len(moved) + 2)
+            * float(np.sqrt(np.mean(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :] ** 2)))
             * _fronts_over_seen(model, name)[strain]
             * let_through
             for strain, moved, let_through in zip(rod.admitted, moved_by[name], _let_through(model, name), strict=True)

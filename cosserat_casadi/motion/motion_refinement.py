@@ -12,6 +12,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -76,6 +77,9 @@ TIME_SHARE = 0.3
 
 SPACE_SHARE = 0.7
 """Share of the tolerance that the modes and nodes may use up."""
+
+MOST_AT_FRONTS = 0.9
+"""Share of the tolerance that fronts may use up, where a motion of exact steps tells the error that they make."""
 
 TOLD_ERROR = 0.14
 """Usual error of the paths, as a coarser motion tells it, over the power SLOPE of that one's tolerance of a step."""
@@ -488,7 +492,11 @@ def _with_tolerance(search: _Search) -> Motion:
             return _erratic(search)
         LOG.info("up to %d modes: %d steps, %.1e from the level before", modes, history.statistics.steps, distance)
         if search.space_error <= SPACE_SHARE * search.tolerance:
-            break
+            timed = _timed(search)
+            if not _asks_for_modes(search, timed):
+                break
+            _make_last(search, timed)
+            timed = None
         if search.foreseen_impacts > MOST_IMPACTS:
             return _given_up(search, CHATTERS.format(**search.told, foreseen=search.foreseen_impacts))
         rung = search.climb()
@@ -511,6 +519,41 @@ def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
     if search.is_damped or not is_sudden(level.history, simulator.start, simulator.moving, duration):
         return level
     return replace(level, waves=True, fronts=lacking_at_fronts(level.history, duration))
+
+
+def _tell_fronts(search: _Search, history: History) -> None:
+    """Tell what fronts lack by a motion of more exact steps: long ones damp the last coefficients, which tell it."""
+    if search.last.waves and history.completed:
+        fronts = lacking_at_fronts(history, search.simulation.duration)
+        search.levels[-1] = replace(search.last, fronts=fronts)
+
+
+def _allowed(search: _Search, history: History) -> float:
+    """Error of the paths that the steps of a motion on the last level's modes may make, over the length.
+
+    What the modes have left over of their share is the steps' to use. Where they miss the tolerance no steps meet it.
+    """
+    _tell_fronts(search, history)
+    space_error = search.space_error
+    if search.last.waves and space_error <= MOST_AT_FRONTS * search.tolerance:
+        return search.tolerance - space_error
+    return float(max(TIME_SHARE * max(search.tolerance, space_error), search.tolerance - space_error))
+
+
+def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
+    """Whether exact steps tell that fronts lack more than those of the level did, and more modes may be tried."""
+    if not search.last.waves or not timed.history.completed or search.climb() is None:
+        return False
+    are_exact = timed.error <= _allowed(search, timed.history)
+    return are_exact and search.space_error + timed.error > search.tolerance
+
+
+def _make_last(search: _Search, timed: TimedHistory) -> None:
+    """Put a motion of exact steps in the place of the last level's."""
+    # The first motion that tells an error is TIGHTER times as exact as those of the levels.
+    search.step_tolerance = TIGHTER * timed.tolerance
+    paths = search.last.simulator.paths(timed.history)
+    search.levels[-1] = replace(search.last, history=timed.history, paths=paths)
 
 
 def _is_erratic(search: _Search) -> bool:
@@ -544,7 +587,20 @@ def _erratic(search: _Search) -> Motion:
 
 
 def _given_up(search: _Search, why: str) -> Motion:
-    """The motion of the last level, and why no more modes are tried."""
+    """The motion of the last level, and why no more modes are tried.
+
+    With waves of sudden loads steps err by more than their share: a motion of more exact ones tells it.
+    """
+    level = search.last
+    if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
+        timed = level.simulator.tightened(level.history, search.step_tolerance, lambda _: np.inf)
+        if timed.history.outcome is StepOutcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if timed.history.completed:
+            _tell_fronts(search, timed.history)
+            exact = replace(search.last, history=timed.history)
+            motion = _judged(search, exact, search.space_error + timed.error, [timed.companion])
+            return replace(motion, message=f"{motion.message} {why}")
     motion = _judged(search, search.last, search.space_error + TIME_SHARE * search.tolerance, [])
     return replace(motion, message=f"{motion.message} {why}")
 
@@ -564,7 +620,7 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
     if not search.levels:
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
-        told = search.last.simulator.tightened(search.last.history, search.step_tolerance, np.inf)
+        told = search.last.simulator.tightened(search.last.history, search.step_tolerance, lambda _: np.inf)
         if told.history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         search.time_error = told.error
@@ -600,10 +656,7 @@ def _timed(search: _Search) -> TimedHistory:
     level = search.last
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
-    # What the modes have left over of their share is the steps' to use. Where they miss the tolerance no steps meet it.
-    space_error = search.space_error
-    allowed = max(TIME_SHARE * max(search.tolerance, space_error), search.tolerance - space_error)
-    return level.simulator.tightened(level.history, search.step_tolerance, allowed)
+    return level.simulator.tightened(level.history, search.step_tolerance, partial(_allowed, search))
 
 
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
@@ -622,11 +675,9 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
         return timed
     left = lacking(timed.history, search.simulation.duration)
     are_exact = timed.error <= max(TIME_SHARE * search.tolerance, search.tolerance - unseen)
-    if are_exact and left + timed.error > search.tolerance:
-        # The first motion that tells an error is TIGHTER times as exact as those of the levels.
-        search.step_tolerance = TIGHTER * timed.tolerance
-        paths = level.simulator.paths(timed.history)
-        search.levels[-1] = replace(level, history=timed.history, paths=paths)
+    if are_exact and max(left, search.last.fronts) + timed.error > search.tolerance:
+        search.levels[-1] = replace(level, fronts=search.last.fronts)
+        _make_last(search, timed)
         return None
     search.levels[-1] = replace(search.last, unseen=left)
     return timed

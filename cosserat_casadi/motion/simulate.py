@@ -287,15 +287,15 @@ class Simulator:
             return self._with_given_step(self.simulation.step)
         if self.simulation.integrator == "gauss":
             return self._with_halved_steps(tolerance)
-        return self.tightened(self.controlled(first), first, tolerance)
+        return self.tightened(self.controlled(first), first, lambda _: tolerance)
 
-    def tightened(self, coarse: History, first: float, tolerance: float) -> TimedHistory:
+    def tightened(self, coarse: History, first: float, tolerance_of_paths: Callable[[History], float]) -> TimedHistory:
         """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
 
         Args:
             coarse: the motion to begin with.
             first: tolerance of a step, over the length, that it was computed with.
-            tolerance: of the paths, over the length.
+            tolerance_of_paths: what its steps may make of the paths of a motion, over the length.
         """
         timed = TimedHistory(coarse, float("nan"), first)
         factor = TIGHTER
@@ -309,6 +309,7 @@ class Simulator:
                 break
             timed = finer
             distance = timed.distance
+            tolerance = tolerance_of_paths(timed.history)
             if timed.error <= tolerance or hangs_on_rounding(timed.history, distance, before, tolerance):
                 break
             # Far apart after impacts, the next two motions are compared with these: their steps are to differ alike.

@@ -206,6 +206,23 @@ def test_fronts_from_a_thick_rod_into_a_thin_one_are_told_from_above() -> None:
     assert error < told < CARELESS * error
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("tolerance", "is_met"), [(6e-3, True), (2e-3, False)])
+def test_searches_in_a_chain_with_a_step_of_impedance_are_told_from_above(tolerance: float, is_met: bool) -> None:
+    """By fronts of long steps, 2.7e-3 were told of 3.0e-3; where the search gave up, 5.5e-3 of 5.7e-3."""
+    duration = 12
+    scene = chain([1.0, 1.0], [1.0, 1.0 / 3.0], float(duration))
+    assert scene.simulation is not None
+    asked_of = scene.simulation.model_copy(update={"tolerance": tolerance})
+    motion = simulate(scene.model_copy(update={"simulation": asked_of}))
+    moved = moved_beyond_a_step(1.0 / 3.0, duration, 200)
+    history: Any = motion.interpolant
+    times = np.linspace(0.0, duration, len(moved))
+    place = paths(motion.model, *history.__self__.rough_positions(times)).points[:, -2, 0]
+    assert np.abs(place - place[0] - moved).max() < motion.error_estimate
+    assert motion.converged == is_met
+
+
 def twisted_with(base: dict[str, Any], length: float, stiffness: float = 1e6, **changes: Any) -> Scene:
     """A rod along x twisted by a tenth of MOMENT, which carries one of so little mass that its tip is free."""
     scene = suddenly("twist", 1e-2)
@@ -328,7 +345,7 @@ def test_a_search_goes_on_while_fronts_lack_more_than_modes_may_leave() -> None:
     scene: dict[str, Any] = wire("twist", 3e-3)
     section = {"shape": "circle", "radius": [CONE_RADIUS, 0.25 * CONE_RADIUS]}
     scene["rods"][0] |= {"strain": ["torsion"], "section": section}
-    scene["loads"] = [transients.at_tip(moment=[0.005, 0, 0])]
+    scene["loads"] = [transients.at_tip(moment=[0.006, 0, 0])]
     motion = simulate(scene_from_dict(scene))
     assert motion.converged, motion.message
     assert motion.model.discretisation["rod"].modes > (6,)
