@@ -166,7 +166,7 @@ def test_error_of_steps_that_are_the_same_about_an_event() -> None:
 
 
 def test_error_told_by_two_motions_is_not_too_small(simulator: Simulator, coarse: History) -> None:
-    told = simulator.tightened(coarse, STEP_TOLERANCE, np.inf)
+    told = simulator.tightened(coarse, STEP_TOLERANCE, lambda _: np.inf)
     error = true_error(simulator, told.history)
     assert told.tolerance == STEP_TOLERANCE / TIGHTER
     assert error <= told.error
@@ -178,7 +178,7 @@ def test_a_motion_that_does_not_end_ends_the_search(
     simulator: Simulator, coarse: History, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(type(coarse), "completed", False)
-    assert np.isnan(simulator.tightened(coarse, STEP_TOLERANCE, 1.0).error)
+    assert np.isnan(simulator.tightened(coarse, STEP_TOLERANCE, lambda _: 1.0).error)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_where_more_exact_steps_end_early_the_last_whole_motion_and_its_error_ar
     simulator: Simulator, coarse: History, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A steel rod that bounced with half of its speed took ever shorter steps in the third motion."""
-    told = simulator.tightened(coarse, STEP_TOLERANCE, np.inf)
+    told = simulator.tightened(coarse, STEP_TOLERANCE, lambda _: np.inf)
     plain = Simulator.controlled
 
     def ends_early(of: Simulator, tolerance: float) -> History:
@@ -209,16 +209,16 @@ def test_where_more_exact_steps_end_early_the_last_whole_motion_and_its_error_ar
         return replace(history, legs=(*history.legs[:-1], replace(last, integration=integration)))
 
     monkeypatch.setattr(Simulator, "controlled", ends_early)
-    found = simulator.tightened(coarse, STEP_TOLERANCE, told.error / 2.0)
+    found = simulator.tightened(coarse, STEP_TOLERANCE, lambda _: told.error / 2.0)
     assert found.history.completed
     assert found.tolerance == told.tolerance
     assert_allclose(found.error, told.error, rtol=1e-12, atol=0)
 
 
 def test_steps_are_made_more_exact_until_their_error_is_allowed(simulator: Simulator, coarse: History) -> None:
-    told = simulator.tightened(coarse, STEP_TOLERANCE, np.inf)
+    told = simulator.tightened(coarse, STEP_TOLERANCE, lambda _: np.inf)
     allowed = told.error / 2.0
-    found = simulator.tightened(coarse, STEP_TOLERANCE, allowed)
+    found = simulator.tightened(coarse, STEP_TOLERANCE, lambda _: allowed)
     assert found.tolerance <= told.tolerance / LEAST_TIGHTENING
     assert true_error(simulator, found.history) <= found.error <= allowed
 
@@ -363,7 +363,7 @@ def test_motions_that_more_exact_steps_bring_no_nearer_end_a_search(
     assert any(event.kind == "impact" for event in coarse.events)
     told = iter(distances)
     monkeypatch.setattr(motion_simulate, "path_distance", lambda *_: next(told))
-    timed = simulator.tightened(coarse, 1e-2, 1e-3)
+    timed = simulator.tightened(coarse, 1e-2, lambda _: 1e-3)
     assert list(told) == []
     assert (timed.error > 1e-3) is erratic
     if not erratic:
