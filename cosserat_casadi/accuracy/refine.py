@@ -207,10 +207,7 @@ def solve_rods(
         transport = scene.accuracy.rotation or solver.reference_transport
         in_contact = solve_contact_scene(scene, values, transport, progress, report)
         return noted_unstable(in_contact) if stable else in_contact
-    solution = _with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver)
-    # Fixed modes may miss the tolerance; friction is left out on any.
-    if scene.accuracy.fixed or scene.rubs or any(joint.rubs for joint in scene.joints):
-        solution = with_notes(solution)
+    solution = with_notes(_with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver))
     # The last correction alone may need no step: a user asks what the search has cost.
     solution = replace(solution, iterations=solver.iterations)
     if solver.relaxed and solution.stable:

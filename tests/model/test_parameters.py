@@ -54,6 +54,15 @@ PLATE: dict[str, Any] = {
     "section": {"shape": "rectangle", "width": [0.02, 0.01], "height": 0.011, "shear_correction": 0.85},
 }
 
+BED: dict[str, Any] = {
+    "name": "bed",
+    "kind": "foundation",
+    "rod": "wire",
+    "stiffness": [40.0, 30.0, 10.0],
+    "frame": "body",
+    "span": [0.35, 0.7],
+}
+
 CABLES = [
     {"name": "east", "kind": "tendon", "rod": "wire", "tension": 1.0, "offset": [[8e-3, -2e-3], 1e-3]},
     {"name": "coil", "kind": "tendon", "rod": "wire", "tension": 0.7, "helix": {"radius": 6e-3, "turns": 1.2}},
@@ -237,31 +246,11 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
         {"twig.base.at": 0.62},
     ),
     "span of a foundation": (
-        streaming(
-            {**WIRE, "base": {"position": [0.1, 0, 0.2], "quaternion": [0.8, 0, 0.6, 0]}},
-            {
-                "name": "bed",
-                "kind": "foundation",
-                "rod": "wire",
-                "stiffness": [40.0, 30.0, 10.0],
-                "frame": "body",
-                "span": [0.35, 0.7],
-            },
-        ),
+        streaming({**WIRE, "base": {"position": [0.1, 0, 0.2], "quaternion": [0.8, 0, 0.6, 0]}}, BED),
         {"bed.span": [0.25, 0.8]},
     ),
     "span of a foundation of a straight rod": (
-        streaming(
-            ELASTIC,
-            {
-                "name": "bed",
-                "kind": "foundation",
-                "rod": "wire",
-                "stiffness": [40.0, 30.0, 10.0],
-                "frame": "body",
-                "span": [0.35, 0.7],
-            },
-        ),
+        streaming(ELASTIC, BED),
         {"bed.span[0]": 0.25},
     ),
     "place of a magnet, past other loads": (
