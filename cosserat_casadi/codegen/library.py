@@ -16,7 +16,7 @@ from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
-from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, contact_words, touches_in_motion
+from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, contact_words
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
@@ -174,7 +174,7 @@ class FolderContents:
         linear = DENSE if self.parts is None else BLOCKS
         motion = () if self.motion is None else MOTION_FILES
         passages = PASSAGE_FILES if watches_passages(model) else ()
-        contact = CONTACT_FILES if self.motion is not None and touches_in_motion(model) else ()
+        contact = CONTACT_FILES if self.motion is not None and model.scene.touches_exactly else ()
         return (*SHARED, *estimate, *passages, *linear, *motion, *contact)
 
     def to_compile(self, names: Names) -> dict[str, str]:

@@ -41,14 +41,9 @@ FAR = 1e30
 """Way, m, that nothing goes in a step: no obstacle is passed in it."""
 
 
-def touches_in_motion(model: Model) -> bool:
-    """Whether anything of a model may touch an obstacle exactly."""
-    return model.scene.touches_exactly
-
-
 def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
     """Functions of the points that may touch, then surfaces of the obstacles, by their names in C."""
-    if not touches_in_motion(model):
+    if not model.scene.touches_exactly:
         return {}
     found: dict[str, ca.Function] = {}
     for number, points in enumerate(touching_points(model)):
@@ -66,7 +61,7 @@ def contact_words(model: Model, names: Names) -> Words:
         model: the exported model, with its motion.
         names: of the library.
     """
-    if not touches_in_motion(model):
+    if not model.scene.touches_exactly:
         return {"steps_in_contact": False}
     faces = facings(model)
     points = touching_points(model)
@@ -93,7 +88,7 @@ def contact_words(model: Model, names: Names) -> Words:
 def contact_pattern(model: Model) -> ca.Sparsity:
     """Pairs of unknowns by which the gap of something that touches has a second derivative."""
     together = np.zeros((model.size, model.size), dtype=bool)
-    for points in touching_points(model) if touches_in_motion(model) else ():
+    for points in touching_points(model) if model.scene.touches_exactly else ():
         positions = points.in_steps["positions"]
         moving = sorted(set(positions.jac_sparsity(0, 0).get_col()))
         together[np.ix_(moving, moving)] = True
@@ -125,7 +120,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
 
 def described_contact(model: Model) -> dict[str, Any]:
     """Entries of the manifest: who may touch what, in the order of the numbers in C, and most sections that touch."""
-    if not touches_in_motion(model):
+    if not model.scene.touches_exactly:
         return {}
     faces = facings(model)
     pairs = [{"body" if own.of_body else "rod": own.owner, "obstacle": own.obstacle.name} for own in faces]
