@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
-from collections.abc import Callable
-from functools import cache, lru_cache
+from collections.abc import Callable, Sequence
+from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,8 @@ from cosserat_casadi.codegen.motion_sources import initialiser, method_words, pa
 from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_forces import Follower, PushedResidual
+from cosserat_casadi.motion.contact_law import address_of, raise_what_was_raised
 from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidual
 from cosserat_casadi.motion.repeated_call import MachineCode, Program, RepeatedCall
 from cosserat_casadi.numerics import stage_newton, step_control, step_matrices, step_run, time_steps
@@ -35,6 +37,9 @@ NAME = "controlled_steps"
 
 LANES = 4
 """Lanes of a slot of a program: a stage each, and one more."""
+
+ORDERS = 3
+"""Arguments of inverse dynamics that are as many as its unknowns: x, v, a."""
 
 FACTS = 7
 """Numbers of a step beside its state and its stages."""
@@ -63,7 +68,8 @@ class _Record(ctypes.Structure):
     """The record of ``controlled_steps.c``."""
 
     _fields_ = [
-        *((name, ctypes.c_int) for name in ("unknowns", "inputs", "moving", "kink_count", "most_steps", "most_tries")),
+        *((name, ctypes.c_int) for name in ("unknowns", "touch_count", "inputs", "moving")),
+        *((name, ctypes.c_int) for name in ("kink_count", "most_steps", "most_tries")),
         *((name, POINTER) for name in ("differential", "weights", "kinks", "x", "v", "a")),
         *((name, POINTER) for name in ("input_values", "input_rates", "input_accelerations", "residual")),
         *((name, POINTER) for name in ("kernel", "kernel_arguments", "kernel_results")),
@@ -71,6 +77,7 @@ class _Record(ctypes.Structure):
         *((name, POINTER) for name in ("derivatives", "derivatives_arguments", "derivatives_results")),
         *((name, POINTER) for name in ("derivatives_integers", "derivatives_scratch", "cubics", "program", "slots")),
         *((name, ctypes.c_int) for name in ("program_lines", "program_arguments")),
+        *((name, POINTER) for name in ("push_touches", "touches")),
         *((name, CALL) for name in ("residual_at", "residual_of_stages", "inputs_at", "jacobians_at")),
         *((name, POINTER) for name in ("stage_times", "stage_x", "stage_v", "stage_a", "stage_results")),
         *((name, POINTER) for name in ("matrices", "linearised_at", "kept_at", "now", "before", "room")),
@@ -225,6 +232,9 @@ class CompiledSteps:
         residual = run.equations.residual
         if isinstance(residual, KernelResidual):
             self._share_kernel(residual)
+        elif isinstance(residual, PushedResidual) and isinstance(residual.plain.residual, KernelResidual):
+            self._share_contacts(residual.follower)
+            self._share_kernel(residual.plain.residual)
         else:
             self._share_function()
         self._share("stage_times", np.zeros(STAGES))
@@ -267,10 +277,13 @@ class CompiledSteps:
         record = self._record
         call = residual.call
         names = ("x", "v", "a", "input_values", "input_rates", "input_accelerations")
-        for name, array in zip(names, call.arguments, strict=True):
+        # Behind the unknowns of the model C has the forces of contacts.
+        state = [np.zeros(record.unknowns) if record.touch_count else array for array in call.arguments[:ORDERS]]
+        rows = np.zeros(record.unknowns) if record.touch_count else call.results[0]
+        for name, array in zip(names, (*state, *call.arguments[ORDERS:]), strict=True):
             self._share(name, array)
         inputs = call.arguments[3:]
-        self._share("residual", call.results[0])
+        self._share("residual", rows)
         record.inputs = len(inputs[0])
         record.moving = int(residual.moves)
 
@@ -284,11 +297,14 @@ class CompiledSteps:
             record.cubics_begin, cubics = residual.cubics
             self._share("cubics", np.ascontiguousarray(cubics))
         if call.code is None:
-            record.residual_at = self._called(lambda _: call.evaluate())
+            record.residual_at = self._called(partial(_evaluate, call, state, rows))
             self._without_program = None if call.program_after is None else call
             self._share_program(call.program)
             return
-        self._share_code("kernel", call.code, call.code.arguments, call.code.results)
+        arguments, results = call.code.arguments.copy(), call.code.results.copy()
+        arguments[:ORDERS] = [array.ctypes.data for array in state]
+        results[0] = rows.ctypes.data
+        self._share_code("kernel", call.code, arguments, results)
         jacobians = self._run.equations.jacobians
         if isinstance(jacobians, KernelJacobians) and jacobians.call.code is not None:
             code = jacobians.call.code
@@ -317,6 +333,14 @@ class CompiledSteps:
         self._share("slots", np.repeat(slots, LANES))
         self._record.program_lines, self._record.program_arguments = len(lines), arguments
         self._without_program = None
+
+    def _share_contacts(self, follower: Follower) -> None:
+        """Have C take the forces of contacts from the equations."""
+        record = self._record
+        record.touch_count = len(follower.touches)
+        record.push_touches = address_of("push_touches")
+        record.touches = follower.at_places()
+        self._held.append(follower)
 
     def _share_function(self) -> None:
         """Have C call the equations as a function of Python."""
@@ -384,6 +408,7 @@ class CompiledSteps:
         self._taken(facts[: record.steps], ends, stages)
         if self._raised is not None:
             raise self._raised
+        raise_what_was_raised()
         call = self._without_program
         if outcome is None and call is not None and call.program_after is not None:
             call.program = call.program_after(record.iterations)
@@ -423,3 +448,13 @@ class CompiledSteps:
         run.renew_jacobian()
         if linearised_at is not None and run.guards is not None:
             run.linearisation = Linearisation(*(matrix.T.copy() for matrix in self._matrices))
+
+
+def _evaluate(call: RepeatedCall, state: Sequence[FloatArray], rows: FloatArray, _: float) -> None:
+    """Have CasADi's virtual machine write the residual, of the model's own unknowns alone."""
+    for array, values in zip(call.arguments, state, strict=False):
+        if array is not values:
+            array[:] = values[: len(array)]
+    call.evaluate()
+    if rows is not call.results[0]:
+        rows[: len(call.results[0])] = call.results[0][:, 0]

@@ -99,6 +99,7 @@ ROLES = {
     "solver_recover.c": "a turn of its way back",
     "passages.c": "whether a step leads through something thin",
     "contact_gaps.c": "gaps to obstacles that are touched exactly",
+    "contact_ways.c": "ways that lead into such obstacles",
     "contact_steps.c": "forces and blows of exact contact in a step",
     "contact_sensitivity.c": "their part in its derivatives",
     "interpolation.c": "positions between nodes",

@@ -147,9 +147,8 @@ class CentredCoordinates:
             inputs = inputs_at(t)
             x = y[own].copy()
             x[self._pose] = self._place(x)
-            _, gaps = follower.gaps(x, inputs[0])
             rows = self._dynamics(y[own], v[own], a[own], *inputs)
-            return np.concatenate([rows - follower.push(gaps, x, inputs[0], y[self._size :]), follower.open_by(gaps)])
+            return follower.rows(rows, x, inputs[0], y[self._size :])
 
         return pushed
 

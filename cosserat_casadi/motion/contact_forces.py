@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_gap import FAR, FLATTEST, Facing, SectionGap
+from cosserat_casadi.motion.contact_law import Held, TouchRecord, called, gap_size
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.moving_points import MovingPoints
 from cosserat_casadi.numerics.motion_equations import MotionEquations
@@ -96,7 +98,24 @@ class Follower:
 
     def __getstate__(self) -> dict[str, Any]:
         # Their functions are those of one process; a motion that goes on has its own.
-        return vars(self) | {"facings": []}
+        return {name: value for name, value in vars(self).items() if name != "_in_law"} | {"facings": []}
+
+    @cached_property
+    def _in_law(self) -> Held:
+        """The contacts as the law in C has them."""
+        records = (TouchRecord * len(self.touches))()
+        held = Held(records)
+        for record, facing, touch, element in zip(records, self.facings, self.touches, self.elements, strict=True):
+            record.facing, record.slides = facing.in_law.address, touch.slides
+            record.element, record.height = element, touch.height
+            held.keep(facing.in_law)
+        return held
+
+    def at_places(self) -> int:
+        """Address of the contacts as C reads them, which looks for them next to their places."""
+        for record, place in zip(self._in_law.record, self.places, strict=True):
+            record.place = place
+        return self._in_law.address
 
     def follow(self, x: FloatArray, inputs: FloatArray) -> Followed:
         """Places, gaps, and which are gone, at a state of the motion, next to which others are looked for from now on.
@@ -107,6 +126,8 @@ class Follower:
         gone = self.gone(x, inputs, places)
         kept = zip(places, self.places, gone, strict=True)
         self.places = [old if is_gone else new for new, old, is_gone in kept]
+        # Steps in C go on from there.
+        self.at_places()
         return Followed(places, gaps, gone)
 
     def gone(self, x: FloatArray, inputs: FloatArray, places: Sequence[float]) -> list[bool]:
@@ -127,14 +148,14 @@ class Follower:
 
     def gaps(self, x: FloatArray, inputs: FloatArray) -> tuple[list[float], list[SectionGap]]:
         """Places and gaps of the contacts."""
-        gaps = []
-        places = []
-        for touch, facing, element, near in zip(self.touches, self.facings, self.elements, self.places, strict=True):
-            nodes = facing.nodes(x, inputs)
-            place = facing.place(nodes, near, element) if touch.slides else near
-            places.append(place)
-            gaps.append(facing.at(nodes, place, element))
-        return places, gaps
+        if not self.touches:
+            return [], []
+        memory = np.empty((len(self.touches), gap_size()))
+        at = [np.ascontiguousarray(values, dtype=float) for values in (x, inputs)]
+        addresses = [values.ctypes.data for values in (*at, memory)]
+        called("touched_gaps", self.at_places(), len(self.touches), *addresses)
+        gaps = [facing.gap_in(own) for facing, own in zip(self.facings, memory, strict=True)]
+        return memory[:, 0].tolist(), gaps
 
     def state(self, x: FloatArray, inputs: FloatArray) -> ContactsAtState:
         """The contacts, with gradients."""
@@ -158,12 +179,21 @@ class Follower:
             pushed[facing.points] = pushed.get(facing.points, 0.0) + force * facing.weights(gap)
         return pushed
 
-    def push(self, gaps: Sequence[SectionGap], x: FloatArray, inputs: FloatArray, forces: FloatArray) -> FloatArray:
-        """Sum of forces times gradients of their gaps, which the equations of motion are less by, shape (n,)."""
-        total = np.zeros(len(x))
-        for points, weights in self.pushed(gaps, forces).items():
-            total += points.gradient(x, inputs, weights)
-        return total
+    def rows(self, rows: FloatArray, x: FloatArray, inputs: FloatArray, forces: FloatArray) -> FloatArray:
+        """Equations of motion with forces of the contacts, and behind them by how much their gaps are open.
+
+        Args:
+            rows: of the equations without, shape (n,).
+            x: unknowns, shape (n,).
+            inputs: stacked inputs, shape (k,).
+            forces: of the contacts, shape (m,).
+        """
+        count, size = len(self.touches), len(rows)
+        both = np.append(rows, np.zeros(count))
+        at = [np.ascontiguousarray(values, dtype=float) for values in (x, inputs, forces)]
+        addresses = [values.ctypes.data for values in (*at, both, both[size:])]
+        called("push_touches", self.at_places(), count, size, *addresses)
+        return both
 
     def curvature(
         self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap], forces: FloatArray
@@ -223,12 +253,8 @@ class PushedResidual:
     def __call__(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         """The residual, and the gaps."""
         size = self.plain.size
-        inputs = self.piece.at(t).value
-        _, gaps = self.follower.gaps(x[:size], inputs)
         rows = self.plain.residual(t, x[:size], v[:size], a[:size])
-        return np.concatenate(
-            [rows - self.follower.push(gaps, x[:size], inputs, x[size:]), self.follower.open_by(gaps)]
-        )
+        return self.follower.rows(rows, x[:size], self.piece.at(t).value, x[size:])
 
 
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:

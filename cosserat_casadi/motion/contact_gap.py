@@ -7,6 +7,7 @@ and its second derivative is less by what that place slides (E. Polak, *Optimiza
 
 from __future__ import annotations
 
+import ctypes
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -17,12 +18,32 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface_at_once
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_law import (
+    GAP_COUNTS,
+    GAP_NUMBERS,
+    FacingRecord,
+    Held,
+    ValleyRecord,
+    called,
+    gap_size,
+    surface_record,
+)
 from cosserat_casadi.motion.moving_points import MovingPoints
 
 FAR = 0.02
 """Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
+
+LOOKS = 200
+"""Sections of an element at which gaps are looked at first."""
+
+MOST_VALLEYS = 64
+"""Sections of a rod that may touch an obstacle at once, at most."""
+
+AT_END = 1e-12
+"""Distance from an end, over the length, at which a place is that end."""
 
 FLATTEST = 1e-3
 """Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster.
@@ -33,11 +54,10 @@ on these blows took a twentieth of the energy of a rubber rod as it rolled onto 
 
 
 class Rows(NamedTuple):
-    """Weights of the points for a section, and for its first two derivatives with X, shape (M,) each."""
+    """Weights of the points for a section, and for its derivative with X, shape (M,) each."""
 
     value: FloatArray
     first: FloatArray
-    second: FloatArray
 
 
 class SectionGap(NamedTuple):
@@ -113,26 +133,10 @@ class Facing(ABC):
         """World positions of the points, shape (M, 3), m."""
         return self.points.positions(x, inputs)
 
-    @abstractmethod
-    def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
-        """The gap at a section, by the polynomials of an element next to it; None for the element that it lies in."""
-
-    @abstractmethod
-    def place(self, nodes: FloatArray, near: float, element: int | None = None) -> float:
-        """Abscissa next to another where the gap is least, by these polynomials."""
-
     @property
     @abstractmethod
     def ends(self) -> Sequence[float]:
         """Abscissae between which the gap is smooth: ends of the elements, base to tip."""
-
-    def element(self, X: float) -> int:
-        """Number of the element of a section; of two that meet there the one beyond."""
-        return min(max(bisect_right(self.ends, X) - 1, 0), len(self.ends) - 2)
-
-    @abstractmethod
-    def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
-        """Sections whose gaps are the least about them, and not above a bound over the length, base to tip."""
 
     @property
     @abstractmethod
@@ -140,16 +144,91 @@ class Facing(ABC):
         """Abscissae of the sections at which it is held where it lies, base to tip, shape (k,); none of a body."""
 
     @abstractmethod
+    def describe(self, held: Held) -> None:
+        """Write what the law has to know beyond the obstacle into its record."""
+
+    @cached_property
+    def in_law(self) -> Held:
+        """The pair as the law in C has it."""
+        record = FacingRecord(is_body=self.of_body, length=self.length, laid_count=len(self.laid_at))
+        held = Held(record)
+        held.point("points", self.points.in_law)
+        held.share("laid", np.ascontiguousarray(self.laid_at, dtype=float))
+        for name, function in (("surface", surface_at_once(self.obstacle)), ("distance", distance_from(self.obstacle))):
+            held.point(name, surface_record(function))
+        self.describe(held)
+        held.share("coefficients", np.zeros(3 * self.points.count))
+        return held
+
+    def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
+        """The gap at a section, by the polynomials of an element next to it; None for the element that it lies in.
+
+        It is looked at a little beyond the ends of the rod and of an element too.
+        """
+        memory = np.empty(gap_size())
+        number = self.element(X) if element is None else element
+        called("gap_at", self.in_law.address, _address(nodes), X, number, memory.ctypes.data)
+        return self.gap_in(memory)
+
+    def gap_in(self, memory: FloatArray) -> SectionGap:
+        """The gap that C has written, shape (gap_size(),)."""
+        _, value, slope, bend = memory[:4].tolist()
+        first, count = memory[GAP_COUNTS : GAP_COUNTS + 1].view(np.int32).tolist()
+        rows = np.zeros((2, self.points.count))
+        weights = memory[GAP_NUMBERS:].reshape(2, -1)
+        rows[:, first : first + count] = weights[:, :count]
+        normal, curvature, tangent = np.split(memory[4:GAP_COUNTS].copy(), (3, 12))
+        return SectionGap(value, slope, bend, Rows(*rows), normal, curvature.reshape(3, 3), tangent)
+
+    def place(self, nodes: FloatArray, near: float, element: int) -> float:
+        """Abscissa next to another where the gap is least, by the polynomials of an element."""
+        return float(called("gap_place", self.in_law.address, _address(nodes), near, element))
+
+    def element(self, X: float) -> int:
+        """Number of the element of a section; of two that meet there the one beyond."""
+        return min(max(bisect_right(self.ends, X) - 1, 0), len(self.ends) - 2)
+
+    def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
+        """Sections whose gaps are the least about them, and not above a bound over the length, base to tip."""
+        found = (ValleyRecord * MOST_VALLEYS)()
+        count = called("gap_valleys", self.in_law.address, _address(nodes), below, ctypes.addressof(found))
+        return [_minimum(valley) for valley in found[:count]]
+
     def laid_gaps(self, nodes: FloatArray) -> FloatArray:
-        """Gaps at these sections, over the length, shape (k,)."""
+        """Gaps at the sections at which it is held where it lies, over the length, shape (k,)."""
+        gaps = np.zeros(len(self.laid_at))
+        called("laid_gaps", self.in_law.address, _address(nodes), gaps.ctypes.data)
+        return gaps
 
-    @abstractmethod
     def lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float] = ()) -> float:
-        """The least gap over the length but for those in the valleys of some abscissae, and at some ends; may be ∞."""
+        """The least gap over the length but for those in the valleys of some abscissae; infinite where there is none.
 
-    @abstractmethod
+        Args:
+            nodes: positions, shape (M, 3), m.
+            but: these abscissae.
+            ends: ends of the rod that are left out where they are lower than all beside them.
+        """
+        return self._lowest(nodes, but, ends, all_ends=False).gap
+
     def deepest(self, nodes: FloatArray) -> Minimum:
         """The section whose gap is the least of all, sections that are held included."""
+        return self._lowest(nodes, (), (), all_ends=True)
+
+    def _lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float], *, all_ends: bool) -> Minimum:
+        found = ValleyRecord()
+        places, left_out = (np.array([*numbers, 0.0]) for numbers in (but, ends))
+        called(
+            "lowest_gap",
+            self.in_law.address,
+            _address(nodes),
+            all_ends,
+            places.ctypes.data,
+            len(but),
+            left_out.ctypes.data,
+            len(ends),
+            ctypes.addressof(found),
+        )
+        return _minimum(found)
 
     def gradient(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
         """Derivative of a gap with the unknowns, shape (n,)."""
@@ -202,3 +281,16 @@ class Facing(ABC):
     def weights(self, gap: SectionGap) -> FloatArray:
         """Weights of the positions of the points, stacked point by point, whose sum varies as the gap does, 1/m."""
         return np.outer(gap.rows.value, gap.normal / self.length).ravel()
+
+
+def _address(nodes: FloatArray) -> int:
+    """Where positions are in memory, row after row."""
+    assert nodes.flags.c_contiguous, "positions come from the points, row after row"
+    return nodes.ctypes.data
+
+
+def _minimum(valley: ValleyRecord) -> Minimum:
+    """A section that C has found; rounding alone makes it no other one than an end of the rod."""
+    place = valley.place
+    inside = AT_END < place < 1.0 - AT_END
+    return Minimum(place if inside else float(round(place)), valley.value, inside)

@@ -17,6 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.motion.contact_law import Held, PointsRecord, function_record
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
 
 
@@ -69,6 +70,14 @@ class MovingPoints:
     def count(self) -> int:
         """Number of the points."""
         return int(self._written[0].shape[0]) // 3
+
+    @cached_property
+    def in_law(self) -> Held:
+        """The points as the law of contact asks for them."""
+        held = Held(PointsRecord(self.count))
+        held.point("positions", function_record(self._positions))
+        held.point("gradient", function_record(self.gradient))
+        return held
 
     @cached_property
     def in_steps(self) -> dict[str, ca.Function]:

@@ -210,7 +210,8 @@ def test_a_cable_that_a_blow_of_a_floor_slackens_is_not_taut_again_without_end()
     model = build(scene, moving=True)
     history = Simulator(model, scene.simulation, started(model, scene.simulation, None)).controlled(1e-2)
     assert history.outcome is StepOutcome.COMPLETED
-    blows = [event for event in history.events if event.kind == "impact" and event.place == 1.0]
+    # Where the tip leaves, it may be back for 1e-11 J: rounding decides that at this tolerance.
+    blows = [event for event in history.events if event.kind == "impact" and event.place == 1.0 and event.energy > 1e-9]
     assert len(history.events) < 40
     # Blows of the tip: 0.0563 s and 0.1114 s at each tolerance of a step from 1e-3 to 1e-6.
     assert_allclose([blow.time for blow in blows[:2]], [0.0563, 0.1114], rtol=0, atol=5e-4)

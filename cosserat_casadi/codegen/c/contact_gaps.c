@@ -1,7 +1,7 @@
 /* Gaps between rods or bodies and obstacles that they touch exactly, along the rods, and where they are least. Positions
    between nodes are those of the polynomials through the nodes of an element.
 
-   cosserat_casadi/motion/contact_sections.py holds the same in Python. Uses of the scene: FACING, POINTS. Gaps are counted
+   Exported steps and simulated motions both include it, and say what a surface is: surface_at, distance_at. Gaps are counted
    in the length of the rod, or of the longest rod that holds the body. */
 
 /* Gap up to which a section touches. */
@@ -53,7 +53,7 @@ static real inner(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[
 static void along_surface(const facing *own, const real *point, const real *second, section_gap *gap, workspace *work) {
   const real taper = own->radius_at_tip - own->radius_at_base;
   real distance;
-  own->surface(point, &distance, gap->normal, gap->curvature, work);
+  surface_at(own, point, &distance, gap->normal, gap->curvature, work);
   real turned[3];
   for (int i = 0; i < 3; i++) turned[i] = inner(gap->curvature + 3 * i, gap->tangent);
   gap->value = (distance - own->radius_at_base - gap->place * taper) / own->length;
@@ -103,8 +103,8 @@ static void fit_nodes(const facing *own, const real *nodes, workspace *work) {
   }
 }
 
-/* The gap at an abscissa; of a body whatever the abscissa. */
-static void look_at(const facing *own, real place, section_gap *gap, workspace *work) {
+/* The gap at an abscissa, by the polynomials of an element, a little beyond its ends too; of a body whatever the abscissa. */
+static void look_in(const facing *own, int element, real place, section_gap *gap, workspace *work) {
   real values[3][MOST_NODES];
   real curve[3][3] = {{0}};
   gap->place = own->is_body ? 0 : place;
@@ -115,7 +115,6 @@ static void look_at(const facing *own, real place, section_gap *gap, workspace *
     along_surface(own, work->coefficients, curve[2], gap, work);
     return;
   }
-  const int element = element_of(own, place);
   polynomials_at(own, element, place, values);
   gap->first = element * own->nodes;
   const real *coefficients = work->coefficients + 3 * gap->first;
@@ -128,10 +127,15 @@ static void look_at(const facing *own, real place, section_gap *gap, workspace *
   along_surface(own, curve[0], curve[2], gap, work);
 }
 
+/* The gap at an abscissa, by the polynomials of its element. */
+static void look_at(const facing *own, real place, section_gap *gap, workspace *work) {
+  look_in(own, element_of(own, place), place, gap, work);
+}
+
 /* Weights of the nodes of its element for a section, and for its tangent. */
 static void weigh_nodes(const facing *own, section_gap *gap) {
   real values[3][MOST_NODES];
-  memset(gap->rows, 0, sizeof gap->rows);
+  for (int order = 0; order < 2; order++) memset(gap->rows[order], 0, (size_t)own->nodes * sizeof(real));
   if (own->is_body) {
     gap->rows[0][0] = 1;
     return;
@@ -182,12 +186,11 @@ static int gaps_along(const facing *own, const real *nodes, real *gaps, workspac
     const real *weights = own->looks + local * own->nodes;
     const real *node = nodes + 3 * e * own->nodes;
     const real place = own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)local / LOOKS;
-    real point[3] = {0, 0, 0}, distance, normal[3], curvature[9];
+    real point[3] = {0, 0, 0};
     for (int k = 0; k < own->nodes; k++) {
       for (int j = 0; j < 3; j++) point[j] += weights[k] * node[3 * k + j];
     }
-    own->surface(point, &distance, normal, curvature, work);
-    const real gap = (distance - own->radius_at_base - place * taper) / own->length;
+    const real gap = (distance_at(own, point, work) - own->radius_at_base - place * taper) / own->length;
     gaps[i] = LEVEL * (real)floor((double)(gap / LEVEL) + 0.5);
   }
   return count;
@@ -201,6 +204,13 @@ static real place_of_look(const facing *own, int i) {
 static valley valley_at(const section_gap *gap) {
   const valley found = {gap->place, gap->value, gap->slope, gap->bend};
   return found;
+}
+
+/* The least gap next to a section that is looked at first; that section where none is. */
+static void look_lowest_by(const facing *own, int look, section_gap *lowest, workspace *work) {
+  const real place = place_of_look(own, look);
+  look_lowest(own, place, lowest, work);
+  if (!(ABSOLUTE(lowest->place - place) <= SAME_PLACE) || !(lowest->bend > 0)) look_at(own, place, lowest, work);
 }
 
 /* Sections whose gaps are the least about them, and not above a bound; returns their number. Ends that are not watched are
@@ -227,55 +237,8 @@ static int valleys_of(const facing *own, const real *nodes, real below, int all,
     if (i > 0 && fall > deeper) deeper = fall;
     if (i < last && rise > deeper) deeper = rise;
     if (!is_valley || !is_watched || gaps[i] > below + deeper) continue;
-    const real place = place_of_look(own, i);
-    look_lowest(own, place, &lowest, work);
-    if (!(ABSOLUTE(lowest.place - place) <= SAME_PLACE) || !(lowest.bend > 0)) look_at(own, place, &lowest, work);
+    look_lowest_by(own, i, &lowest, work);
     if (!(lowest.value > below)) found[count++] = valley_at(&lowest);
   }
   return count;
-}
-
-/* Whether anything is deeper inside an obstacle than a bound, or where that is no number. */
-static int is_inside(const real *x, const real *inputs, real depth, workspace *work) {
-  for (int k = 0; k < FACINGS; k++) {
-    const facing *own = FACING + k;
-    POINTS[own->points].positions(x, inputs, work->nodes, work);
-    if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return 1;
-    if (valleys_of(own, work->nodes, -depth, 1, work->valleys, work) > 0) return 1;
-  }
-  return 0;
-}
-
-/* Positions of the points of a pair at both ends of a way, in the workspace; returns the longest way of one, m. */
-static real way_of_points(const facing *own, const real *x, const real *inputs, const real *next, const real *next_inputs,
-                          workspace *work) {
-  real longest = 0;
-  POINTS[own->points].positions(x, inputs, work->nodes, work);
-  POINTS[own->points].positions(next, next_inputs, work->weights, work);
-  for (int i = 0; i < POINTS[own->points].count; i++) {
-    real way[3];
-    for (int k = 0; k < 3; k++) way[k] = work->weights[3 * i + k] - work->nodes[3 * i + k];
-    const real length = SQUARE_ROOT(inner(way, way));
-    if (!(length <= longest)) longest = length;
-  }
-  return longest;
-}
-
-/* Whether the straight way of all points from one shape to another leads into an obstacle, or through a thin one, or where
-   that is no number. */
-static int leads_inside(const real *x, const real *inputs, const real *next, const real *next_inputs, workspace *work) {
-  for (int number = 0; number < FACINGS; number++) {
-    const facing *own = FACING + number;
-    const real longest = way_of_points(own, x, inputs, next, next_inputs, work);
-    if (!isfinite(longest)) return 1;
-    const int looks = 1 + (int)(longest / own->stride);
-    for (int look = 1; look <= looks; look++) {
-      const real share = (real)look / (real)looks;
-      for (int i = 0; i < 3 * POINTS[own->points].count; i++) {
-        work->between[i] = (1 - share) * work->nodes[i] + share * work->weights[i];
-      }
-      if (valleys_of(own, work->between, -TOUCHING, 1, work->valleys, work) > 0) return 1;
-    }
-  }
-  return 0;
 }

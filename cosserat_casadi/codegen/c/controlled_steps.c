@@ -38,6 +38,10 @@ static real smaller(real a, real b) { return a < b ? a : b; }
 /* A function of Python that reads and writes the arrays of the record. Not zero: it was interrupted. */
 typedef int (*python_call)(double time);
 
+/* moving_contacts.c: takes forces of contacts from equations of motion, and writes open gaps behind them. */
+typedef void (*contact_call)(const void *touches, int count, int unknowns, const real *x, const real *inputs,
+                             const real *forces, real *rows, real *open);
+
 /* Inverse dynamics in machine code, as CasADi calls it. */
 typedef int (*casadi_kernel)(const real **arguments, real **results, long long *integers, real *scratch, int memory);
 
@@ -54,6 +58,7 @@ typedef enum {
    column. */
 typedef struct {
   int unknowns;
+  int touch_count; /* forces of contacts, the last unknowns */
   int inputs;
   int moving; /* whether the inputs change */
   int kink_count;
@@ -88,6 +93,8 @@ typedef struct {
   real *slots;
   int program_lines;
   int program_arguments;
+  contact_call push_touches; /* null where nothing touches, or where Python evaluates that too */
+  const void *touches;
   python_call residual_at;
   python_call residual_of_stages; /* null where residual_at is called for one stage after the other */
   python_call inputs_at;
@@ -154,6 +161,7 @@ typedef struct {
 
 enum { STAGES = 3, LANES = 4, PLANES = 3, FACTS = 7, VECTORS = 6, ORDERS = 3 };
 #define N (work->unknowns)
+#define OWN (work->unknowns - work->touch_count)
 #define STAGED (STAGES * N)
 #define IS_SHAPE (work->differential)
 #define DISPLACEMENTS (work->weights)
@@ -210,6 +218,12 @@ static void evaluate_inputs(real time, workspace *work) {
   }
 }
 
+/* The part of contacts in F at the state and the inputs of the record. */
+static void push_contacts(real *rows, workspace *work) {
+  if (!work->push_touches) return;
+  work->push_touches(work->touches, work->touch_count, OWN, work->x, work->input_values, work->x + OWN, rows, rows + OWN);
+}
+
 /* F at the state and the inputs of the record. After an interrupt no value counts. */
 static void evaluate(real time, workspace *work) {
   if (work->kernel) {
@@ -217,6 +231,7 @@ static void evaluate(real time, workspace *work) {
   } else {
     call(work->residual_at, time, work);
   }
+  push_contacts(work->residual, work);
   if (work->interrupted) work->residual[0] = NAN;
 }
 
@@ -306,18 +321,19 @@ static void fill_lane(int lane, int first, const real *values, int count, worksp
 
 /* The arguments of a stage are where inverse dynamics is evaluated. */
 static void fill_stage(int stage, workspace *work) {
-  fill_lane(stage, 0, work->x, N, work);
-  fill_lane(stage, N, work->v, N, work);
-  fill_lane(stage, 2 * N, work->a, N, work);
-  fill_lane(stage, 3 * N, work->input_values, work->inputs, work);
-  fill_lane(stage, 3 * N + work->inputs, work->input_rates, work->inputs, work);
-  fill_lane(stage, 3 * N + 2 * work->inputs, work->input_accelerations, work->inputs, work);
+  fill_lane(stage, 0, work->x, OWN, work);
+  fill_lane(stage, OWN, work->v, OWN, work);
+  fill_lane(stage, 2 * OWN, work->a, OWN, work);
+  fill_lane(stage, 3 * OWN, work->input_values, work->inputs, work);
+  fill_lane(stage, 3 * OWN + work->inputs, work->input_rates, work->inputs, work);
+  fill_lane(stage, 3 * OWN + 2 * work->inputs, work->input_accelerations, work->inputs, work);
 }
 
-static void evaluate_program(real *residuals, workspace *work) {
+/* Adds inverse dynamics to the part of contacts. */
+static void add_program(real *residuals, workspace *work) {
   program_run(work->program, work->program_lines, work->slots);
   for (int stage = 0; stage < STAGES; stage++) {
-    for (int i = 0; i < N; i++) residuals[stage * N + i] = work->slots[LANES * (work->program_arguments + i) + stage];
+    for (int i = 0; i < OWN; i++) residuals[stage * N + i] += work->slots[LANES * (work->program_arguments + i) + stage];
   }
 }
 
@@ -336,6 +352,8 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
     if (work->moving) copy_inputs(work->stage_inputs + 3 * stage * work->inputs, work);
     if (work->program) {
       fill_stage(stage, work);
+      memset(residuals + stage * N, 0, bytes);
+      push_contacts(residuals + stage * N, work);
       continue;
     }
     evaluate(work->stage_times[stage], work);
@@ -344,7 +362,7 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
   if (work->program) {
     /* The lane that is left over repeats the last stage. */
     fill_stage(STAGES, work);
-    evaluate_program(residuals, work);
+    add_program(residuals, work);
   }
   if (work->residual_of_stages) {
     call(work->residual_of_stages, work->time, work);

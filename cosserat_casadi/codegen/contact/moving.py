@@ -7,7 +7,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
@@ -18,18 +17,15 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_gap import MOST_VALLEYS, Facing
 from cosserat_casadi.motion.contact_sections import RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 
-CONTACT_FILES = ("contact_gaps.c", "contact_steps.c", "contact_sensitivity.c")
+CONTACT_FILES = ("contact_gaps.c", "contact_ways.c", "contact_steps.c", "contact_sensitivity.c")
 """Files of the folder ``c`` that a library with steps in exact contact includes."""
 
 LOOKS = 64
-"""Sections of an element at which gaps are looked at first."""
-
-MOST_TOUCHES = 64
-"""Sections that may touch at once, at most."""
+"""Sections of an element at which gaps are looked at first: steps of one length see no more than that."""
 
 FEWEST_TOUCHES = 8
 """Sections of a rod that slide on an obstacle, at most."""
@@ -129,7 +125,7 @@ def described_contact(model: Model) -> dict[str, Any]:
 
 def _most_touches(faces: Sequence[Facing]) -> int:
     """Sections that may touch at once: of a rod those at which it lies, if they are more than slide."""
-    return min(MOST_TOUCHES, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
+    return min(MOST_VALLEYS, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
 
 
 def start_shape(model: Model) -> FloatArray:
@@ -188,14 +184,8 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
 def _rod_tables(facing: RodFacing, number: int) -> Iterator[str]:
     yield reals(f"FACING_ENDS_{number}", np.array(facing.ends))
     yield reals(f"TO_COEFFICIENTS_{number}", facing.to_coefficients.ravel())
-    yield reals(f"LOOKS_{number}", looks_in_element(facing).ravel())
+    yield reals(f"LOOKS_{number}", facing.looks(LOOKS).ravel())
     yield reals(f"LAID_{number}", facing.laid_at)
-
-
-def looks_in_element(facing: RodFacing) -> FloatArray:
-    """Weights of the nodes of an element at sections evenly spread over it, ends included, shape (LOOKS + 1, N + 1)."""
-    local = 2.0 * np.linspace(0.0, 1.0, LOOKS + 1) - 1.0
-    return np.asarray(chebyshev.chebvander(local, facing.nodes_of_element - 1) @ facing.to_coefficients)
 
 
 def _rod_fields(facing: RodFacing, number: int) -> dict[str, object]:

@@ -33,6 +33,14 @@ def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
     return SURFACES[obstacle.kind].function(obstacle)
 
 
+@lru_cache(maxsize=64)
+def surface_at_once(obstacle: scenes.ObstacleRecord) -> ca.Function:
+    """Point ↦ the results of :func:`surface`, one after the other, as one of 13 numbers."""
+    point = ca.SX.sym("point", 3)
+    parts = surface(obstacle).expand().call([point])
+    return ca.Function("surface", [point], [ca.cse(ca.vertcat(*(ca.densify(ca.vec(part)) for part in parts)))])
+
+
 def distances(obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatArray:
     """Distances of points of shape (k, 3) from an obstacle, shape (k,), m."""
     found = _distances_from(obstacle, len(positions))(positions.T)

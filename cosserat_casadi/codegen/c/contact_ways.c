@@ -1,0 +1,47 @@
+/* Whether states of a scene that is touched exactly are inside an obstacle, or beyond one that a way leads through. Uses of
+   the scene: FACING, POINTS. */
+
+/* Whether anything is deeper inside an obstacle than a bound, or where that is no number. */
+static int is_inside(const real *x, const real *inputs, real depth, workspace *work) {
+  for (int k = 0; k < FACINGS; k++) {
+    const facing *own = FACING + k;
+    POINTS[own->points].positions(x, inputs, work->nodes, work);
+    if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return 1;
+    if (valleys_of(own, work->nodes, -depth, 1, work->valleys, work) > 0) return 1;
+  }
+  return 0;
+}
+
+/* Positions of the points of a pair at both ends of a way, in the workspace; returns the longest way of one, m. */
+static real way_of_points(const facing *own, const real *x, const real *inputs, const real *next, const real *next_inputs,
+                          workspace *work) {
+  real longest = 0;
+  POINTS[own->points].positions(x, inputs, work->nodes, work);
+  POINTS[own->points].positions(next, next_inputs, work->weights, work);
+  for (int i = 0; i < POINTS[own->points].count; i++) {
+    real way[3];
+    for (int k = 0; k < 3; k++) way[k] = work->weights[3 * i + k] - work->nodes[3 * i + k];
+    const real length = SQUARE_ROOT(inner(way, way));
+    if (!(length <= longest)) longest = length;
+  }
+  return longest;
+}
+
+/* Whether the straight way of all points from one shape to another leads into an obstacle, or through a thin one, or where
+   that is no number. */
+static int leads_inside(const real *x, const real *inputs, const real *next, const real *next_inputs, workspace *work) {
+  for (int number = 0; number < FACINGS; number++) {
+    const facing *own = FACING + number;
+    const real longest = way_of_points(own, x, inputs, next, next_inputs, work);
+    if (!isfinite(longest)) return 1;
+    const int looks = 1 + (int)(longest / own->stride);
+    for (int look = 1; look <= looks; look++) {
+      const real share = (real)look / (real)looks;
+      for (int i = 0; i < 3 * POINTS[own->points].count; i++) {
+        work->between[i] = (1 - share) * work->nodes[i] + share * work->weights[i];
+      }
+      if (valleys_of(own, work->between, -TOUCHING, 1, work->valleys, work) > 0) return 1;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,348 @@
+/* Gaps and contacts of a simulated motion: where rods and bodies touch, and what forces there do. It is compiled once, for
+   models of all sizes; contact_gaps.c, which exported steps have too, says what a gap is. */
+
+#include <math.h>
+#include <string.h>
+
+#include "moving_contacts.h"
+
+typedef double real;
+#define ABSOLUTE fabs
+
+/* A function in machine code, as CasADi calls it. */
+typedef int (*casadi_kernel)(const real **arguments, real **results, long long *integers, real *scratch, int memory);
+
+/* A function of the model; cosserat_casadi/motion/contact_law.py has the same record. Its arguments and its result, in this
+   memory, are those of the last call. */
+typedef struct {
+  int counts[KERNEL_ARGUMENTS]; /* of numbers */
+  real *arguments[KERNEL_ARGUMENTS];
+  real *result;
+  casadi_kernel code; /* null where there is none */
+  const real **code_arguments;
+  real **code_results;
+  long long *integers;
+  real *scratch;
+  const int *program; /* on slots of four lanes; null where there is none */
+  real *slots;
+  int lines;
+  int size; /* of the result of the program */
+  void (*run)(const int *program, int lines, real *slots);
+  void (*evaluate)(void); /* in Python */
+} kernel;
+
+/* The nodes of a rod, or the origin of a body. */
+typedef struct {
+  int count;
+  int is_known; /* whether their positions were asked for before */
+  kernel *positions;
+  kernel *gradient; /* of the sum of positions by weights */
+} moving_points;
+
+/* A rod or the ball of a body, and an obstacle that it may touch. */
+typedef struct {
+  moving_points *points;
+  int is_body;
+  int elements;
+  int nodes;
+  int watches_base;
+  int watches_tip;
+  int laid_count;
+  const real *ends;
+  const real *to_coefficients;
+  const real *looks;
+  const real *laid;
+  real length;
+  real radius_at_base;
+  real radius_at_tip;
+  kernel *surface;  /* point to distance, normal, curvature */
+  kernel *distance; /* point to distance */
+  real *coefficients;
+  real *gaps_along;
+} facing;
+
+/* A contact; where it slides the place is that next to which it is looked for. */
+typedef struct {
+  const facing *facing;
+  int slides;
+  int element;
+  real place;
+  real height; /* gap that it keeps */
+} touch;
+
+typedef struct {
+  real place;
+  real value;
+  real slope;
+  real bend;
+} valley;
+
+/* Room of a pair. */
+typedef struct {
+  real *coefficients;
+  real *gaps_along;
+} workspace;
+
+static void call(kernel *function) {
+  if (function->code) {
+    function->code(function->code_arguments, function->code_results, function->integers, function->scratch, 0);
+  } else if (function->program) {
+    real *slot = function->slots;
+    for (int k = 0; k < KERNEL_ARGUMENTS; k++) {
+      for (int i = 0; i < function->counts[k]; i++, slot += 4) slot[0] = slot[1] = slot[2] = slot[3] = function->arguments[k][i];
+    }
+    function->run(function->program, function->lines, function->slots);
+    for (int i = 0; i < function->size; i++) function->result[i] = slot[4 * i];
+  } else {
+    function->evaluate();
+  }
+}
+
+/* Writes an argument; whether it is another one than that of the last call. */
+static int give(kernel *function, int number, const real *values) {
+  const size_t bytes = (size_t)function->counts[number] * sizeof *values;
+  if (!memcmp(function->arguments[number], values, bytes)) return 0;
+  memcpy(function->arguments[number], values, bytes);
+  return 1;
+}
+
+static void surface_at(const facing *own, const real *point, real *distance, real *normal, real *curvature,
+                       workspace *work) {
+  const real *found = own->surface->result;
+  (void)work;
+  give(own->surface, 0, point);
+  call(own->surface);
+  *distance = found[0];
+  memcpy(normal, found + 1, 3 * sizeof *normal);
+  memcpy(curvature, found + 4, 9 * sizeof *curvature);
+}
+
+static real distance_at(const facing *own, const real *point, workspace *work) {
+  (void)work;
+  give(own->distance, 0, point);
+  call(own->distance);
+  return own->distance->result[0];
+}
+
+#include "contact_gaps.c"
+
+/* ---- Gaps of a pair, at positions of its points ---- */
+
+static workspace room_of(const facing *own) {
+  const workspace room = {own->coefficients, own->gaps_along};
+  return room;
+}
+
+/* The element that a section is looked at in, or that of the section itself where it is farther beyond that one's ends. */
+static int element_near(const facing *own, real place, int element) {
+  const int is_near = own->ends[element] - BEYOND <= place && place <= own->ends[element + 1] + BEYOND;
+  return is_near ? element : element_of(own, place);
+}
+
+/* Newton's method for a place where the slope is zero; not a number where it leads nowhere. */
+static real stationary(const facing *own, real near, int element, workspace *work) {
+  real place = near;
+  for (int k = 0; k < MOST_PLACINGS; k++) {
+    const int number = element_near(own, place, element);
+    section_gap gap;
+    look_in(own, number, place, &gap, work);
+    if (!(gap.bend > 0)) return NAN;
+    const real change = -gap.slope / gap.bend;
+    place += change;
+    if (!(-BEYOND <= place && place <= 1 + BEYOND)) return NAN;
+    /* Beyond its element the gap is that of the next one. */
+    if (ABSOLUTE(change) <= PLACED && element_near(own, place, element) == number) break;
+  }
+  return place;
+}
+
+/* Number of the section, of those looked at first, that is least in the valley of a place. */
+static int downhill(const facing *own, const real *gaps, int count, real near) {
+  int look = 0;
+  for (int i = 1; i < count; i++) {
+    if (ABSOLUTE(place_of_look(own, i) - near) < ABSOLUTE(place_of_look(own, look) - near)) look = i;
+  }
+  while (look > 0 && gaps[look - 1] < gaps[look]) look--;
+  while (look < count - 1 && gaps[look + 1] < gaps[look]) look++;
+  return look;
+}
+
+/* Place next to another where the gap is least, by the polynomials of an element; not beyond the ends by more than a little. */
+static real place_near(const facing *own, const real *nodes, real near, int element, workspace *work) {
+  const real first = own->ends[element];
+  const real last = own->ends[element + 1];
+  real place = stationary(own, near, element, work);
+  if (ABSOLUTE(place - near) <= FAR) return place;
+  /* Down the gaps from section to section no other minimum can be met. */
+  const int count = gaps_along(own, nodes, work->gaps_along, work);
+  const real beside = place_of_look(own, downhill(own, work->gaps_along, count, near));
+  if (first <= beside && beside <= last) {
+    place = stationary(own, beside, element, work);
+    return ABSOLUTE(place - beside) <= FAR ? place : beside;
+  }
+  /* By the polynomials of its element it may be farther beyond an end of that one than it is. */
+  const real end = clipped(beside, first, last);
+  place = stationary(own, end, element, work);
+  return ABSOLUTE(place - end) <= BEYOND ? place : clipped(beside, end - BEYOND, end + BEYOND);
+}
+
+/* The gap at a place, by the polynomials of an element next to it, with the weights of the nodes. */
+void gap_at(const facing *own, const real *nodes, real place, int element, section_gap *gap) {
+  workspace room = room_of(own);
+  fit_nodes(own, nodes, &room);
+  look_in(own, own->is_body ? 0 : element_near(own, place, element), place, gap, &room);
+  weigh_nodes(own, gap);
+}
+
+/* The place next to another where the gap is least. */
+real gap_place(const facing *own, const real *nodes, real near, int element) {
+  workspace room = room_of(own);
+  if (own->is_body) return near;
+  fit_nodes(own, nodes, &room);
+  return place_near(own, nodes, near, element, &room);
+}
+
+/* Gaps at the sections at which a rod that lies is held. */
+void laid_gaps(const facing *own, const real *nodes, real *gaps) {
+  workspace room = room_of(own);
+  fit_nodes(own, nodes, &room);
+  for (int k = 0; k < own->laid_count; k++) {
+    section_gap gap;
+    look_at(own, own->laid[k], &gap, &room);
+    gaps[k] = gap.value;
+  }
+}
+
+/* Gaps at the sections that are looked at first. */
+void looked_gaps(const facing *own, const real *nodes, real *gaps) {
+  workspace room = room_of(own);
+  gaps_along(own, nodes, gaps, &room);
+}
+
+/* Sections whose gaps are the least about them, and not above a bound, base to tip; returns their number. */
+int gap_valleys(const facing *own, const real *nodes, real below, valley *found) {
+  workspace room = room_of(own);
+  return valleys_of(own, nodes, below, 0, found, &room);
+}
+
+/* How much lower than a section that is looked at the minimum next to it may be. */
+static real step_down(const real *gaps, int count, int look) {
+  real highest = gaps[look];
+  if (look > 0 && gaps[look - 1] > highest) highest = gaps[look - 1];
+  if (look < count - 1 && gaps[look + 1] > highest) highest = gaps[look + 1];
+  return highest - gaps[look] + BETWEEN;
+}
+
+/* Whether a section that is looked at first is the least about it, and none of those left out: sections in the valleys of
+   some, next to them, and at some ends. Equal ones count where they are the first or the last. */
+static int is_lowest(const facing *own, const real *gaps, int count, int look, int all, const int *left_out,
+                     int left_out_count, const real *ends, int end_count) {
+  const real fall = look > 0 ? gaps[look - 1] - gaps[look] : 1;
+  const real rise = look < count - 1 ? gaps[look + 1] - gaps[look] : 1;
+  if (!(fall >= 0 && rise >= 0 && fall + rise > 0)) return 0;
+  if (!all && ((look == 0 && !own->watches_base) || (look == count - 1 && !own->watches_tip))) return 0;
+  for (int k = 0; k < left_out_count; k++) {
+    if (look - left_out[k] <= 1 && left_out[k] - look <= 1) return 0;
+  }
+  for (int k = 0; k < end_count; k++) {
+    if (ABSOLUTE(place_of_look(own, look) - ends[k]) <= AT_END) return 0;
+  }
+  return 1;
+}
+
+/* The least gap but for those in the valleys of some places, and at some ends; infinite where there is none. Ends that are
+   not watched are none, but where all are asked for. */
+void lowest_gap(const facing *own, const real *nodes, int all, const real *but, int but_count, const real *ends,
+                int end_count, valley *lowest) {
+  workspace room = room_of(own);
+  real *gaps = own->gaps_along;
+  int left_out[MOST_LEFT_OUT];
+  section_gap gap;
+  lowest->place = 0;
+  lowest->value = INFINITY;
+  fit_nodes(own, nodes, &room);
+  if (own->is_body) {
+    if (but_count > 0) return;
+    look_at(own, 0, &gap, &room);
+    *lowest = valley_at(&gap);
+    return;
+  }
+  const int count = gaps_along(own, nodes, gaps, &room);
+  if (but_count > MOST_LEFT_OUT) but_count = MOST_LEFT_OUT;
+  for (int k = 0; k < but_count; k++) left_out[k] = downhill(own, gaps, count, but[k]);
+  real least = INFINITY;
+  for (int i = 0; i < count; i++) {
+    if (gaps[i] < least && is_lowest(own, gaps, count, i, all, left_out, but_count, ends, end_count)) least = gaps[i];
+  }
+  for (int i = 0; i < count; i++) {
+    /* A valley between two sections may be lower than another one at a section, such as an end, whose gap is less. */
+    const real deeper = step_down(gaps, count, i);
+    if (gaps[i] - deeper > least || !is_lowest(own, gaps, count, i, all, left_out, but_count, ends, end_count)) continue;
+    gap.place = place_of_look(own, i);
+    gap.value = gaps[i];
+    /* Far from zero no one asks how much lower it is beside a section. */
+    if (all || !(gaps[i] > OFF * deeper)) look_lowest_by(own, i, &gap, &room);
+    if (gap.value < lowest->value) *lowest = valley_at(&gap);
+  }
+}
+
+/* ---- Contacts at a state ---- */
+
+/* Positions of the points, at the state that they were asked for last. */
+static const real *positions_at(moving_points *points, const real *x, const real *inputs) {
+  const int moved = give(points->positions, 0, x) | give(points->positions, 1, inputs);
+  if (moved || !points->is_known) call(points->positions);
+  points->is_known = 1;
+  return points->positions->result;
+}
+
+/* Gaps of contacts where they are. */
+void touched_gaps(const touch *touches, int count, const real *x, const real *inputs, section_gap *gaps) {
+  for (int k = 0; k < count; k++) {
+    const facing *own = touches[k].facing;
+    const real *nodes = positions_at(own->points, x, inputs);
+    workspace room = room_of(own);
+    real place = touches[k].place;
+    fit_nodes(own, nodes, &room);
+    if (touches[k].slides && !own->is_body) place = place_near(own, nodes, place, touches[k].element, &room);
+    look_in(own, own->is_body ? 0 : element_near(own, place, touches[k].element), place, gaps + k, &room);
+    gaps[k].place = place;
+    weigh_nodes(own, gaps + k);
+  }
+}
+
+/* Takes forces of contacts from equations of motion, and writes how far gaps are open behind them. */
+void push_touches(const touch *touches, int count, int unknowns, const real *x, const real *inputs, const real *forces,
+                  real *rows, real *open) {
+  section_gap gap;
+  for (int k = 0; k < count; k++) {
+    kernel *gradient = touches[k].facing->points->gradient;
+    memset(gradient->arguments[2], 0, (size_t)gradient->counts[2] * sizeof(real));
+  }
+  for (int k = 0; k < count; k++) {
+    const facing *own = touches[k].facing;
+    real *weights = own->points->gradient->arguments[2];
+    touched_gaps(touches + k, 1, x, inputs, &gap);
+    open[k] = gap.value - touches[k].height;
+    for (int i = 0; i < gap.nodes; i++) {
+      const real share = forces[k] * gap.rows[0][i] / own->length;
+      for (int j = 0; j < 3; j++) weights[3 * (gap.first + i) + j] += share * gap.normal[j];
+    }
+  }
+  for (int k = 0; k < count; k++) {
+    moving_points *points = touches[k].facing->points;
+    int is_first = 1;
+    for (int i = 0; i < k; i++) is_first &= touches[i].facing->points != points;
+    if (!is_first) continue;
+    give(points->gradient, 0, x);
+    give(points->gradient, 1, inputs);
+    call(points->gradient);
+    for (int i = 0; i < unknowns; i++) rows[i] -= points->gradient->result[i];
+  }
+}
+
+/* Sizes of the records, by which Python tells that it has the same. */
+int contact_records(int number) {
+  const size_t sizes[] = {sizeof(kernel), sizeof(moving_points), sizeof(facing), sizeof(touch), sizeof(section_gap)};
+  return (int)sizes[number];
+}
