@@ -100,6 +100,7 @@ ROLES = {
     "passages.c": "whether a step leads through something thin",
     "contact_gaps.c": "gaps to obstacles that are touched exactly",
     "contact_ways.c": "ways that lead into such obstacles",
+    "least_pushes.c": "which of several contacts push",
     "contact_steps.c": "forces and blows of exact contact in a step",
     "contact_sensitivity.c": "their part in its derivatives",
     "interpolation.c": "positions between nodes",

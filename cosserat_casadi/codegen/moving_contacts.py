@@ -20,6 +20,9 @@ from cosserat_casadi.scene.accuracy import MOST_NODES
 NAME = "moving_contacts"
 """Of the library in the cache."""
 
+INCLUDED = frozenset({"contact_gaps.c", "least_pushes.c"})
+"""Files that exported steps have too."""
+
 MOST_PLACINGS = 20
 """Newton iterations for the place where a gap is least."""
 
@@ -41,7 +44,7 @@ def compiled_law() -> CompiledLaw:
         ExportError: there is no compiler, or it fails.
     """
     try:
-        path = compiled_texts(NAME, _texts(), find_compiler(), included={"contact_gaps.c"}, origin=_origin())
+        path = compiled_texts(NAME, _texts(), find_compiler(), included=INCLUDED, origin=_origin())
         run = steps_library().program_run
     except ExportError as error:
         (problem,) = error.problems
@@ -61,7 +64,7 @@ def _origin() -> str:
 @cache
 def _texts() -> dict[str, str]:
     """The sources by file name."""
-    files = (f"{NAME}.c", "contact_gaps.c")
+    files = (f"{NAME}.c", *sorted(INCLUDED))
     return {file: resource("c", file) for file in files} | {f"{NAME}.h": render(f"{NAME}.h.in", _words())}
 
 

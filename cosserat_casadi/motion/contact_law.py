@@ -119,6 +119,10 @@ ARGUMENTS: dict[str, tuple[Any, Sequence[Any]]] = {
         None,
         (POINTER, ctypes.c_int, ctypes.c_int, POINTER, POINTER, POINTER, POINTER, POINTER),
     ),
+    "settle_pushes": (
+        ctypes.c_int,
+        (POINTER, POINTER, ctypes.c_int, DOUBLE, POINTER, POINTER, POINTER),
+    ),
 }
 """Functions of the law: result, and arguments."""
 
@@ -161,6 +165,28 @@ def address_of(name: str) -> int:
     address = ctypes.cast(getattr(compiled_law().library, name), ctypes.c_void_p).value
     assert address is not None, "a function has an address"
     return address
+
+
+def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) -> FloatArray | None:
+    """Forces f of constraints that open at rates q + W f: f ≥ 0, q + W f ≥ 0, one of both zero, shape (m,).
+
+    Args:
+        compliance: W, symmetric and positive semidefinite, shape (m, m).
+        rates: q, shape (m,).
+        tolerance: rate below zero that counts as none.
+
+    Returns:
+        the forces; None where rounding keeps them from settling. Constraints that no forces stop close all the same.
+    """
+    count = len(rates)
+    forces = np.zeros(count)
+    if not count:
+        return forces
+    given = [np.ascontiguousarray(values, dtype=float) for values in (compliance, rates)]
+    room, integers = np.zeros(2 * count * (count + 1)), np.zeros(3 * count, dtype=np.intc)
+    at, of_rates = (values.ctypes.data for values in given)
+    results = [values.ctypes.data for values in (forces, room, integers)]
+    return forces if called("settle_pushes", at, of_rates, count, tolerance, *results) else None
 
 
 @lru_cache(maxsize=1)

@@ -11,8 +11,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches, with_touches
 from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_law import least_pushes
 from cosserat_casadi.motion.moving_inputs import InputState, Piece
-from cosserat_casadi.numerics.complementarity import least_pushes
 from cosserat_casadi.numerics.consistent_start import (
     ConsistentStart,
     Saddle,

@@ -21,9 +21,9 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_gap import FLATTEST, Facing
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
+from cosserat_casadi.motion.contact_law import least_pushes
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.numerics.broyden import solved
-from cosserat_casadi.numerics.complementarity import least_pushes
 
 MOST_TURNS = 50
 """Turns before no equilibrium is found."""

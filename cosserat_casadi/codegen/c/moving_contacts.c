@@ -8,6 +8,7 @@
 
 typedef double real;
 #define ABSOLUTE fabs
+#define SQUARE_ROOT sqrt
 
 /* A function in machine code, as CasADi calls it. */
 typedef int (*casadi_kernel)(const real **arguments, real **results, long long *integers, real *scratch, int memory);
@@ -77,11 +78,26 @@ typedef struct {
   real bend;
 } valley;
 
-/* Room of a pair. */
+/* Room of a pair, or of constraints of which some push. */
 typedef struct {
   real *coefficients;
   real *gaps_along;
+  real *scaled_compliance;
+  real *scales;
+  real *small_values;
+  real *small_matrix;
+  int *small_pivots;
+  int *active;
+  int *passed_over;
 } workspace;
+
+static real larger(real a, real b) { return a > b ? a : b; }
+
+static int all_finite(const real *a, int count) {
+  real sum = 0;
+  for (int i = 0; i < count; i++) sum += a[i] * 0;
+  return sum == 0;
+}
 
 static void call(kernel *function) {
   if (function->code) {
@@ -125,11 +141,12 @@ static real distance_at(const facing *own, const real *point, workspace *work) {
 }
 
 #include "contact_gaps.c"
+#include "least_pushes.c"
 
 /* ---- Gaps of a pair, at positions of its points ---- */
 
 static workspace room_of(const facing *own) {
-  const workspace room = {own->coefficients, own->gaps_along};
+  const workspace room = {.coefficients = own->coefficients, .gaps_along = own->gaps_along};
   return room;
 }
 
@@ -339,6 +356,20 @@ void push_touches(const touch *touches, int count, int unknowns, const real *x, 
     call(points->gradient);
     for (int i = 0; i < unknowns; i++) rows[i] -= points->gradient->result[i];
   }
+}
+
+/* least_pushes of constraints with 2 count (count + 1) numbers and 3 count whole numbers of room. */
+int settle_pushes(const real *compliance, const real *rates, int count, real tolerance, real *forces, real *room,
+                  int *integers) {
+  real *vectors = room + 2 * count * count;
+  workspace work = {.scaled_compliance = room,
+                    .small_matrix = room + count * count,
+                    .scales = vectors,
+                    .small_values = vectors + count,
+                    .small_pivots = integers,
+                    .active = integers + count,
+                    .passed_over = integers + 2 * count};
+  return least_pushes(compliance, rates, count, tolerance, forces, &work);
 }
 
 /* Sizes of the records, by which Python tells that it has the same. */
