@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.motion_sources import initialiser, method_words, pa
 from cosserat_casadi.codegen.scalar_program import cases_in_c
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_forces import Follower, PushedResidual
+from cosserat_casadi.motion.contact_forces import PushedResidual
 from cosserat_casadi.motion.contact_law import address_of, raise_what_was_raised
 from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidual
 from cosserat_casadi.motion.repeated_call import MachineCode, Program, RepeatedCall
@@ -77,7 +77,7 @@ class _Record(ctypes.Structure):
         *((name, POINTER) for name in ("derivatives", "derivatives_arguments", "derivatives_results")),
         *((name, POINTER) for name in ("derivatives_integers", "derivatives_scratch", "cubics", "program", "slots")),
         *((name, ctypes.c_int) for name in ("program_lines", "program_arguments")),
-        *((name, POINTER) for name in ("push_touches", "touches")),
+        *((name, POINTER) for name in ("push", "contacts")),
         *((name, CALL) for name in ("residual_at", "residual_of_stages", "inputs_at", "jacobians_at")),
         *((name, POINTER) for name in ("stage_times", "stage_x", "stage_v", "stage_a", "stage_results")),
         *((name, POINTER) for name in ("matrices", "linearised_at", "kept_at", "now", "before", "room")),
@@ -232,9 +232,9 @@ class CompiledSteps:
         residual = run.equations.residual
         if isinstance(residual, KernelResidual):
             self._share_kernel(residual)
-        elif isinstance(residual, PushedResidual) and isinstance(residual.plain.residual, KernelResidual):
-            self._share_contacts(residual.follower)
-            self._share_kernel(residual.plain.residual)
+        elif isinstance(residual, PushedResidual) and isinstance(residual.rows, KernelResidual):
+            self._share_contacts(residual)
+            self._share_kernel(residual.rows)
         else:
             self._share_function()
         self._share("stage_times", np.zeros(STAGES))
@@ -334,13 +334,13 @@ class CompiledSteps:
         self._record.program_lines, self._record.program_arguments = len(lines), arguments
         self._without_program = None
 
-    def _share_contacts(self, follower: Follower) -> None:
+    def _share_contacts(self, residual: PushedResidual) -> None:
         """Have C take the forces of contacts from the equations."""
+        contacts = residual.in_law()
+        self._held.append(contacts)
         record = self._record
-        record.touch_count = len(follower.touches)
-        record.push_touches = address_of("push_touches")
-        record.touches = follower.at_places()
-        self._held.append(follower)
+        record.touch_count = len(residual.follower.touches)
+        record.push, record.contacts = address_of("push_in_steps"), contacts.address
 
     def _share_function(self) -> None:
         """Have C call the equations as a function of Python."""

@@ -12,6 +12,7 @@ from cosserat_casadi.codegen.controlled_steps import steps_library
 from cosserat_casadi.codegen.scalar_program import scalar_program
 from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.motion import contact_law
 from cosserat_casadi.motion.contact_gap import AT_END, FAR, LOOKS, MOST_VALLEYS
 from cosserat_casadi.motion.contact_law import CompiledLaw
@@ -74,6 +75,7 @@ def _words() -> dict[str, Any]:
         "looks": LOOKS,
         "most_nodes": MOST_NODES + 1,
         "most_valleys": MOST_VALLEYS,
+        "base_unknowns": POSE_SIZE,
         "most_placings": MOST_PLACINGS,
         "far": FAR,
         "beyond": BEYOND,

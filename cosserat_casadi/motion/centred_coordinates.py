@@ -20,7 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_frame import BaseKernels, SeenFromBase, frame_weights
-from cosserat_casadi.motion.contact_forces import PushedResidual
+from cosserat_casadi.motion.contact_forces import BaseOfSteps, PushedResidual
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.momentum import flies_alone
 from cosserat_casadi.motion.one_sided import OneSided
@@ -138,19 +138,10 @@ class CentredCoordinates:
         """A residual in these coordinates: one function of them, where its parts are known."""
         if isinstance(plain, KernelResidual):
             return replace(plain, call=self._dynamics)
-        if not (isinstance(plain, PushedResidual) and isinstance(plain.plain.residual, KernelResidual)):
+        if not (isinstance(plain, PushedResidual) and isinstance(plain.rows, KernelResidual)):
             raise TypeError("equations in centred coordinates are those of a model, with the forces of contacts or not")
-        follower, inputs_at = plain.follower, plain.plain.residual.inputs_at
-        own = slice(0, self._size)
-
-        def pushed(t: float, y: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-            inputs = inputs_at(t)
-            x = y[own].copy()
-            x[self._pose] = self._place(x)
-            rows = self._dynamics(y[own], v[own], a[own], *inputs)
-            return follower.rows(rows, x, inputs[0], y[self._size :])
-
-        return pushed
+        rows = replace(plain.rows, call=self._dynamics)
+        return replace(plain, rows=rows, base=BaseOfSteps(self._place, int(self._pose[0])))
 
     @cached_property
     def _place(self) -> RepeatedCall:

@@ -15,10 +15,11 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_gap import FAR, FLATTEST, Facing, SectionGap
-from cosserat_casadi.motion.contact_law import Held, TouchRecord, called, gap_size
+from cosserat_casadi.motion.contact_law import Held, StepContactsRecord, TouchRecord, called, function_record, gap_size
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.moving_points import MovingPoints
-from cosserat_casadi.numerics.motion_equations import MotionEquations
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.numerics.motion_equations import MotionEquations, Residual
 
 
 class MovingContact(NamedTuple):
@@ -154,7 +155,7 @@ class Follower:
         at = [np.ascontiguousarray(values, dtype=float) for values in (x, inputs)]
         addresses = [values.ctypes.data for values in (*at, memory)]
         called("touched_gaps", self.at_places(), len(self.touches), *addresses)
-        gaps = [facing.gap_in(own) for facing, own in zip(self.facings, memory, strict=True)]
+        gaps = [SectionGap(own, facing.points.count) for facing, own in zip(self.facings, memory, strict=True)]
         return memory[:, 0].tolist(), gaps
 
     def state(self, x: FloatArray, inputs: FloatArray) -> ContactsAtState:
@@ -236,25 +237,57 @@ class Follower:
         return first, second
 
 
+class BaseOfSteps(NamedTuple):
+    """The base of a rod that nothing holds, whose unknowns in steps are others than those of the model.
+
+    Attributes:
+        call: unknowns of the steps ↦ those of the base in the model.
+        begin: the first of these.
+    """
+
+    call: RepeatedCall
+    begin: int
+
+
 @dataclass(frozen=True)
 class PushedResidual:
     """Residual of equations of motion with forces of contacts, and their gaps behind it: (t, x, v, a) ↦ shape (n + m,).
 
     Attributes:
-        plain: equations of the model.
+        rows: residual of the equations of the model.
+        size: number of its unknowns n.
         follower: the contacts.
         piece: of the inputs.
+        base: whose unknowns are others in x; None where all are those of the model.
     """
 
-    plain: MotionEquations
+    rows: Residual
+    size: int
     follower: Follower
     piece: Piece
+    base: BaseOfSteps | None = None
 
     def __call__(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         """The residual, and the gaps."""
-        size = self.plain.size
-        rows = self.plain.residual(t, x[:size], v[:size], a[:size])
-        return self.follower.rows(rows, x[:size], self.piece.at(t).value, x[size:])
+        own = slice(0, self.size)
+        at = x[own]
+        if self.base is not None:
+            at = at.copy()
+            of_base = self.base.call(at)
+            at[self.base.begin : self.base.begin + len(of_base)] = of_base
+        rows = self.rows(t, x[own], v[own], a[own])
+        return self.follower.rows(rows, at, self.piece.at(t).value, x[self.size :])
+
+    def in_law(self) -> Held:
+        """The contacts as steps in C have them."""
+        record = StepContactsRecord(self.follower.at_places(), len(self.follower.touches), self.size)
+        held = Held(record)
+        held.keep(self.follower)
+        if self.base is not None:
+            record.base_begin = self.base.begin
+            held.point("base", function_record(self.base.call))
+            held.share("x", np.zeros(self.size))
+        return held
 
 
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
@@ -289,7 +322,7 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
     return replace(
         plain,
         differential=differential,
-        residual=PushedResidual(plain, follower, piece),
+        residual=PushedResidual(plain.residual, size, follower, piece),
         jacobians=jacobians,
         rates_of_last=rates_of_last,
     )

@@ -60,26 +60,46 @@ class Rows(NamedTuple):
     first: FloatArray
 
 
-class SectionGap(NamedTuple):
+class SectionGap:
     """A gap at one section, over the length of the rod, and what its derivatives are made of.
+
+    Args:
+        memory: the gap as C has written it, shape (gap_size(),).
+        points: number of the points of the rod or body.
 
     Attributes:
         value: the gap.
         slope: its derivative with X.
         bend: its second derivative with X.
-        rows: of the section.
-        normal: of the obstacle, shape (3,).
-        curvature: second derivative of the distance with the point, shape (3, 3), 1/m.
-        tangent: derivative of the position with X, shape (3,), m.
     """
 
-    value: float
-    slope: float
-    bend: float
-    rows: Rows
-    normal: FloatArray
-    curvature: FloatArray
-    tangent: FloatArray
+    def __init__(self, memory: FloatArray, points: int) -> None:
+        self._memory = memory
+        self._points = points
+        _, self.value, self.slope, self.bend = memory[:4].tolist()
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Weights of the points."""
+        first, count = self._memory[GAP_COUNTS : GAP_COUNTS + 1].view(np.int32).tolist()
+        rows = np.zeros((2, self._points))
+        rows[:, first : first + count] = self._memory[GAP_NUMBERS:].reshape(2, -1)[:, :count]
+        return Rows(*rows)
+
+    @property
+    def normal(self) -> FloatArray:
+        """Normal of the obstacle, shape (3,)."""
+        return self._memory[4:7]
+
+    @property
+    def curvature(self) -> FloatArray:
+        """Second derivative of the distance with the point, shape (3, 3), 1/m."""
+        return self._memory[7:16].reshape(3, 3)
+
+    @property
+    def tangent(self) -> FloatArray:
+        """Derivative of the position with X, shape (3,), m."""
+        return self._memory[16:GAP_COUNTS]
 
 
 class Minimum(NamedTuple):
@@ -168,17 +188,7 @@ class Facing(ABC):
         memory = np.empty(gap_size())
         number = self.element(X) if element is None else element
         called("gap_at", self.in_law.address, _address(nodes), X, number, memory.ctypes.data)
-        return self.gap_in(memory)
-
-    def gap_in(self, memory: FloatArray) -> SectionGap:
-        """The gap that C has written, shape (gap_size(),)."""
-        _, value, slope, bend = memory[:4].tolist()
-        first, count = memory[GAP_COUNTS : GAP_COUNTS + 1].view(np.int32).tolist()
-        rows = np.zeros((2, self.points.count))
-        weights = memory[GAP_NUMBERS:].reshape(2, -1)
-        rows[:, first : first + count] = weights[:, :count]
-        normal, curvature, tangent = np.split(memory[4:GAP_COUNTS].copy(), (3, 12))
-        return SectionGap(value, slope, bend, Rows(*rows), normal, curvature.reshape(3, 3), tangent)
+        return SectionGap(memory, self.points.count)
 
     def place(self, nodes: FloatArray, near: float, element: int) -> float:
         """Abscissa next to another where the gap is least, by the polynomials of an element."""

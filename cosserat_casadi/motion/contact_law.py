@@ -91,6 +91,16 @@ class TouchRecord(ctypes.Structure):
     ]
 
 
+class StepContactsRecord(ctypes.Structure):
+    """The contacts of steps."""
+
+    _fields_ = [
+        ("touches", POINTER),
+        *((name, ctypes.c_int) for name in ("count", "unknowns", "base_begin")),
+        *((name, POINTER) for name in ("base", "x")),
+    ]
+
+
 class ValleyRecord(ctypes.Structure):
     """A section whose gap is the least about it."""
 
@@ -141,7 +151,7 @@ def compiled_law() -> CompiledLaw:
     for name, (result, arguments) in ARGUMENTS.items():
         function = getattr(law.library, name)
         function.restype, function.argtypes = result, arguments
-    records = (KernelRecord, PointsRecord, FacingRecord, TouchRecord)
+    records = (KernelRecord, PointsRecord, FacingRecord, TouchRecord, StepContactsRecord)
     for number, record in enumerate(records):
         assert law.library.contact_records(number) == ctypes.sizeof(record), record.__name__
     return law
@@ -192,7 +202,7 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
 @lru_cache(maxsize=1)
 def gap_size() -> int:
     """Numbers that a gap takes in memory, with weights of as many nodes as an element may have."""
-    return int(compiled_law().library.contact_records(4)) // ctypes.sizeof(DOUBLE)
+    return int(compiled_law().library.contact_records(5)) // ctypes.sizeof(DOUBLE)
 
 
 class Held:

@@ -147,18 +147,14 @@ class MovingPoints:
     @cached_property
     def _straight_on(self) -> RepeatedCall:
         x, inputs, _ = self._symbols
-        v = ca.MX.sym("v", x.shape[0])
-        rate = ca.MX.sym("rate", inputs.shape[0])
-        state = ca.vertcat(x, inputs)
-        change = ca.vertcat(v, rate)
-        at_once = ca.MX.sym("state", state.shape[0])
-        positions = ca.graph_substitute(
-            self._written[0], [x, inputs], ca.vertsplit(at_once, [0, x.shape[0], at_once.shape[0]])
-        )
-        first = ca.jtimes(positions, at_once, change)
-        second = ca.jtimes(first, at_once, change)
-        written = ca.Function("moved", [at_once, v, rate], [ca.densify(ca.vertcat(first, second))])
-        return RepeatedCall(ca.Function("straight_on", [x, inputs, v, rate], [written(state, v, rate)]))
+        v, rate = ca.MX.sym("v", x.shape[0]), ca.MX.sym("rate", inputs.shape[0])
+
+        def rate_of(values: ca.MX) -> ca.MX:
+            return ca.jtimes(values, x, v) + ca.jtimes(values, inputs, rate)
+
+        first = rate_of(self._written[0])
+        results = [ca.densify(ca.vertcat(first, rate_of(first)))]
+        return repeated(ca.Function("straight_on", [x, inputs, v, rate], results), None)
 
     @cached_property
     def _hessian(self) -> RepeatedCall:

@@ -39,8 +39,8 @@ static real smaller(real a, real b) { return a < b ? a : b; }
 typedef int (*python_call)(double time);
 
 /* moving_contacts.c: takes forces of contacts from equations of motion, and writes open gaps behind them. */
-typedef void (*contact_call)(const void *touches, int count, int unknowns, const real *x, const real *inputs,
-                             const real *forces, real *rows, real *open);
+typedef void (*contact_call)(const void *contacts, const real *x, const real *inputs, const real *forces, real *rows,
+                             real *open);
 
 /* Inverse dynamics in machine code, as CasADi calls it. */
 typedef int (*casadi_kernel)(const real **arguments, real **results, long long *integers, real *scratch, int memory);
@@ -93,8 +93,8 @@ typedef struct {
   real *slots;
   int program_lines;
   int program_arguments;
-  contact_call push_touches; /* null where nothing touches, or where Python evaluates that too */
-  const void *touches;
+  contact_call push; /* null where nothing touches, or where Python evaluates that too */
+  const void *contacts;
   python_call residual_at;
   python_call residual_of_stages; /* null where residual_at is called for one stage after the other */
   python_call inputs_at;
@@ -220,8 +220,7 @@ static void evaluate_inputs(real time, workspace *work) {
 
 /* The part of contacts in F at the state and the inputs of the record. */
 static void push_contacts(real *rows, workspace *work) {
-  if (!work->push_touches) return;
-  work->push_touches(work->touches, work->touch_count, OWN, work->x, work->input_values, work->x + OWN, rows, rows + OWN);
+  if (work->push) work->push(work->contacts, work->x, work->input_values, work->x + OWN, rows, rows + OWN);
 }
 
 /* F at the state and the inputs of the record. After an interrupt no value counts. */

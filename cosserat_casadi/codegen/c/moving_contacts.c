@@ -358,6 +358,30 @@ void push_touches(const touch *touches, int count, int unknowns, const real *x, 
   }
 }
 
+/* Contacts as steps have them, whose unknowns of a base that nothing holds may be others than those of the model. */
+typedef struct {
+  const touch *touches;
+  int count;
+  int unknowns;
+  int base_begin;
+  kernel *base; /* unknowns of steps to those of the base; null where they are the same */
+  real *x;      /* unknowns of the model */
+} step_contacts;
+
+/* push_touches in steps. */
+void push_in_steps(const step_contacts *own, const real *unknowns, const real *inputs, const real *forces, real *rows,
+                   real *open) {
+  const real *x = unknowns;
+  if (own->base) {
+    memcpy(own->x, unknowns, (size_t)own->unknowns * sizeof *unknowns);
+    give(own->base, 0, unknowns);
+    call(own->base);
+    memcpy(own->x + own->base_begin, own->base->result, BASE_UNKNOWNS * sizeof *unknowns);
+    x = own->x;
+  }
+  push_touches(own->touches, own->count, own->unknowns, x, inputs, forces, rows, open);
+}
+
 /* least_pushes of constraints with 2 count (count + 1) numbers and 3 count whole numbers of room. */
 int settle_pushes(const real *compliance, const real *rates, int count, real tolerance, real *forces, real *room,
                   int *integers) {
@@ -374,6 +398,7 @@ int settle_pushes(const real *compliance, const real *rates, int count, real tol
 
 /* Sizes of the records, by which Python tells that it has the same. */
 int contact_records(int number) {
-  const size_t sizes[] = {sizeof(kernel), sizeof(moving_points), sizeof(facing), sizeof(touch), sizeof(section_gap)};
+  const size_t sizes[] = {sizeof(kernel), sizeof(moving_points), sizeof(facing), sizeof(touch),
+                          sizeof(step_contacts), sizeof(section_gap)};
   return (int)sizes[number];
 }
