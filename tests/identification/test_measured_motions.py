@@ -244,6 +244,11 @@ def test_free_bases_are_refused(path: dict[str, FloatArray]) -> None:
         identify(built(rods=[rod]), {"path.csv": path})
 
 
+def test_velocities_at_the_start_are_refused(path: dict[str, FloatArray]) -> None:
+    with pytest.raises(SceneError, match="begins at rest"):
+        identify(built(velocities=[{"rod": "rod", "curvature_rate": [0.0, 3.0, 0.0]}]), {"path.csv": path})
+
+
 def test_cables_that_may_go_slack_are_refused(path: dict[str, FloatArray]) -> None:
     cable = {"name": "wound", "kind": "tendon", "rod": "rod", "length": 0.3, "slack": True}
     cable["offset"] = [3e-3, 0.0]
