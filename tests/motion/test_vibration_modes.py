@@ -434,6 +434,16 @@ def test_rotating_cantilever(speed):
     assert_allclose(found[:2], [first_lag, flap[0]], rtol=1e-8, atol=0)
 
 
+def test_motions_that_modes_leave_aside_are_told():
+    shaken = {"input": "rod.base.position", "amplitude": [0.1, 0.0, 0.0], "frequency": 1.0}
+    still = scene(rod(), accuracy={"modes": 3, "nodes": 8})
+    moved = scene(rod(), accuracy={"modes": 3, "nodes": 8}, motions=[shaken, shaken])
+    assert "left aside" not in modes_of(still, count=1).message
+    told = modes_of(moved, count=1)
+    assert told.message.endswith("the motion of rod.base.position in [[motions]] is left aside.")
+    assert_allclose(told.angular_frequencies, modes_of(still, count=1).angular_frequencies, rtol=1e-14, atol=0)
+
+
 def test_body_at_the_tip():
     """Rayleigh beam with a body of offset centre of mass: transfer matrix, 1e-9."""
     carrier = {
