@@ -89,7 +89,7 @@ class EqualSections:
 
     @cached_property
     def to_nodes(self) -> ca.DM:
-        """Matrix from what acts per length at the sections to what does the same work at the nodes, k×M."""
+        """Matrix from loads per length at the sections to loads at the nodes that do the same work, k×M."""
         # Lengths of sections and of nodes are drawn out alike where parameters move elements.
         lengths = self._reference_lengths[:, None] / self.rod.reference_lengths
         return sparse(lengths * self.placed.to_sections)

@@ -174,7 +174,7 @@ class LoadedSections:
         return LineWrench(self._at_all_nodes(force), self._at_all_nodes(moment), None, follower=False)
 
     def _at_all_nodes(self, part: Matrix | None) -> Matrix | None:
-        """What acts per length at the loaded sections, at all nodes: nothing is stored where nothing acts."""
+        """A load per length at the loaded sections, at all nodes: nothing is stored where nothing acts."""
         if part is None or self.everywhere:
             return part
         if self.load.sections is not None:
