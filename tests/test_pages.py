@@ -51,6 +51,7 @@ LONG = (
     "cosserat sweep examples/concentric_tubes.toml",
     "cosserat tune examples/nitinol_wire.toml --set",
     "cosserat export examples/tendon_robot_move.toml",
+    "cosserat export examples/planar_strip.toml --cuda",
     "cosserat export examples/concentric_tubes.toml",
     "cosserat export examples/rod_over_bar.toml",
     "cosserat inverse examples/reach_past_bar.toml",

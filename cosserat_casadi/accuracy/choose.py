@@ -107,8 +107,8 @@ def choose(
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
         progress: told how many points are solved.
         samples: random corners that are tried, and as many random points, beside the ends of each range alone and of
-            all; by default 16. In exact contact and beside thin obstacles by default 2, and the ends of each range
-            alone are left out.
+            all; by default 16. In exact contact and beside thin obstacles that rub by default 2, and the ends of each
+            range alone are left out.
         cases: inputs and parameters by name, at least one case, in place of ranges; what a case does not name keeps the
             scene's value.
 

@@ -273,7 +273,12 @@ class CommonModes:
             # A search for this case alone would take longer than all others together.
             return discretise(case.scene, THIN_MODES, ceil(MORE_NODES * layer_nodes(scene)))
         own = solve_rods(scene, case.inputs)
-        return own.model.discretisation if own.converged else discretise(case.scene, FEW_MODES, FEW_NODES)
+        if not own.converged:
+            return discretise(case.scene, FEW_MODES, FEW_NODES)
+        if not case.parameters:
+            # It is an answer of this case already, from which the next one begins.
+            self._last[0] = own
+        return own.model.discretisation
 
     def _unlocked(self, chosen: Chosen) -> Chosen:
         """A discretisation with at least one degree of freedom more than constraints."""

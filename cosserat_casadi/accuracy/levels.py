@@ -63,7 +63,7 @@ def nodes_for_turn(modes: int, turn: float) -> int:
 
 
 def layer_nodes(scene: scenes.Scene) -> int:
-    """Intervals per element below which a rod sinks into a thin smooth obstacle between nodes; 0 without any."""
+    """Intervals per element below which a rod sinks into a smooth obstacle that presses its nodes; 0 without any."""
     if not any(obstacle.is_smooth for obstacle in scene.obstacles):
         return 0
     needed = [0]

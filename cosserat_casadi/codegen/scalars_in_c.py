@@ -537,9 +537,11 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
         arithmetic: FOURS for four calls at once, or that of single numbers.
 
     Raises:
-        UnknownOperationError: there is an operation that has no form here.
+        UnknownOperationError: there is an operation that has no form here, or a call of another function.
     """
     function = listing.function
+    if listing.calls:
+        raise UnknownOperationError(f"a call in {function.name()}, which is called itself")
     wide = arithmetic is FOURS
     width = LANES if wide else 1
     arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from math import inf, isfinite
+from typing import NamedTuple
 
 import casadi as ca
 
@@ -32,8 +33,7 @@ LONGEST_LINE = 110
 """Characters up to which the expression of a value that is read once stands where it is read."""
 
 
-@dataclass(frozen=True)
-class Statement:
+class Statement(NamedTuple):
     """One statement.
 
     Attributes:
@@ -73,7 +73,7 @@ class Statement:
         own = self.sides or [CHOICE] * len(self.operands)
         sides = [*own[:place], *(other.sides or [CHOICE] * count), *own[place + 1 :]]
         text = self.text.format(*before, inner, *behind)
-        return replace(self, text=text, operands=operands, sides=sides)
+        return self._replace(text=text, operands=operands, sides=sides)
 
 
 @dataclass
@@ -225,7 +225,7 @@ def _nested(statements: Sequence[Statement], text_of: Callable[[int], str | None
             if other.whole == () and i in not_whole:
                 not_whole.remove(i)
         if statement.whole is not None:
-            statement = replace(statement, whole=None if not_whole else ())
+            statement = statement._replace(whole=None if not_whole else ())
         if statement.made is not None and reads[statement.made] == 1:
             waiting[statement.made] = statement
         else:

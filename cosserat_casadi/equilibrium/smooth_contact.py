@@ -15,6 +15,7 @@ from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure, push_on_disk
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.grid import gauss_legendre
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -75,14 +76,27 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
     for part in runs(gaps < width):
         start = _crossing(gaps - width, part.start - 1, part.start)
         end = _crossing(gaps - width, part.stop - 1, part.stop)
-        # The force vanishes smoothly at both ends, or ends with the rod.
-        nodes, weights = gauss_legendre(GAUSS_POINTS)
-        X = start + (end - start) * (nodes + 1) / 2
+        X, weights = _summed_at(solution, layer, start, end)
         per_length = pressure(layer, _gaps(solution, layer, X))
         along = normals(solution, layer.rod, layer.obstacle, X)
-        force = length * (end - start) / 2 * ((weights * per_length) @ along)
+        force = length * ((weights * per_length) @ along)
         force += friction_between(solution.model, layer, solution.x, solution.inputs, (start, end))
         yield Contact(layer.obstacle.name, layer.rod, start, end, force, (), "smooth", width, float(gaps[part].min()))
+
+
+def _summed_at(solution: Solution, layer: ContactLayer, start: float, end: float) -> tuple[FloatArray, FloatArray]:
+    """Abscissae at which the force along a stretch is summed, and their weights, shape (k,) each.
+
+    Where the equations sum it between nodes, it is their sum: it holds the rod in balance.
+    """
+    sections = solution.model.discrete.closer_sections.get(layer.name or "")
+    if sections is not None:
+        X = known(sections.placed.X)
+        inside = (start <= X) & (end >= X)
+        return X[inside], known(sections.lengths)[inside] / sections.rod.length
+    # The force vanishes smoothly at both ends, or ends with the rod.
+    nodes, weights = gauss_legendre(GAUSS_POINTS)
+    return start + (end - start) * (nodes + 1) / 2, (end - start) / 2 * weights
 
 
 def _body_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:

@@ -78,6 +78,9 @@ def check_motions(model: Model) -> None:
         SceneError: with all that is wrong.
     """
     problems = immovable(model.at())
+    if model.scene.velocities:
+        remedy = "leave them out, and let a load or a base that [[motions]] move set the rods in motion"
+        problems.append(Problem("velocities", "what is measured over time begins at rest", remedy))
     for index, rod in enumerate(model.scene.rods):
         if rod.base.free:
             remedy = "hold the base, or move it by a motion of its position"

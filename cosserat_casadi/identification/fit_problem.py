@@ -106,8 +106,7 @@ class Task:
             rows += self._rows(*predicted, held_out=True)
         ending = Ending(misfit, fit, known, left_out)
         entries = [(row.measurement, row.entry, row.measured) for row in rows]
-        warnings = [*_thick_rods(self.model), *_wide_bounds(self.model, self.layout)]
-        warnings += far_positions(self.model.scene, entries)
+        warnings = [*_wide_bounds(self.model, self.layout), *far_positions(self.model.scene, entries)]
         if fit.beyond is None or fit.outcome is FitOutcome.CONVERGED:
             warnings += misfit.marginal(fit.state)
         return ending.concluded(rows, warnings, (self.starts, ended_here), step_error)
@@ -304,15 +303,6 @@ class Task:
 
 FAR = 3.0
 """Lengths of all rods, or tubes, beyond which a measured position, from the base on, is hardly one of the scene."""
-
-
-def _thick_rods(model: AnyModel) -> Iterator[str]:
-    for rod in model.scene.rods:
-        sizes = {} if rod.section is None else sizes_of(rod.section)
-        for key, size in sizes.items():
-            largest = float(np.max(size))
-            if largest >= rod.length:
-                yield f"{rod.name}.section.{key} is {largest:g} m in a rod of {rod.length:g} m: is it in metres?"
 
 
 def _wide_bounds(model: AnyModel, layout: UnknownLayout) -> Iterator[str]:

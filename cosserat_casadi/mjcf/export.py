@@ -755,9 +755,8 @@ class _Robot:
         for rod in scene.rods:
             properties = self.unloaded.rods[rod.name].properties
             if properties.beyond_hooke is not None:
-                self._leave_out(
-                    rod.name, "joints have the stiffness of small strains: the law of its material is missing"
-                )
+                told = "joints have the stiffness of each small strain alone: what a law adds, and couples, is missing"
+                self._leave_out(rod.name, told)
             if properties.branches:
                 self._leave_out(rod.name, "stress that relaxes is missing")
             if properties.mass_damping is not None:

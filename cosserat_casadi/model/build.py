@@ -108,6 +108,11 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
             return self
         return Model(self.discrete.with_memory)
 
+    @property
+    def rubs_on_paths(self) -> bool:
+        """Whether something rubs along a path: rods on obstacles and on each other do, bodies and disks do not."""
+        return self.scene.rubs and self.with_memory.inputs.memory is not None
+
     def with_flows(self, x: FloatArray) -> FloatArray:
         """Unknowns of :attr:`in_motion` at rest: those of this model, then flows, shape (in_motion.size,)."""
         return np.concatenate([x, np.zeros(self.in_motion.size - self.size)])

@@ -45,14 +45,19 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
         of_disk: Matrix = -ca.MX(gap) / layer.obstacle.width
         return of_disk
     radii: Matrix | float = layer.radius
+    closer = None
     if layer.body is None:
         assert layer.rod is not None, "a layer is in front of a rod or a body"
         rod = system.discrete.rods[layer.rod]
-        radii = as_matrix(section_radii(rod.properties, rod.grid.nodes_at(np.arange(rod.grid.size)))).T
+        closer = system.discrete.closer_sections.get(layer.name or "")
+        X = rod.grid.nodes_at(np.arange(rod.grid.size)) if closer is None else closer.placed.X
+        radii = as_matrix(section_radii(rod.properties, X)).T
     point = ca.SX.sym("point", 3)
     distance = ca.SX(SURFACES[layer.obstacle.kind].distance(layer.obstacle, point))
     function = ca.Function("distance", [point], ca.cse([distance]))
     positions = positions_before(system, layer)
+    if closer is not None:
+        positions = positions @ closer.placed.interpolation.T
     gaps = function.map(positions.shape[1])(positions) - radii
     depth: Matrix = -ca.mmin(gaps) / layer.obstacle.width
     return depth

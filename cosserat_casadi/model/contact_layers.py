@@ -9,7 +9,9 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.contact_pairs import pair_widths
+from cosserat_casadi.rod.placed_sections import EqualSections
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SURFACE_FORCE = 10.0
@@ -28,6 +30,16 @@ MOST_ELEMENTS = 12
 LOOSEST_NODES = 1.5
 """Distance of nodes in the middle of an element over half of the stretch that a thin obstacle presses: where they are
 farther apart a rod sinks in between them, and its shape hangs on where they are."""
+
+USUAL_NODES = 12
+"""Intervals of an element up to which nodes see a layer: those of five modes."""
+
+SECTION_SPACING = 0.5
+"""Distance of the sections at which a thinner layer is summed over half of the stretch that it presses, on the fewest
+intervals: a force (1 − s²)³ within this stretch, |s| ≤ 1, is summed to 4 thousandths by equal parts of it."""
+
+FEWEST_NODES = 8
+"""Intervals that are called so: those of three modes. On more intervals sections are as much closer."""
 
 MOST_LAYER_NODES = 60
 """Most intervals that layers alone ask for; those of thinner layers wait until the grid is refined."""
@@ -139,10 +151,7 @@ def longest_step(scene: scenes.Scene) -> float:
 
 
 def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) -> int:
-    """Intervals of an element that see how thin smooth obstacles press a rod; 0 without any.
-
-    A straight rod whose axis is at the distance d from that of a bar is in its layer for √(2 w d) to both sides.
-    Chebyshev nodes are π/2 times as far apart in the middle of an element as on the average.
+    """Intervals of an element that see how smooth obstacles press a rod at its nodes; 0 without any.
 
     Args:
         scene: the scene.
@@ -150,12 +159,48 @@ def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) ->
         radius: of its thinnest section, m.
         widest: length of its longest element, m.
     """
-    needed = [0.0]
-    for obstacle in scene.obstacles:
-        if obstacle.width and isfinite(obstacle.thickness) and obstacle.concerns(rod):
-            stretch = sqrt(2 * obstacle.width * (obstacle.thickness / 2 + radius))
-            needed.append(pi / 2 * widest / (LOOSEST_NODES * stretch))
-    return ceil(min(max(needed), MOST_LAYER_NODES))
+    at_nodes = [own for own in scene.obstacles if own.concerns(rod) and _sections_a_node(own, radius, widest) == 1]
+    return ceil(min(max((_nodes_for(own, radius, widest) for own in at_nodes), default=0.0), MOST_LAYER_NODES))
+
+
+def closer_sections(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> EqualSections | None:
+    """The sections of a rod at which the layer of an obstacle is summed; None where that is at the nodes."""
+    lengths = rod.properties.length * np.diff(rod.grid.breaks)
+    radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
+    ratio = _sections_a_node(obstacle, radius, float(lengths.max()))
+    if ratio == 1:
+        return None
+    counts = np.ceil(ratio * rod.grid.intervals * lengths / lengths.max()).astype(int)
+    return EqualSections(rod, tuple(counts.tolist()))
+
+
+def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> int:
+    """Sections for each interval of the longest element at which a layer is summed; 1 where it is at the nodes.
+
+    What rubs hangs on rotations, and remembers its nodes.
+    """
+    if obstacle.rubs or _nodes_for(obstacle, radius, widest) <= USUAL_NODES:
+        return 1
+    return ceil(widest / (SECTION_SPACING * _pressed(obstacle, radius)) / FEWEST_NODES)
+
+
+def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> float:
+    """Intervals of the longest element on which nodes see a layer; 0 of a thick obstacle.
+
+    Chebyshev nodes are π/2 times as far apart in the middle of an element as on the average.
+    """
+    if not obstacle.width or not isfinite(obstacle.thickness):
+        return 0.0
+    return pi / 2 * widest / (LOOSEST_NODES * _pressed(obstacle, radius))
+
+
+def _pressed(obstacle: scenes.ObstacleRecord, radius: float) -> float:
+    """How far to both sides a thin obstacle presses a straight rod, m.
+
+    Where the distance of their axes is d, the rod is in the layer for √(2 w d).
+    """
+    assert obstacle.width is not None, "it is smooth"
+    return sqrt(2 * obstacle.width * (obstacle.thickness / 2 + radius))
 
 
 def inexact_beside(scene: scenes.Scene) -> float:

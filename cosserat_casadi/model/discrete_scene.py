@@ -23,7 +23,7 @@ from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_layers import contact_layers
+from cosserat_casadi.model.contact_layers import closer_sections, contact_layers
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
@@ -43,6 +43,7 @@ from cosserat_casadi.model.scene_rods import fixed_masses, rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.placed_sections import EqualSections
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
 from cosserat_casadi.scene.input_fields import InputField
@@ -197,6 +198,19 @@ class DiscreteScene:
         """The loads of the scene, then what its obstacles with a width press with."""
         layers = contact_layers(self.scene, self.nominal.rods)
         return (*self.scene.loads, *(layer.widened(self.layers) for layer in layers))
+
+    @cached_property
+    def closer_sections(self) -> dict[str, EqualSections]:
+        """Sections at which layers are summed that come and go between the nodes of a rod, by the name of the load."""
+        # Of the scene's own numbers: parameters and other widths change no number of sections.
+        found = {}
+        for layer in contact_layers(self.nominal.scene, self.nominal.rods):
+            if layer.rod is None or layer.at is not None:
+                continue
+            sections = closer_sections(layer.obstacle, self.nominal.rods[layer.rod])
+            if sections is not None:
+                found[str(layer.name)] = replace(sections, rod=self.rods[layer.rod])
+        return found
 
     @property
     def remembered(self) -> Mapping[str, Grid]:

@@ -134,8 +134,8 @@ class RodDrag(Drag):
         """Power that the drag takes, 1×1, W: that of its forces along the motion that the body sees."""
         force, moment = self.sections.drag
         assert self.load.motion is not None, "a drag is one of motion"
-        nodes = self.sections.nodes
-        along = force * self.load.motion.velocity[:, nodes] + moment * self.load.motion.angular_velocity[:, nodes]
+        velocity, spin = map(self.sections.at_sections, (self.load.motion.velocity, self.load.motion.angular_velocity))
+        along = force * velocity + moment * spin
         return -ca.sum1(along) @ as_matrix(self.sections.weights)
 
 

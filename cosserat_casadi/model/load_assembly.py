@@ -200,23 +200,25 @@ class RodLoads:
             motion=motion,
             growth=partial(kernel.member.growth, kernel.load, site),
             borne_by=kernel.member.seen_from(kernel.load),
+            sections=self.discrete.closer_sections.get(kernel.load.name),
         )
 
 
 def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
-    """Sections of a rod that a load acts on: one, or those of the nodes of its span."""
+    """Sections of a rod that a load acts on: one, those of the nodes of its span, or closer ones."""
     discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
     member = EFFECTS[load.kind]
+    closer = discrete.closer_sections.get(load.name or "")
     at = member.abscissa(load)
-    if at is None:
-        nodes = grid.nodes_in(*member.span(load))
+    if closer is not None:
+        X, interpolation = closer.placed.X, closer.placed.to_sections
     else:
-        nodes = np.array([grid.node_at(at)])
-    at_nodes = np.eye(grid.size)[nodes]
+        nodes = grid.nodes_in(*member.span(load)) if at is None else np.array([grid.node_at(at)])
+        X, interpolation = grid.nodes_at(nodes), np.eye(grid.size)[nodes]
     # A function: few loads ask for the unloaded poses, which take a walk along all carriers.
-    poses = partial(unloaded_poses, discrete, rod, at_nodes)
-    return Site(discrete_rod.properties, grid.nodes_at(nodes), poses)
+    poses = partial(unloaded_poses, discrete, rod, interpolation)
+    return Site(discrete_rod.properties, X, poses)
 
 
 def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> UnloadedPoses:

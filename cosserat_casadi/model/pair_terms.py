@@ -26,6 +26,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.contact_pairs import ContactPair, PairHistory
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.inputs import HISTORY
+from cosserat_casadi.rod.placed_sections import PlacedSections
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.wrenches import LineWrench
 
@@ -69,19 +70,20 @@ class ContactSide:
         return PANEL * ceil(self.count / PANEL)
 
     @cached_property
+    def placed(self) -> PlacedSections:
+        """The sections at their places."""
+        return PlacedSections(self.discrete, self.coordinates)
+
+    @property
     def interpolation(self) -> ca.DM:
-        """Matrix from values at the nodes to values at the sections, S×M; of each section those of its element."""
-        # Sections stay where they are in their elements: none is moved into another.
-        matrix = replace(self.discrete.grid, ends=None).interpolation_matrix(self.coordinates)
-        return ca.sparsify(ca.DM(matrix))
+        """Matrix from values at the nodes to values at the sections, S×M."""
+        return self.placed.interpolation
 
     @cached_property
     def sections(self) -> SectionsInContact:
         """The sections at their places, each for an equal part of the rod between element ends."""
         rod = self.discrete
-        elements = replace(rod.grid, ends=None).element_of(self.coordinates)
-        X = rod.grid.on_rod(self.coordinates, elements)
-        rates = rod.grid.rates_in(elements)
+        X, rates = self.placed.X, self.placed.rates
         ratio = self.system.shapes[self.rod].ratio
         lengths = as_matrix(np.where(np.arange(self.columns) < self.count, rod.properties.length / self.count, 0.0))
         if rates is not None:

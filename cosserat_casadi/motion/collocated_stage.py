@@ -73,14 +73,22 @@ class StageEquations:
         Raises:
             ValueError: parameters are given to a stage that takes none, or are missing.
         """
-        takes_parameters = PARAMETERS in self.function.name_in()
-        if takes_parameters and p is None:
-            raise ValueError("this stage takes parameters: give them as p")
-        if not takes_parameters and p is not None:
-            raise ValueError("this stage takes no parameters: leave p out, or make it with parameters=True")
-        parameters = [p] if takes_parameters else []
+        parameters = _asked_for(PARAMETERS in self.function.name_in(), p)
         residual: Matrix = self.function(state, unknowns, inputs, *parameters, inputs_rate)
         return residual
+
+
+def _asked_for(takes_parameters: bool, p: Matrix | None) -> list[Matrix]:
+    """The parameters as arguments of a function; none of a stage that takes none.
+
+    Raises:
+        ValueError: they are given to a stage that takes none, or are missing.
+    """
+    if takes_parameters and p is None:
+        raise ValueError("this stage takes parameters: give them as p")
+    if not takes_parameters and p is not None:
+        raise ValueError("this stage takes no parameters: leave p out, or make it with parameters=True")
+    return [] if p is None else [p]
 
 
 @dataclass(frozen=True)
@@ -143,7 +151,9 @@ class MotionStage:
         """Their rates, 1/s, shape (model.size,)."""
         return self.places @ state[self.state_size // 2 :] / self.duration
 
-    def independent_rates(self, state: Matrix, x: FloatArray, inputs: FloatArray) -> Matrix:
+    def independent_rates(
+        self, state: Matrix, x: FloatArray, inputs: FloatArray, p: FloatArray | None = None
+    ) -> Matrix:
         """Rates of what constraints leave free, 1/s: that they are zero says that the rods stand still.
 
         That all rates are zero would say of constraints once more what the equations of a stage say already, and
@@ -153,10 +163,14 @@ class MotionStage:
             state: shape (state_size,).
             x: unknowns near those of the state, at which constraints are linearised, shape (model.size,).
             inputs: stacked inputs there.
+            p: stacked parameters there, of a stage that takes them.
+
+        Raises:
+            ValueError: parameters are given to a stage that takes none, or are missing.
         """
         discrete = self.model.discrete
         moving = np.concatenate([np.arange(len(x))[span] for _, span in discrete.unknowns.of_kind(*MECHANICAL)])
-        jacobian, _ = self.model.jacobian(x, inputs)
+        jacobian, _ = self.model.jacobian(x, inputs, *_asked_for(self.model.parameters.size > 0, p))
         # No mechanics sees the norm of a quaternion.
         norms = np.zeros((len(discrete.frames), len(x)))
         for row, (name, frame) in zip(norms, discrete.frames.items(), strict=True):

@@ -534,7 +534,9 @@ def _switched(
             phases = restart.phases
             if not legs and resume is None and begun is None:
                 touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
-                shortest = sags_by_cable(model, at.x, piece.at(at.time).value) if flight.coordinates is None else {}
+                shortest = {}
+                if flight.coordinates is None:
+                    shortest = sags_by_cable(model, at.x, piece.at(at.time).value, p)
                 moving = _inputs_that_move(model, piece, at.time)
                 grow = [name for name in _lengths_of_free_rods(model) if name in moving]
                 _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest, moving=moving, grow=grow)

@@ -358,19 +358,23 @@ class OneSided:
         return ca.densify(ca.vertcat(*sags, *ways))
 
 
-def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, float]:
+def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray | None = None) -> dict[str, float]:
     """Sags of every cable of given length that does not stretch, over the rod's length; negative if too short.
 
     Args:
         model: the model.
         x: unknowns, shape (size,).
         inputs: stacked, shape (model.inputs.size,).
+        p: stacked parameters; those of a model that has some.
     """
     cables = [cable.tendon for cable in model.discrete.cables if getattr(cable.tendon, "axial_stiffness", None) is None]
     if not cables:
         return {}
     lengths = System(model.discrete, Arguments(ca.DM(x), ca.DM(inputs))).actuators.cable_lengths
-    return {cable.name: float(ca.evalf(ca.MX(lengths[cable.name].sag))) for cable in cables}
+    given = [] if p is None else [model.parameters.symbol]
+    sags = ca.Function("sags", given, [lengths[cable.name].sag for cable in cables])
+    values = sags.call([p] if given else [])
+    return {cable.name: float(value) for cable, value in zip(cables, values, strict=True)}
 
 
 def _changed(phases: Closed, numbers: Sequence[int]) -> Closed:

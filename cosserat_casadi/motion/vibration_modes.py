@@ -37,6 +37,7 @@ from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.result import Result
+from cosserat_casadi.spelling import named
 
 DEFAULT_COUNT = 8
 """Modes that are sought where the caller does not say how many."""
@@ -59,6 +60,9 @@ ROUNDING = 1e-13
 
 WHILE_PRESSED = "So long as every contact presses, and nothing else touches: larger motions lift off and strike."
 """Sentence on small motions of rods in exact contact."""
+
+ABOUT_REST = "They are about rest at the scene's values: the motion of {inputs} in [[motions]] is left aside."
+"""Sentence on small motions of a scene whose inputs move: a rod whose base turns has other frequencies."""
 
 
 class ModesOutcome(Enum):
@@ -526,6 +530,9 @@ def stability_sentences(
         sentences.append(_settled(values))
     if solution.contacts and solution.model.scene.touches_exactly:
         sentences.append(WHILE_PRESSED)
+    moved = list(dict.fromkeys(motion.input for motion in solution.model.scene.motions))
+    if moved:
+        sentences.append(ABOUT_REST.format(inputs=named(moved)))
     return " ".join(sentences)
 
 

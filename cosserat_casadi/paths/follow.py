@@ -174,7 +174,7 @@ def follow_path(
         message = _sentence(path.outcome, path.factor) + path.stopped_at
         return _resolved(replace(path, message=message))
     left_out = left_out_on_paths(model.scene)
-    if model.scene.rubs and model.with_memory.inputs.memory is not None:
+    if model.rubs_on_paths:
         if branch:
             problem = "is of a path without friction: one that rubs goes on in increments"
             raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))

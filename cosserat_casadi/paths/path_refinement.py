@@ -151,7 +151,7 @@ def _follow_refined(
             intervals = max(discretisation.nodes for discretisation in discretisations)
             report(f"{model.size} unknowns, {intervals} intervals")
         limits = settings or ArcSettings()
-        if scene.rubs:
+        if model.rubs_on_paths:
             # Friction goes from point to point: their distance is refined with the modes, so that its error shows too.
             limits = replace(limits, load_factor_change=limits.load_factor_change / 2**level)
         return follow_path(model, name, value, values, branch=branch, settings=limits, progress=progress)

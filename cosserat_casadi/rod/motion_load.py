@@ -78,15 +78,10 @@ class MotionLoad:
     @cached_property
     def position(self) -> Jet:
         """δr of the loaded sections with its rates, 3k×columns, m."""
-        grid = self.tangent.tangent.rod.grid
-        integrate = ca.DM(grid.integration_matrix[self.load.nodes])
-        orders = []
-        for matrix in self.tangent.section_tangent.orders:
-            components = [integrate @ component for component in ca.vertsplit(matrix, grid.size)]
-            orders.append(ca.vertcat(*components))
+        orders = [self.load.moved(matrix) for matrix in self.tangent.section_tangent.orders]
         if self.tangent.floating:
             # A shift of the base moves all sections alike.
-            alike = ca.kron(ca.DM.eye(3), ca.DM.ones(len(self.load.nodes), 1))
+            alike = ca.kron(ca.DM.eye(3), ca.DM.ones(self.load.count, 1))
             before = ca.DM(alike.shape[0], orders[0].shape[1] - 3)
             orders[0] = orders[0] + ca.horzcat(before, alike)
         return Jet(*orders)
@@ -94,12 +89,7 @@ class MotionLoad:
     @cached_property
     def rotation(self) -> Jet:
         """δθ of the loaded sections with its rates, 3k×columns, rad."""
-        size = self.tangent.tangent.rod.grid.size
-        orders = []
-        for matrix in self.tangent.section_rotation.orders:
-            components = [component[self.load.nodes, :] for component in ca.vertsplit(matrix, size)]
-            orders.append(ca.vertcat(*components))
-        return Jet(*orders)
+        return Jet(*[self.load.varied_at_sections(matrix) for matrix in self.tangent.section_rotation.orders])
 
     def _variation_of(self, rate: str) -> Variation:
         r = self.position
@@ -108,10 +98,10 @@ class MotionLoad:
             return r.rate, r.value, None
         if rate == "acceleration":
             return self._undamped(r.acceleration, r.rate), 2 * r.rate, r.value
-        spin = hat_operator(self.tangent.motion.angular_velocity[:, self.load.nodes])
+        spin = hat_operator(self.load.at_sections(self.tangent.motion.angular_velocity))
         if rate == "angular_velocity":
             return theta.rate - spin @ theta.value, theta.value, None
-        spin_rate = hat_operator(self.tangent.motion.angular_acceleration[:, self.load.nodes])
+        spin_rate = hat_operator(self.load.at_sections(self.tangent.motion.angular_acceleration))
         by_position = theta.acceleration - spin_rate @ theta.value - spin @ theta.rate
         by_position = self._undamped(by_position, theta.rate - spin @ theta.value)
         return by_position, 2 * theta.rate - spin @ theta.value, theta.value

@@ -36,8 +36,14 @@ class LoadedSections:
     shape: Shape
 
     @cached_property
+    def count(self) -> int:
+        """Number of loaded sections k."""
+        return len(self.nodes) if self.load.sections is None else self.load.sections.size
+
+    @cached_property
     def nodes(self) -> list[int]:
         """Nodes of the loaded sections: one, or those of the span."""
+        assert self.load.sections is None, "they lie between nodes"
         grid = self.shape.rod.grid
         at = self.load.at
         if at is None:
@@ -46,14 +52,38 @@ class LoadedSections:
 
     @property
     def everywhere(self) -> bool:
-        """Whether all nodes of the rod are loaded."""
-        return len(self.nodes) == self.shape.rod.grid.size
+        """Whether the sections are all nodes of the rod."""
+        return self.load.sections is None and len(self.nodes) == self.shape.rod.grid.size
+
+    def at_sections(self, field: Matrix) -> Matrix:
+        """A field at the nodes, m×M, at the loaded sections, m×k."""
+        if self.load.sections is not None:
+            return field @ self.load.sections.placed.interpolation.T
+        return field if self.everywhere else field[:, self.nodes]
+
+    def varied_at_sections(self, variation: Matrix) -> Matrix:
+        """Variations at the nodes, stacked component by component, mM×n, at the loaded sections, mk×n."""
+        parts = ca.vertsplit(variation, self.shape.rod.grid.size)
+        if self.load.sections is not None:
+            return ca.vertcat(*[self.load.sections.placed.interpolation @ part for part in parts])
+        return variation if self.everywhere else ca.vertcat(*[part[self.nodes, :] for part in parts])
+
+    def moved(self, tangents: Matrix) -> Matrix:
+        """Variations of positions at the loaded sections, 3k×n, from those of the tangents at the nodes, 3M×n."""
+        grid = self.shape.rod.grid
+        parts = ca.vertsplit(tangents, grid.size)
+        if self.load.sections is not None:
+            return self.varied_at_sections(ca.vertcat(*[grid.integrated(part.T).T for part in parts]))
+        integrate = ca.DM(grid.integration_matrix[self.nodes])
+        return ca.vertcat(*[integrate @ part for part in parts])
 
     @cached_property
     def weights(self) -> Numbers:
         """Weights of the sections in sums, shape (k,): metres of rod, or one."""
         if self.load.at is not None:
             return np.ones(1)
+        if self.load.sections is not None:
+            return self.load.sections.lengths
         return self.shape.rod.node_lengths[self.nodes]
 
     @cached_property
@@ -61,9 +91,7 @@ class LoadedSections:
         """Positions of the sections, 3×k, m."""
         if self.load.at is not None:
             return self.shape.position_at(self.nodes[0])
-        if self.everywhere:
-            return self.shape.position
-        return self.shape.position[:, self.nodes]
+        return self.at_sections(self.shape.position)
 
     @cached_property
     def force(self) -> Matrix | None:
@@ -110,7 +138,7 @@ class LoadedSections:
 
     def weighted(self, variation: Matrix) -> Matrix:
         """Rows of stacked fields, 3k×n or 6k×n, each times the weight of its section."""
-        components = variation.shape[0] // len(self.nodes)
+        components = variation.shape[0] // self.count
         weights = ca.repmat(as_matrix(self.weights), components, 1)
         return ca.diag(weights) @ variation
 
@@ -121,7 +149,7 @@ class LoadedSections:
         Moving the base moves every section, δr = δp + δφ × r and δθ = δφ. That f and c, fixed in the world, turn
         back in the axes of the base is left to the frozen wrench.
         """
-        count = len(self.nodes)
+        count = self.count
         # δφ × r at every section.
         levers = hat_blocks(*(row.T for row in ca.vertsplit(-self.position)))
         alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
@@ -132,7 +160,7 @@ class LoadedSections:
 
     def changed(self, variation: Matrix) -> Wrench:
         """A wrench on the same sections whose forces and moments are a variation of this load's, 6k×1."""
-        count = len(self.nodes)
+        count = self.count
         forces, moments = ca.vertsplit(variation, 3 * count)
         force = unstack(forces, 3)
         moment = unstack(moments, 3)
@@ -146,9 +174,11 @@ class LoadedSections:
         return LineWrench(self._at_all_nodes(force), self._at_all_nodes(moment), None, follower=False)
 
     def _at_all_nodes(self, part: Matrix | None) -> Matrix | None:
-        """A field of the loaded sections at all nodes of the rod: nothing is stored where nothing acts."""
+        """A load per length at the loaded sections, at all nodes: nothing is stored where nothing acts."""
         if part is None or self.everywhere:
             return part
+        if self.load.sections is not None:
+            return part @ self.load.sections.to_nodes
         size = self.shape.rod.grid.size
         places = ca.Sparsity.triplet(len(self.nodes), size, list(range(len(self.nodes))), self.nodes)
         return part @ ca.DM(places, 1.0)
@@ -168,7 +198,7 @@ class LoadedSections:
         """The rates that the kernel depends on at the loaded sections, 3×k each, axes of the base."""
         if self.load.motion is None:
             return []
-        return [self.load.motion.undamped(rate)[:, self.nodes] for rate in self.load.kernel.rates]
+        return [self.at_sections(self.load.motion.undamped(rate)) for rate in self.load.kernel.rates]
 
     def _scaled(self, part: Matrix) -> Matrix | None:
         if not part.nnz():
@@ -178,8 +208,8 @@ class LoadedSections:
     def _mapped(self, function: ca.Function) -> list[Matrix]:
         """Results of a function of the kernel at all sections, side by side."""
         # Base, parameters and scale are the same for all sections; CasADi's map wants them side by side.
-        count = len(self.nodes)
-        rotations = self.shape.rotations_at(self.nodes)
+        count = self.count
+        rotations = ca.DM(3, 3 * count) if self.load.sections is not None else self.shape.rotations_at(self.nodes)
         alike = [self.load.base_position, self.load.base_rotation, self.load.parameters]
         repeated = [ca.repmat(value, 1, count) for value in alike]
         given = [self.position, rotations, *repeated, as_matrix(self.load.data), *self._rates]

@@ -142,7 +142,7 @@ def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
 
 def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
     """Sum over the sections of a load, 3×n, of variations that hold their weights, 3k×n."""
-    over_sections = ca.DM.ones(1, len(load.nodes))
+    over_sections = ca.DM.ones(1, load.count)
     sums = ca.kron(ca.DM.eye(3), over_sections)
     return sums @ variation
 

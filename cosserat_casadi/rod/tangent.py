@@ -260,6 +260,9 @@ class Tangent:
             # One section: no product with all of S.
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
+        if load.load.sections is not None:
+            # Its force does not hang on rotations.
+            return ca.vertcat(load.moved(self.tangent), ca.DM(3 * load.count, self.rod.size))
         return self.motion_of(load.nodes)
 
     def motion_of(self, nodes: list[int]) -> Matrix:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from cosserat_casadi.maths.numbers import Numbers, Scalar
 from cosserat_casadi.maths.typing import Matrix, check_shape
+from cosserat_casadi.rod.placed_sections import EqualSections
 from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
@@ -95,6 +96,8 @@ class PoseWrench:
         motion: of the rod, or as a body sees it; None at rest, and for a kernel that does not depend on rates.
         growth: gives the power of the load factor by which it grows on the way from the unloaded scene; None is 1.
         borne_by: name of the body that bears the opposite wrench; None where the world does.
+        sections: at which a wrench per metre is summed, where that is not at the nodes; it is then a force that hangs
+            on the position of its section, and on the velocity, alone.
     """
 
     at: Scalar | None
@@ -108,6 +111,7 @@ class PoseWrench:
     motion: RodMotion | SeenMotion | None = None
     growth: Callable[[], int] | None = None
     borne_by: str | None = None
+    sections: EqualSections | None = None
 
     def __post_init__(self) -> None:
         check_shape("base_position", self.base_position, 3, 1)

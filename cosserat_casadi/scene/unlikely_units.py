@@ -41,7 +41,7 @@ def _notes(scene: Scene) -> Iterator[str]:
     elastic: list[tuple[str, Rod | Tube]] = [(f"rods[{i}]", rod) for i, rod in enumerate(scene.rods)]
     for where, record in [*elastic, *tubes]:
         lengths = _numbers(record, {"length", "straight", "curved"})
-        sizes = _numbers(record.section, SIZES)
+        sizes = _sizes(record.section)
         material = _numbers(record.material, {"youngs_modulus", "density"})
         numbers = (lengths | sizes | material).values()
         if all(1 / NEAR_ONE <= number <= NEAR_ONE for number in numbers):
@@ -67,3 +67,10 @@ def _notes(scene: Scene) -> Iterator[str]:
 def _numbers(record: Record | None, keys: Collection[str]) -> dict[str, float]:
     """Values of some keys of a record that are one number each: no lists, and no expressions of parameters."""
     return {key: value for key, value in record or () if key in keys and isinstance(value, float | int)}
+
+
+def _sizes(section: Record | None) -> dict[str, float]:
+    """Sizes of a section by key; of one from base to tip the larger."""
+    tapered = {key: value for key, value in section or () if key in SIZES and isinstance(value, tuple)}
+    ends = {key: max(value) for key, value in tapered.items() if all(isinstance(end, float | int) for end in value)}
+    return _numbers(section, SIZES) | ends

@@ -51,7 +51,7 @@ def test_planar_load_takes_modes_in_its_plane_only() -> None:
     assert pose_distance(solution, fine(wanted)) <= 1e-8
 
 
-@pytest.mark.parametrize("seed", mostly_slow(range(300, 312), quick=(300, 303)))
+@pytest.mark.parametrize("seed", mostly_slow(range(300, 312), quick=(303,)))
 def test_tolerance_is_met(seed: int) -> None:
     """And the estimate is not below the truth."""
     tolerance = (1e-3, 1e-5, 1e-7, 1e-9)[seed % 4]

@@ -46,12 +46,16 @@ def solved_near(solution: Solution, model: Model) -> Solution:
 
 def turned_towards(solution: Solution, truth: Solution) -> Solution:
     """The true equilibrium nearest to a solution: a rod that buckles on its axis may be turned about it anyhow."""
-    _, singular, right = np.linalg.svd(Preview(truth).jacobian)
+    singular = np.linalg.svd(Preview(truth).jacobian, compute_uv=False)
     if singular[-1] > SINGULAR * singular[0]:
         return truth
-    neutral = right[-1]
-    away = prolong(solution, truth.model) - truth.x
-    return replace(truth, x=truth.x + (neutral @ away) * neutral)
+    x = prolong(solution, truth.model)
+    for _ in range(4):
+        jacobian, residual = (part.full() for part in truth.model.jacobian(x, truth.inputs))
+        # The shortest of the steps that close the residual has no turn about the axis.
+        x = x - np.linalg.lstsq(jacobian, residual.ravel(), rcond=SINGULAR)[0]
+    assert np.abs(truth.model.jacobian(x, truth.inputs)[1].full()).max() < 1e-12
+    return replace(truth, x=x)
 
 
 @pytest.mark.parametrize(("seed", "modes"), mostly_slow(UNEVEN, quick=[(2, 12)]))

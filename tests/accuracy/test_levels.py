@@ -10,6 +10,7 @@ import pytest
 from cosserat_casadi import Scene, Solution, build, discretise, parse_scene, read_scene, solve
 from cosserat_casadi.accuracy.assess import Enough, NeedsFinerGrid, NeedsModes, NeedsNodes, NoEquilibrium, assess
 from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level, is_thin, layer_nodes
+from cosserat_casadi.equilibrium.metrics import pose_distance, prolong
 from cosserat_casadi.numerics.outcome import Outcome
 from tests.conftest import ROOT
 from tests.contact.test_smooth_contact import ON_A_BAR
@@ -120,14 +121,20 @@ def test_first_level_of_an_assembly_tells_how_fast_it_converges() -> None:
     assert len(tried) == 2
 
 
-def test_levels_beside_a_thin_wire_see_its_layer() -> None:
-    """On fewer intervals the rod sinks between nodes, and its path stalls; on these it lies in the layer.
+FREE_ON_A_BAR = ON_A_BAR.replace("accuracy = { modes = 2, nodes = 24 }", "")
+"""The rod on a bar whose modes are chosen."""
 
-    The axis is in the layer for √(2 w d) = 1.7 mm to both sides of the wire. Eleven elements of 45 mm are to have nodes
-    at most 1.5 times as far apart in their middles, where they are π/2 times as far apart as on the average.
+WIRE = ["bar.radius=1e-3", "bar.width=5e-4"]
+"""A bar that becomes a wire, whose layer a rod of 2 mm radius is in for √(2 w d) = 1.7 mm to both sides."""
+
+
+def test_levels_beside_a_thin_wire_that_rubs_see_its_layer() -> None:
+    """Friction is at the nodes: on fewer intervals the rod sinks between them, and its path stalls.
+
+    Eleven elements of 45 mm are to have nodes at most 1.5 times as far apart as half of the pressed stretch in their
+    middles, where they are π/2 times as far apart as on the average.
     """
-    free = "accuracy = { modes = 2, nodes = 24 }"
-    wire = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=1e-3", "bar.width=5e-4"])
+    wire = parse_scene(FREE_ON_A_BAR, [*WIRE, "bar.friction=0.1"])
     nodes = int(np.ceil(np.pi / 2 * 500 / 11 / (1.5 * np.sqrt(2 * 0.5 * (1 + 2)))))
     assert layer_nodes(wire) == nodes == 28
     assert is_thin(wire)
@@ -137,17 +144,25 @@ def test_levels_beside_a_thin_wire_see_its_layer() -> None:
     # Zeros: it is not let settle.
     coarse = solve(few, start=np.zeros(few.size), estimate_error=False)
     assert coarse.outcome is Outcome.LOAD_STALLED
-    seen = solve(build(wire, discretise(wire, 3, nodes)), estimate_error=False)
+
+
+def test_the_layer_of_a_thin_wire_is_summed_between_nodes() -> None:
+    """A wire asks for no intervals of its own: on eight the rod lies in its layer as on sixteen."""
+    wire = parse_scene(FREE_ON_A_BAR, WIRE)
+    assert layer_nodes(wire) == 0
+    assert not is_thin(wire)
+    seen = solve(build(wire, discretise(wire, 3, 8)), estimate_error=False)
     assert seen.converged
     (contact,) = seen.contacts
     assert contact.gap is not None and 0.0 < contact.gap < 5e-4
+    finer = build(wire, discretise(wire, 3, 16))
+    assert pose_distance(seen, solve(finer, start=prolong(seen, finer), estimate_error=False)) < 1e-4
 
 
 def test_a_thick_bar_and_a_table_ask_for_no_intervals_of_their_own() -> None:
-    free = "accuracy = { modes = 2, nodes = 24 }"
-    thick = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=0.02", "bar.width=5e-3"])
+    thick = parse_scene(FREE_ON_A_BAR, ["bar.radius=0.02", "bar.width=5e-3"])
     assert 0 < layer_nodes(thick) < 12
     assert not is_thin(thick)
-    table = ON_A_BAR.replace(free, "").partition("[[obstacles]]")[0]
+    table = FREE_ON_A_BAR.partition("[[obstacles]]")[0]
     table += '[[obstacles]]\nname = "table"\nkind = "plane"\npoint = [0, 0, -0.03]\nnormal = [0, 0, 1]\nwidth = 5e-4\n'
     assert layer_nodes(parse_scene(table)) == 0

@@ -24,7 +24,7 @@ from tests.scenes import push, scene
 
 def small(force: float = 0.9) -> Model:
     wanted = scene(push(force=[force, 0, 0]), strain="planar", title="A strip")
-    return build(wanted, discretise(wanted, 2, 4))
+    return build(wanted, discretise(wanted, 1, 2))
 
 
 @pytest.fixture(scope="module")

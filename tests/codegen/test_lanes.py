@@ -265,7 +265,7 @@ def test_exported_batches_take_parameters(tmp_path: Path) -> None:
     ("asked", "size", "flags"),
     [
         pytest.param(strip(), 2.0, ("-fopenmp",), id="threads", marks=pytest.mark.slow),
-        pytest.param(strip(), 2.0, ("-DLANES=0",), id="none"),
+        pytest.param(strip(), 2.0, ("-DLANES=0",), id="none", marks=pytest.mark.slow),
         pytest.param(strip(), 2.0, ("-DSTRIP_SINGLE",), id="float"),
         pytest.param(hand(), 0.3, ("-fopenmp",), id="threads, one by one", marks=pytest.mark.slow),
         pytest.param(hand(), 0.3, ("-DSTRIP_SINGLE",), id="float, one by one", marks=pytest.mark.slow),

@@ -53,7 +53,7 @@ def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="session", params=SCENES)
 def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Pair:
     wanted, modes = SCENES[request.param]
-    model = build(wanted, discretise(wanted, modes, 6))
+    model = build(wanted, discretise(wanted, modes, 4))
     place = tmp_path_factory.mktemp(request.param)
     with pytest.MonkeyPatch.context() as patch:
         cached(place / "cache", patch)
@@ -409,14 +409,13 @@ def test_missing_source(strip: Path, ending: str) -> None:
 # Folders without derivatives
 
 
-@pytest.fixture
-def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Model, Compiled]:
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory: pytest.TempPathFactory) -> tuple[Model, Compiled]:
     """A model, and what is loaded of its folder without derivatives."""
-    cached(tmp_path / "cache", monkeypatch)
     tendon = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
     given = scene(push(), strain="planar", actuators=[tendon])
     model = build(given, discretise(given, 2, 4))
-    folder = export(model, tmp_path / "bare")
+    folder = export(model, tmp_path_factory.mktemp("bare") / "bare")
     assert not (folder / "bare_derivatives.c").exists()
     assert "bare_derivatives" not in (folder / "README.md").read_text().split("## Build")[0]
     return model, load(folder)

@@ -169,7 +169,7 @@ def test_machine_code_pays_sooner_where_no_program_runs_in_its_place() -> None:
 
 def test_a_rod_that_touches_has_its_contacts_in_machine_code() -> None:
     """Residual and derivatives with forces of contacts, in centred coordinates."""
-    scene = read_scene("examples/rod_hits_floor.toml", ["accuracy.modes=2", "accuracy.nodes=5"])
+    scene = read_scene("examples/rod_hits_floor.toml", ["accuracy.modes=2", "accuracy.nodes=3"])
     model = build(scene.with_motion_inputs(), moving=True)
     kernels = MotionCompiler(always=True).kernels(model)
     assert kernels.library is not None

@@ -38,6 +38,7 @@ from tests.contact.test_contact_of_assemblies import ROD as LONG_ROD
 from tests.contact.test_passage_of_bodies import DISK, SMALL
 from tests.contact.test_rod_contacts import lengthened
 from tests.contact.test_smooth_contact import CROSSING, OFF_A_BAR, ON_A_BAR, PUSH, ROD, THIN, WIRE
+from tests.families import mostly_slow
 
 ExportRecipe = Callable[..., Exported]
 
@@ -86,6 +87,9 @@ SCENES = {
 ITSELF = '[[rod_contacts]]\nrods = ["rod"]\n'
 STEPS = 50
 """Random steps of each scene."""
+
+STEPS_WITH_PARAMETERS = 24
+"""Those of a scene with parameters: each has a model of its own."""
 
 
 @dataclass(frozen=True)
@@ -136,22 +140,25 @@ def barred_in_c(model: Model, folder: Path, rows: FloatArray) -> list[bool]:
     return [word == "1" for word in told.stdout.split()]
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name", mostly_slow(SCENES, quick=["tapered", "wires", "parameter", "body", "disk", "bump", "rods"])
+)
 def test_steps_that_are_barred_vs_python(name: str, tmp_path: Path) -> None:
     model = build(parse_scene(SCENES[name], list(FEW)))
-    x, given = random_steps(model, STEPS, 3)
+    count = STEPS_WITH_PARAMETERS if model.parameters.size else STEPS
+    x, given = random_steps(model, count, 3)
     if name in ("body", "disk"):
         # The rod hardly bends, and comes down by more than the sphere is thick.
         x *= 0.1
         given[:, 1, 2] -= 0.4
     inputs, p = np.split(given, [model.inputs.size], axis=2)
     wanted = []
-    for row in range(STEPS):
+    for row in range(count):
         after = SmoothBarriers(model.at(p[row, 1]) if p.size else model)
         places = places_along(model, (p[row, 0], p[row, 1])) if p.size else None
         wanted.append(after.are_between(x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]), places))
-    assert STEPS / 10 < sum(wanted) < STEPS - STEPS / 10
-    found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(STEPS, -1))
+    assert count / 10 < sum(wanted) < count - count / 10
+    found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(count, -1))
     assert found == wanted
 
 
@@ -236,9 +243,10 @@ def test_steps_are_judged_by_the_sizes_that_parameters_give(name: str, tmp_path:
     """Python's judgement at the parameters; with the scene's own sizes steps of either scene are judged otherwise."""
     text, largest = SIZED[name]
     model = build(parse_scene(text, list(FEW)))
-    x, given = random_steps(model, STEPS, 5)
+    count = STEPS_WITH_PARAMETERS
+    x, given = random_steps(model, count, 5)
     own = model.parameters.pack()
-    given[:, :, model.inputs.size :] = own * np.random.default_rng(6).uniform(0.3, largest, (STEPS, 1, own.size))
+    given[:, :, model.inputs.size :] = own * np.random.default_rng(6).uniform(0.3, largest, (count, 1, own.size))
     inputs, p = np.split(given, [model.inputs.size], axis=2)
     if name == "rod":
         # Straight, it comes down on its wire to where it touches, and every third time deeper than is admitted.
@@ -250,14 +258,14 @@ def test_steps_are_judged_by_the_sizes_that_parameters_give(name: str, tmp_path:
     if name == "itself":
         # Of two numbers for each element the first is its mean bend: from half a circle to more than a whole one.
         x *= 0.02
-        x[:, :, ::2] += 2.0 * np.pi * np.random.default_rng(7).uniform(0.5, 1.1, (STEPS, 2, 1))
+        x[:, :, ::2] += 2.0 * np.pi * np.random.default_rng(7).uniform(0.5, 1.1, (count, 2, 1))
     wanted = []
-    for row in range(STEPS):
+    for row in range(count):
         step = (x[row, 0], x[row, 1], (inputs[row, 0], inputs[row, 1]))
         moved = SmoothBarriers(model.at(p[row, 1]))
         wanted.append(moved.are_between(*step))
-    assert STEPS / 10 < sum(wanted) < STEPS - STEPS / 10
-    found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(STEPS, -1))
+    assert count / 10 < sum(wanted) < count - count / 10
+    found = barred_in_c(model, tmp_path, np.concatenate([x, given], axis=2).reshape(count, -1))
     assert found == wanted
 
 
@@ -364,7 +372,7 @@ def test_no_turn_leads_through_a_wire(barred: Exported) -> None:
     assert height(barred, x, BEHIND) > -0.15
 
 
-@pytest.mark.parametrize("lanes", [False, True], ids=["one by one", "side by side"])
+@pytest.mark.parametrize("lanes", mostly_slow([False, True], quick=[True]), ids=["one by one", "side by side"])
 def test_no_row_leads_through_a_wire(lanes: bool) -> None:
     model = TextRecipe(PUSHED + ROD + PUSH + THIN).model()
     library = row_library(model, lanes=lanes)

@@ -92,7 +92,7 @@ def test_steps_whose_entries_come_out_zero() -> None:
     assert_same(function_of(program_of(function)), function, 0.0)
 
 
-@pytest.mark.parametrize("name", mostly_slow(FUNCTIONS, quick=["rate", "residual", "second_derivative", "shape"]))
+@pytest.mark.parametrize("name", mostly_slow(FUNCTIONS, quick=["residual", "second_derivative"]))
 def test_function_of_a_model_is_the_same_in_c(model: Model, name: str) -> None:
     function = FUNCTIONS[name](model)
     _, compiled = in_c(function, f"program_{name}")

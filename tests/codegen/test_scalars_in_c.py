@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
 from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.printed_kernels import PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c
+from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c, with_calls_in_fours
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.operations import operations
@@ -169,6 +169,19 @@ def test_what_has_no_form_in_fours() -> None:
     with pytest.raises(UnknownOperationError):
         scalars_in_c(bell, bell)
     assert "sin" in scalars_in_c(ca.Function("sine", [x], [ca.sin(x)]), bell).body
+
+
+@pytest.mark.parametrize("calls", [1, 4])
+def test_functions_that_are_called_call_no_others(calls: int) -> None:
+    """CasADi's own code has a form for calls within calls."""
+    x = ca.SX.sym("x", 4)
+    never = {"never_inline": True}
+    inner = ca.Function("inner", [x[:2]], [x[0] * x[1]], never)
+    outer = ca.Function("outer", [x[:2]], [inner(x[:2]) + x[0]], never)
+    calling = ca.Function("calling", [x], [ca.vertcat(*[outer(x[i] * x[:2]) for i in range(calls)])])
+    with pytest.raises(UnknownOperationError, match="a call in outer"):
+        scalars_in_c(calling, calling)
+    assert with_calls_in_fours(calling) is calling
 
 
 @pytest.mark.parametrize("longest", [1000, 3])

@@ -108,8 +108,11 @@ def test_solver_is_the_same_file_in_every_folder(library: Library, name: str) ->
 
 @pytest.mark.parametrize(
     "flags",
-    [("-DPLANAR_SINGLE",), ("-fopenmp",), pytest.param(("-std=c11",), marks=pytest.mark.slow)],
-    ids=lambda flags: flags[0],
+    [
+        ("-DPLANAR_SINGLE", "-fopenmp"),
+        *(pytest.param((flag,), marks=pytest.mark.slow) for flag in ("-DPLANAR_SINGLE", "-fopenmp", "-std=c11")),
+    ],
+    ids=lambda flags: " ".join(flags),
 )
 def test_variants_compile_without_a_warning(library: Library, flags: tuple[str, ...], tmp_path: Path) -> None:
     for stem in ("planar", "planar_demo"):

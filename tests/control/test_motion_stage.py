@@ -189,6 +189,24 @@ def test_rates_that_constraints_leave_free(family: str, count: int) -> None:
         assert_allclose(stage.independent_rates(stage.state(at.x, swollen), at.x, at.inputs), 0.0, rtol=0, atol=1e-12)
 
 
+def test_rates_that_constraints_leave_free_follow_the_parameters() -> None:
+    """The cable of given length runs elsewhere: as of the stage of a model with those numbers."""
+    model = model_of("given length")
+    scene = model.scene.model_copy(update={"parameters": ("cable.offset",)})
+    of_parameters = build(scene, model.discretisation, moving=True)
+    at = drawn_state(model)
+    p = np.array([2.0, -1.0, 3.0, 1.0]) * of_parameters.parameters.pack()
+    stage = motion_stage(of_parameters, STEP, parameters=True)
+    state = stage.state(at.x, at.v)
+    with pytest.raises(ValueError, match="give them as p"):
+        stage.independent_rates(state, at.x, at.inputs)
+    found = stage.independent_rates(state, at.x, at.inputs, p)
+    written = motion_stage(of_parameters.at(p), STEP)
+    assert_allclose(found, written.independent_rates(state, at.x, at.inputs), rtol=1e-9, atol=1e-9)
+    in_file = motion_stage(model, STEP).independent_rates(state, at.x, at.inputs)
+    assert float(ca.norm_2(found - in_file)) > 1e-3 * float(ca.norm_2(found))
+
+
 @pytest.mark.slow
 def test_a_body_on_two_rods_is_brought_to_rest() -> None:
     push = {**PULL, "position": [0, 0, 0], "force": [0, 0, 0], "moment": [0, 0, 0]}

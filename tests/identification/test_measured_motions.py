@@ -142,6 +142,14 @@ def test_derivatives_with_multipliers_are_those_of_differences() -> None:
     check_derivatives(misfit_of(model, {"path.csv": columns}, 0.01), [1e1, 1e-2, 1e-6], 1e-5)
 
 
+def test_derivatives_with_a_cable_of_given_length_are_those_of_differences() -> None:
+    cable = {"name": "wound", "kind": "tendon", "rod": "rod", "length": 0.296, "offset": [3e-3, 0.0]}
+    unknowns = [{"parameter": "rod.material.density"}, {"parameter": "wound.offset"}]
+    model = built(actuators=[cable], unknowns=unknowns)
+    columns = {"t": np.array([0.0, 0.03]), "x": np.full(2, 0.3), "z": np.zeros(2)}
+    check_derivatives(misfit_of(model, {"path.csv": columns}, 0.01), [1e-1, 2e-7])
+
+
 @pytest.mark.slow
 def test_modulus_density_and_damping_are_recovered_to_the_noise(found: Identification) -> None:
     assert found.converged, found.message
@@ -242,6 +250,11 @@ def test_free_bases_are_refused(path: dict[str, FloatArray]) -> None:
     rod = {**CANTILEVER["rods"][0], "base": {"free": True}}
     with pytest.raises(SceneError, match="is not for measurements over time"):
         identify(built(rods=[rod]), {"path.csv": path})
+
+
+def test_velocities_at_the_start_are_refused(path: dict[str, FloatArray]) -> None:
+    with pytest.raises(SceneError, match="begins at rest"):
+        identify(built(velocities=[{"rod": "rod", "curvature_rate": [0.0, 3.0, 0.0]}]), {"path.csv": path})
 
 
 def test_cables_that_may_go_slack_are_refused(path: dict[str, FloatArray]) -> None:

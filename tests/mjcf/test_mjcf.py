@@ -89,6 +89,23 @@ offset = [5e-3, 0]
     assert [sentence.split(":")[0] for sentence in model.left_out] == ["channel"] * told
 
 
+def test_a_stiffness_that_couples_strains_is_told() -> None:
+    coupled = "[[2.0, 0.5, 0, 0, 0, 0], [0.5, 3.0, 0, 0, 0, 0], " + ", ".join(
+        str([0] * k + [1e4] + [0] * (5 - k)) for k in range(2, 6)
+    )
+    text = f"""
+schema = 1
+[[rods]]
+name = "finger"
+length = 0.3
+strain = "kirchhoff"
+linear_density = 0.1
+stiffness_matrix = {coupled}]
+"""
+    told = mjcf_of(parse_scene(text), 4).left_out
+    assert any("what a law adds, and couples, is missing" in sentence for sentence in told), told
+
+
 def test_inputs_are_controls_with_the_values_of_the_scene() -> None:
     root = ET.fromstring(mjcf_of(parse_scene(SCENES["jointed"]), 4).text)
     actuators = root.find("actuator")

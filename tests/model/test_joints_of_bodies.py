@@ -84,9 +84,9 @@ def reach(angle: float) -> tuple[float, float]:
     [
         {"kind": "spherical"},
         {"kind": "prismatic", "axis": [0.3, 0.1, 1], "stiffness": 100.0},
-        {"kind": "prismatic", "axis": [0.3, 0.1, 1]},
+        pytest.param({"kind": "prismatic", "axis": [0.3, 0.1, 1]}, marks=pytest.mark.slow),
         {"kind": "revolute", "axis": [0.3, 1, 0], "angle": 0.2},
-        {"kind": "fixed"},
+        pytest.param({"kind": "fixed"}, marks=pytest.mark.slow),
     ],
 )
 def test_jacobian_vs_ad(elbow: dict[str, Any]) -> None:
@@ -243,7 +243,7 @@ def test_four_bar_of_two_links_that_bend(coupler: str, rocker: str) -> None:
         {"kind": "spherical"},
         {"kind": "revolute", "axis": Y},
         {"kind": "prismatic", "axis": [1, 0, 0]},
-        {"kind": "fixed"},
+        pytest.param({"kind": "fixed"}, marks=pytest.mark.slow),
     ],
     ids=["spherical", "revolute", "prismatic", "fixed"],
 )

@@ -134,7 +134,7 @@ def test_several_rods_are_named() -> None:
             assert {handle.get_color() for handle in legend.get_lines()} == {"0.3"}
 
 
-@pytest.mark.parametrize(("count", "frames"), [(2, 4), (5, 0)])
+@pytest.mark.parametrize(("count", "frames"), mostly_slow([(2, 4), (5, 0)], quick=[(2, 4)]))
 def test_many_rods_are_not_hidden_by_axes_and_arrows(count: int, frames: int) -> None:
     several = [rod("planar", name=f"rod_{i}", base={"position": [0.1 * i, 0, 0]}) for i in range(count)]
     scenery = plot_solution(solve(build(scene({**WEIGHT, "acceleration": [0, 0, -2.0]}, rods=several)))).axes[0]
@@ -179,7 +179,7 @@ def boxes(figure: Any) -> tuple[list[Any], list[Any]]:
     return axes_boxes, [legend.get_window_extent() for legend in [*figure.legends, *legends]]
 
 
-@pytest.mark.parametrize("kind", ["spatial", "planar"])
+@pytest.mark.parametrize("kind", mostly_slow(["spatial", "planar"], quick=["spatial"]))
 def test_legends_cover_nothing(kind: str, request: pytest.FixtureRequest) -> None:
     axes_boxes, legend_boxes = boxes(plot_solution(request.getfixturevalue(kind)))
     assert len(legend_boxes) == 4

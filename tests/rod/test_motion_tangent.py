@@ -90,7 +90,7 @@ def test_derivatives_vs_ad_of_a_rod_that_is_drawn_out(name):
     check(compared, *state(basis))
 
 
-@pytest.mark.parametrize("transport", ["magnus4", "magnus6"])
+@pytest.mark.parametrize("transport", mostly_slow(["magnus4", "magnus6"], quick=["magnus6"]))
 @pytest.mark.parametrize("name", mostly_slow(["kirchhoff", "reissner"], quick=["reissner"]))
 def test_derivatives_vs_ad_for_each_transport(name, transport):
     basis, compared = case(name, "two", transport=transport)

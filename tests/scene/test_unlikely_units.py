@@ -18,6 +18,10 @@ WIRE = ROOT / "examples" / "nitinol_wire.toml"
         ("wire.material.youngs_modulus=60", "rods[0].material.youngs_modulus: 60 Pa is softer than any rod"),
         ("wire.material.density=6.45", "rods[0].material.density: 6.45 kg/m³ is lighter than foam"),
         ("wire.section.radius=0.5", "rods[0].section.radius: 0.5 m is more than the length of 0.2 m"),
+        (
+            "wire.section.radius={ base = 5e-4, tip = 0.5 }",
+            "rods[0].section.radius: 0.5 m is more than the length of 0.2 m",
+        ),
         ("wire.length=0.3", ""),
     ],
 )

@@ -368,7 +368,7 @@ def test_an_unstable_equilibrium_has_a_negative_determinant(robot: Robot) -> Non
 
 
 @pytest.mark.parametrize("turn", mostly_slow([3.0, 3.1, 3.14], quick=[3.14]))
-@pytest.mark.parametrize("reach", [0.14, 0.16, 0.24])
+@pytest.mark.parametrize("reach", mostly_slow([0.14, 0.16, 0.24], quick=[0.16]))
 def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, turn: float, reach: float) -> None:
     """The branch from straight tubes is the one that a robot is on which was turned there from aligned ones."""
     inputs = {"inner.rotation": turn, "inner.translation": reach}

@@ -1,0 +1,101 @@
+"""Sections of a rod at any places of its elements: fields at its nodes are interpolated to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.block_operators import sparse
+from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import Numbers, each_times
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.strain import DiscreteRod
+
+
+@dataclass(frozen=True)
+class PlacedSections:
+    """Sections of a rod; where parameters move its elements, they stay where they are in their elements.
+
+    Attributes:
+        rod: the rod.
+        coordinates: places in the coordinate of the grid, shape (k,).
+    """
+
+    rod: DiscreteRod
+    coordinates: FloatArray
+
+    @cached_property
+    def elements(self) -> Indices:
+        """Element of each section, shape (k,)."""
+        return replace(self.rod.grid, ends=None).element_of(self.coordinates)
+
+    @cached_property
+    def to_sections(self) -> FloatArray:
+        """Matrix from values at the nodes to values at the sections, shape (k, M)."""
+        return replace(self.rod.grid, ends=None).interpolation_matrix(self.coordinates)
+
+    @cached_property
+    def interpolation(self) -> ca.DM:
+        """The same, k×M, without zeros: a section reads the nodes of its element."""
+        return sparse(self.to_sections)
+
+    @cached_property
+    def X(self) -> Numbers:
+        """Abscissae of the rod, shape (k,)."""
+        return self.rod.grid.on_rod(self.coordinates, self.elements)
+
+    @cached_property
+    def rates(self) -> Numbers | None:
+        """Rate dX of the rod's abscissa at the sections, shape (k,); None where it is one."""
+        return self.rod.grid.rates_in(self.elements)
+
+
+@dataclass(frozen=True)
+class EqualSections:
+    """Sections in the middle of equal parts of each element, in which a load per length is summed.
+
+    A load that comes and goes within an element is summed by equal parts more exactly than by nodes as many.
+
+    Attributes:
+        rod: the rod.
+        counts: sections of each element.
+    """
+
+    rod: DiscreteRod
+    counts: tuple[int, ...]
+
+    @cached_property
+    def placed(self) -> PlacedSections:
+        """The sections."""
+        ends = self.rod.grid.breaks
+        middles = [
+            start + (end - start) * (np.arange(count) + 0.5) / count
+            for count, start, end in zip(self.counts, ends[:-1], ends[1:], strict=True)
+        ]
+        return PlacedSections(self.rod, np.concatenate(middles))
+
+    @property
+    def size(self) -> int:
+        """Number of sections k."""
+        return sum(self.counts)
+
+    @cached_property
+    def lengths(self) -> Numbers:
+        """Length of rod that each section stands for, shape (k,), m."""
+        return each_times(self._reference_lengths, self.placed.rates)
+
+    @cached_property
+    def to_nodes(self) -> ca.DM:
+        """Matrix from loads per length at the sections to loads at the nodes that do the same work, k×M."""
+        # Lengths of sections and of nodes are drawn out alike where parameters move elements.
+        lengths = self._reference_lengths[:, None] / self.rod.reference_lengths
+        return sparse(lengths * self.placed.to_sections)
+
+    @cached_property
+    def _reference_lengths(self) -> FloatArray:
+        counts = np.array(self.counts)
+        of_each = self.rod.length * np.diff(self.rod.grid.breaks) / counts
+        return np.repeat(of_each, counts)

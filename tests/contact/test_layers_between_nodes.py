@@ -1,0 +1,116 @@
+"""Thin layers that are summed between the nodes of a rod: derivatives, balance, and errors beside shooting."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+
+from cosserat_casadi import Solution, build, discretise, parse_scene, solve
+from cosserat_casadi.maths.typing import FloatArray
+from tests.contact.test_smooth_contact import ON_A_BAR
+
+FREE = ON_A_BAR.replace("accuracy = { modes = 2, nodes = 24 }", "")
+RADIUS, WIDTH = 2e-3, 1e-3
+THIN = [f"bar.radius={RADIUS}", f"bar.width={WIDTH}"]
+LENGTH, ROD_RADIUS = 0.5, 2e-3
+BENDING = 1e8 * np.pi * ROD_RADIUS**4 / 4
+"""EI of the rod, N m²."""
+AXIS = np.array([0.3, -0.03])
+"""Axis of the bar in the plane of the rod, x and z, m."""
+
+
+@cache
+def pressed(intervals: int = 5) -> Solution:
+    scene = parse_scene(FREE, THIN)
+    return solve(build(scene, discretise(scene, 2, intervals)), estimate_error=False)
+
+
+def test_sections_lie_closer_than_nodes() -> None:
+    """Six for each of eight intervals of an element of 62.5 mm: half of the stretch √(2 w d) apart at most."""
+    (sections,) = pressed().model.discrete.closer_sections.values()
+    assert sections.counts == (5 * 6,) * 8
+    assert_allclose(np.sum(sections.lengths), LENGTH, rtol=1e-14, atol=0)
+    assert LENGTH / 8 / (8 * 6) < 0.5 * np.sqrt(2 * WIDTH * (RADIUS + ROD_RADIUS)) < LENGTH / 8 / (8 * 5)
+    # Work of forces at the sections is that of what stands for them at the nodes.
+    nodes = pressed().model.discrete.rods["rod"].grid.reference_nodes
+    forces = np.sin(3 * sections.placed.coordinates)
+    at_nodes = forces @ sections.to_nodes.full() * sections.rod.reference_lengths
+    work = np.sum(forces * sections.lengths * sections.placed.coordinates**2)
+    assert_allclose(at_nodes @ nodes**2, work, rtol=1e-13, atol=0)
+
+
+def test_a_thick_bar_and_one_that_rubs_are_summed_at_nodes() -> None:
+    for changes in (["bar.radius=0.02", "bar.width=5e-3"], [*THIN, "bar.friction=0.1"]):
+        scene = parse_scene(FREE, changes)
+        assert not build(scene, discretise(scene, 2, 5)).discrete.closer_sections
+
+
+def test_jacobian_is_the_derivative_and_forces_balance() -> None:
+    found = pressed()
+    assert found.converged
+    model, inputs = found.model, found.inputs
+    x = ca.MX.sym("x", model.size)
+    differentiated = ca.Function("J", [x], [ca.jacobian(model.residual(x, inputs), x)])(found.x).full()
+    jacobian = model.jacobian(found.x, inputs)[0].full()
+    assert_allclose(jacobian, differentiated, rtol=0, atol=1e-12 * np.abs(jacobian).max())
+    assert_allclose(jacobian, jacobian.T, rtol=0, atol=1e-12 * np.abs(jacobian).max())
+    (contact,) = found.contacts
+    assert contact.force[2] > 0.05
+    assert_allclose(contact.force + found.base_wrench().force, [0.0, 0.0, 0.05], rtol=0, atol=1e-12)
+
+
+def test_the_deepest_section_tells_the_depth() -> None:
+    """Between nodes 16 mm apart, as the gap of the contact has it on a fine raster."""
+    scene = parse_scene(FREE, [*THIN, "bar.stiffness=3e4"])
+    found = solve(build(scene, discretise(scene, 2, 5)), estimate_error=False)
+    (contact,) = found.contacts
+    assert contact.gap is not None and contact.gap < -0.1 * WIDTH
+    depth = float(found.model.contact_depth(found.x, found.inputs))
+    # Half of the way to the next section: a rod that lies on the bar is as much higher there at most.
+    sag = (LENGTH / 8 / 30 / 2) ** 2 / (2 * (RADIUS + ROD_RADIUS))
+    assert -contact.gap - sag < depth * WIDTH <= -contact.gap + 1e-9
+    assert depth > 0.2
+
+
+def shot(start: FloatArray, push: float) -> FloatArray:
+    """Tip of the elastica before the layer, x, z in m and angle in rad, from moment and force at the base."""
+    stiffness = 30 * BENDING / LENGTH**2 / WIDTH**2
+
+    def slopes(_: float, y: FloatArray) -> list[float]:
+        x, z, angle, moment, along, up = y
+        away = np.array([x, z]) - AXIS
+        distance = float(np.hypot(*away))
+        depth = max(WIDTH - (distance - RADIUS - ROD_RADIUS), 0.0)
+        force = stiffness * depth**3 / (3 * WIDTH**2) * away / distance
+        turn = np.sin(angle) * along - np.cos(angle) * up
+        return [np.cos(angle), np.sin(angle), moment / BENDING, turn, -force[0], -force[1]]
+
+    def ends(base: FloatArray) -> FloatArray:
+        state = np.concatenate([np.zeros(3), base])
+        return np.asarray(
+            solve_ivp(slopes, (0, LENGTH), state, method="DOP853", rtol=1e-10, atol=1e-12, max_step=WIDTH).y[:, -1]
+        )
+
+    base = fsolve(lambda own: ends(own)[3:] - [0.0, 0.0, push], start, xtol=1e-10)
+    return ends(base)[:3]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_told_errors_bound_the_distance_to_shooting(tolerance: float) -> None:
+    found = solve(parse_scene(FREE, [*THIN, f"accuracy.tolerance={tolerance}"]))
+    assert found.converged and found.error_estimate is not None and found.error_estimate <= tolerance
+    held = found.base_wrench()
+    tip = shot(np.array([held.moment[1], -held.force[0], -held.force[2]]), -0.05)
+    pose = found.tip()
+    off = np.hypot(pose.position[0] - tip[0], pose.position[2] - tip[1]) / LENGTH
+    turned = abs(np.arctan2(pose.rotation[2, 2], pose.rotation[0, 2]) - tip[2])
+    assert 0.1 * found.error_estimate < max(off, turned) < found.error_estimate
+    # Thirty would be needed for the nodes to lie as close.
+    assert max(own.nodes for own in found.model.discretisation.values()) <= 20
