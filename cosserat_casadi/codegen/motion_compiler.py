@@ -404,7 +404,7 @@ def simulate(
         progress: told of every step.
         compiled: whether the equations run as machine code. By default they do where the cache has them, or where
             compiling them is foreseen to pay; with ``True`` they are compiled in any case, for motions to come, and
-            with ``False`` never.
+            with ``False`` never; gaps of exact contact are computed in machine code in any case.
         output: file, JSON or NPZ, of a long motion in parts: ``out.npz`` stands for ``out-0001.npz``, ``out-0002.npz``…
         part: length of a part, s: each is written when it is done, and the last one is returned. By default the
             motion is one, and is not written.
@@ -412,7 +412,7 @@ def simulate(
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
-        ExportError: ``compiled`` is true, and there is no compiler, or it fails.
+        ExportError: there is no compiler, or it fails, and ``compiled`` is true or something touches exactly.
     """
     source = None if compiled is False else MotionCompiler(always=compiled is True)
 

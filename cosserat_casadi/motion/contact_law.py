@@ -117,6 +117,7 @@ DOUBLE = ctypes.c_double
 ARGUMENTS: dict[str, tuple[Any, Sequence[Any]]] = {
     "gap_at": (None, (POINTER, POINTER, DOUBLE, ctypes.c_int, POINTER)),
     "gap_place": (DOUBLE, (POINTER, POINTER, DOUBLE, ctypes.c_int)),
+    "known_positions": (None, (POINTER, POINTER, POINTER)),
     "laid_gaps": (None, (POINTER, POINTER, POINTER)),
     "looked_gaps": (None, (POINTER, POINTER, POINTER)),
     "gap_valleys": (ctypes.c_int, (POINTER, POINTER, DOUBLE, POINTER)),

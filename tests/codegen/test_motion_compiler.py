@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen import description, kernel_files
+from cosserat_casadi.codegen import description, kernel_files, moving_contacts
 from cosserat_casadi.codegen.cache import tallied
 from cosserat_casadi.codegen.controlled_steps import (
     FEW_TRIES,
@@ -26,6 +26,7 @@ from cosserat_casadi.codegen.controlled_steps import (
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion import contact_law
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
@@ -473,6 +474,16 @@ def test_without_a_compiler_the_virtual_machine_runs(monkeypatch: pytest.MonkeyP
     assert not is_compiled(compiler, RESIDUAL)
     with pytest.raises(ExportError, match="no-such-compiler is not a program"):
         simulate(scene_from_dict(arm()), compiled=True)
+
+
+def test_without_a_compiler_a_motion_in_exact_contact_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler")
+    for module in (contact_law, moving_contacts):
+        monkeypatch.setattr(module, "compiled_law", module.compiled_law.__wrapped__)
+    floor = {"name": "floor", "kind": "plane", "point": [0, 0, -5], "normal": [0, 0, 1]}
+    scene = scene_from_dict({**arm(start="unloaded"), "obstacles": [floor]})
+    with pytest.raises(ExportError, match=r"by C code, and no-such-compiler .*; or give each obstacle a width"):
+        simulate(scene, compiled=False)
 
 
 @pytest.mark.slow

@@ -5,8 +5,8 @@
    restitution of the obstacle (F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996).
 
    The gap of a section that slides is the least about it, so that its gradient is that of the gap at its place (E. Polak,
-   Optimization, Springer 1997, section 3.1). cosserat_casadi/motion holds the same law in Python: contact_forces.py,
-   contact_onset.py, exact_contact.py; steps there are cut at all changes of contact. */
+   Optimization, Springer 1997, section 3.1). Simulated motions, cosserat_casadi/motion/exact_contact.py, have the
+   same gaps and pushes; their steps are cut at all changes of contact. */
 
 /* Gap that counts as closed. */
 static const real GAP_CLOSED = (real)1e-12;

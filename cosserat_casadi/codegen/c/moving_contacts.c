@@ -313,6 +313,9 @@ static const real *positions_at(moving_points *points, const real *x, const real
   return points->positions->result;
 }
 
+/* Has the positions of points in memory, as the result of their function. */
+void known_positions(moving_points *points, const real *x, const real *inputs) { positions_at(points, x, inputs); }
+
 /* Gaps of contacts where they are. */
 void touched_gaps(const touch *touches, int count, const real *x, const real *inputs, section_gap *gaps) {
   for (int k = 0; k < count; k++) {
