@@ -76,7 +76,7 @@ class SectionGap:
     def __init__(self, memory: FloatArray, points: int) -> None:
         self._memory = memory
         self._points = points
-        _, self.value, self.slope, self.bend = memory[:4].tolist()
+        self.value, self.slope, self.bend = (float(number) for number in memory[1:4])
 
     @cached_property
     def rows(self) -> Rows:
