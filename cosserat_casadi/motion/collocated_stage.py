@@ -78,7 +78,7 @@ class StageEquations:
         return residual
 
 
-def _asked_for(takes_parameters: bool, p: Matrix | None) -> list[Matrix]:
+def _asked_for(takes_parameters: bool, p: Matrix | FloatArray | None) -> list[Matrix | FloatArray]:
     """The parameters as arguments of a function; none of a stage that takes none.
 
     Raises:
