@@ -23,9 +23,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
 from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_inside, told_passage, too_deep
+from cosserat_casadi.motion.contact_guards import SAME_PLACE
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
-from cosserat_casadi.motion.event_restart import Restart
+from cosserat_casadi.motion.event_restart import LAID_DOWN, Restart
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -78,6 +79,12 @@ LEAST_SLOPE_AFTER_IMPACTS = 0.08
 
 Until steps tell the waves along a rod, motions may be nearer to each other than to the true one.
 """
+
+LEAST_SLOPE_OF_ALIKE = 0.2
+"""The same of two motions whose impacts are alike: neither is off by an impact that the other one has elsewhere."""
+
+LYING = ("lie_down", LAID_DOWN)
+"""Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
 
 FEW_STEPS = 10.0
 """Number of steps at which a told error counts twice: a few steps may happen to suit the motion."""
@@ -338,8 +345,10 @@ class Simulator:
         distance = path_distance(self.paths(timed.history), self.paths(fine))
         left = left_by(factor, fine, timed.history)
         if timed.companion is not None and is_struck(fine) and distance > 0.0:
+            before = timed.companion.history
             # Which section strikes next may be decided by chance: two motions may agree that both err as others do.
-            left = max(left, timed.distance / distance)
+            if not (are_struck_alike(fine, timed.history) and are_struck_alike(timed.history, before)):
+                left = max(left, timed.distance / distance)
         return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
 
     def _with_given_step(self, size: float) -> TimedHistory:
@@ -445,9 +454,32 @@ def impacts_of(history: History) -> int:
     return sum(event.kind == "impact" for event in history.events)
 
 
-def left_by(factor: float, finer: History, *coarser: History) -> float:
-    """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances."""
-    slope = LEAST_SLOPE_AFTER_IMPACTS if any(map(is_struck, [finer, *coarser])) else LEAST_SLOPE
+def are_struck_alike(first: History, second: History) -> bool:
+    """Whether two motions have the same impacts, one by one: of the same owners, on the same obstacles and sections.
+
+    Those of a rod that lies down are like none.
+    """
+    if any(event.kind in LYING for event in (*first.events, *second.events)):
+        return False
+    impacts = [[event for event in history.events if event.kind == "impact"] for history in (first, second)]
+    return len(impacts[0]) == len(impacts[1]) and all(
+        (one.owner, one.obstacle) == (other.owner, other.obstacle) and abs(one.place - other.place) <= SAME_PLACE
+        for one, other in zip(*impacts, strict=True)
+    )
+
+
+def left_by(factor: float, finer: History, coarser: History | None = None) -> float:
+    """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances.
+
+    Args:
+        factor: the larger tolerance of a step over the smaller one.
+        finer: the motion with the smaller one.
+        coarser: the other motion; None where its impacts count as unlike.
+    """
+    slope = LEAST_SLOPE
+    if is_struck(finer) or (coarser is not None and is_struck(coarser)):
+        alike = coarser is not None and are_struck_alike(finer, coarser)
+        slope = LEAST_SLOPE_OF_ALIKE if alike else LEAST_SLOPE_AFTER_IMPACTS
     return (1.0 + FEW_STEPS / max(finer.statistics.steps, 1)) / float(factor**slope - 1.0)
 
 
