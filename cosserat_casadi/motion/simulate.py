@@ -173,17 +173,14 @@ class TimedHistory:
         error: estimated error of the paths that the steps leave, over the length; nan where none was made.
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
         companion: the motion by which the error was told; None where none was made.
+        distance: of the paths from those of that motion, over the length; nan without one.
     """
 
     history: History
     error: float
     tolerance: float = float("nan")
     companion: Companion | None = None
-
-    @property
-    def distance(self) -> float:
-        """Distance of the paths from those of the motion by which the error was told; nan without one."""
-        return float("nan") if self.companion is None else self.error / self.companion.factor
+    distance: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -344,12 +341,15 @@ class Simulator:
             fine, tolerance = finer, tolerance / TIGHTER
         distance = path_distance(self.paths(timed.history), self.paths(fine))
         left = left_by(factor, fine, timed.history)
-        if timed.companion is not None and is_struck(fine) and distance > 0.0:
-            before = timed.companion.history
+        alike = are_struck_alike(fine, timed.history)
+        earlier = timed.companion
+        three_alike = alike and earlier is not None and are_struck_alike(timed.history, earlier.history)
+        if earlier is not None and is_struck(fine) and not three_alike and distance > 0.0:
             # Which section strikes next may be decided by chance: two motions may agree that both err as others do.
-            if not (are_struck_alike(fine, timed.history) and are_struck_alike(timed.history, before)):
-                left = max(left, timed.distance / distance)
-        return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
+            left = max(left, timed.distance / distance)
+        # Of two that are struck elsewhere no error below that of a step is believed.
+        error = left * distance if alike else max(left * distance, tolerance)
+        return TimedHistory(fine, error, tolerance, Companion(timed.history, left), distance)
 
     def _with_given_step(self, size: float) -> TimedHistory:
         history = self.stepped(size)
@@ -365,13 +365,13 @@ class Simulator:
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
         error = HALVED * distance if shorter.completed else float("nan")
-        return TimedHistory(history, error, step_tolerance, Companion(shorter, HALVED))
+        return TimedHistory(history, error, step_tolerance, Companion(shorter, HALVED), distance)
 
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
         size = self.simulation.duration / FIRST_GAUSS_STEPS
         history = self.stepped(size)
         history_paths = self.paths(history)
-        error = float("nan")
+        error = distance = float("nan")
         companion = None
         for _ in range(MOST_HALVINGS):
             size = size / 2.0
@@ -381,13 +381,14 @@ class Simulator:
                 return TimedHistory(shorter, float("nan"))
             shorter_paths = self.paths(shorter)
             if history.completed and shorter.completed:
-                error = LEFT_BY_HALF * path_distance(history_paths, shorter_paths)
+                distance = path_distance(history_paths, shorter_paths)
+                error = LEFT_BY_HALF * distance
             companion = Companion(history, LEFT_BY_HALF)
             history = shorter
             history_paths = shorter_paths
             if error <= tolerance:
                 break
-        return TimedHistory(history, error, companion=companion)
+        return TimedHistory(history, error, companion=companion, distance=distance)
 
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)

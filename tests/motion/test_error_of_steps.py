@@ -294,6 +294,12 @@ def dropped(
     }
 
 
+def clamped(tables: dict[str, Any]) -> dict[str, Any]:
+    """A scene of one rod, whose base is clamped at the origin along x."""
+    (rod,) = tables["rods"]
+    return {**tables, "rods": [{**rod, "base": {"position": [0, 0, 0], "tangent": [1, 0, 0]}}]}
+
+
 STEEL = (2e11, 7800.0, 4e-3)
 SOFT = (5e6, 1100.0, 8e-3)
 
@@ -323,14 +329,24 @@ def test_estimates_of_rods_that_are_struck_are_above_the_error(scene: str) -> No
         assert 1.2 * plainly < error
 
 
+def test_no_error_below_that_of_a_step_is_told_of_motions_that_are_struck_elsewhere(
+    simulator: Simulator, coarse: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a rod that lay down on a floor 1.5e-5 were told by two motions that both erred by 2.3e-5."""
+    monkeypatch.setattr(motion_simulate, "are_struck_alike", lambda *_: False)
+    monkeypatch.setattr(motion_simulate, "path_distance", lambda *_: 0.0)
+    told = simulator.finer(TimedHistory(coarse, float("nan"), STEP_TOLERANCE), TIGHTER)
+    assert told.distance == 0.0
+    assert told.error == told.tolerance
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("place", [0.12, 0.25, 0.39])
 def test_errors_of_rods_whose_impacts_are_alike_are_told_closely(place: float) -> None:
     """Told as of rods that strike elsewhere each time they were 50 to 80 times the error."""
     height = -0.02 - 0.2 * place
     bar = {"name": "bar", "kind": "capsule", "from": [place, -0.1, height], "to": [place, 0.1, height], "radius": 0.02}
-    tables = dropped((2e6, 1100.0, 8e-3), 2e-3, 0.0, 0.1, 0.25)
-    tables["rods"][0]["base"] = {"position": [0, 0, 0], "tangent": [1, 0, 0]}
+    tables = clamped(dropped((2e6, 1100.0, 8e-3), 2e-3, 0.0, 0.1, 0.25))
     simulator = simulator_on(scene_from_dict({**tables, "obstacles": [bar]}))
     first = 3e-3
     timed = TimedHistory(simulator.controlled(first), float("nan"), first)
@@ -404,6 +420,7 @@ def test_motions_that_more_exact_steps_bring_no_nearer_end_a_search(
     assert any(event.kind == "impact" for event in coarse.events)
     told = iter(distances)
     monkeypatch.setattr(motion_simulate, "path_distance", lambda *_: next(told))
+    monkeypatch.setattr(motion_simulate, "are_struck_alike", lambda *_: False)
     timed = simulator.tightened(coarse, 1e-2, lambda _: 1e-3)
     assert list(told) == []
     assert (timed.error > 1e-3) is erratic
