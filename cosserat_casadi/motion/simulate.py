@@ -458,7 +458,7 @@ def impacts_of(history: History) -> int:
 def are_struck_alike(first: History, second: History) -> bool:
     """Whether two motions have the same impacts, one by one: of the same owners, on the same obstacles and sections.
 
-    Those of a rod that lies down are like none.
+    The impacts of a rod that lies down are like no others.
     """
     if any(event.kind in LYING for event in (*first.events, *second.events)):
         return False
