@@ -209,7 +209,7 @@ def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
 
 @pytest.mark.slow
 def test_modes_are_chosen_beside_a_thin_bar() -> None:
-    """Few intervals do, for its layer is summed between nodes; away from the points that are tried the error holds too."""
+    """Few intervals do, for its layer is summed between nodes; away from points that are tried the error holds too."""
     free = "accuracy = { modes = 2, nodes = 24 }"
     pressed = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=2e-3", "bar.width=1e-3", "accuracy.tolerance=1e-3"])
     chosen = choose(pressed, {"push.force.z": (-0.05, -0.03)})
