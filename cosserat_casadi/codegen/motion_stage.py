@@ -94,7 +94,7 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
         name: what the equations are called.
         curvature: whether the last one is exact.
     """
-    inverse_dynamics = written(stage.model.inverse_dynamics, f"{name}_at_instant")
+    inverse_dynamics = written(stage.dynamics.inverse_dynamics, f"{name}_at_instant")
     plain = stage.equations_by(inverse_dynamics, name)
     yield plain
     slopes = _equations_jacobian(stage, plain)
@@ -164,7 +164,7 @@ def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:
 
 def _tangents(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a of inverse dynamics at an instant."""
-    jacobian = stage.model.dynamics_jacobian
+    jacobian = stage.dynamics.dynamics_jacobian
     arguments = jacobian.mx_in()
     steady = ca.DM(stage.model.inputs.size, 1)
     matrices = jacobian(*arguments[:-1], steady)[:3]
@@ -174,7 +174,7 @@ def _tangents(stage: MotionStage, name: str) -> ca.Function:
 
 def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂p, ∂F/∂inputs_rate of inverse dynamics at an instant."""
-    plain = stage.model.inverse_dynamics
+    plain = stage.dynamics.inverse_dynamics
     if not chooses(plain):
         scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
         # Of scalars only what reads an input is differentiated, of matrices all.
@@ -186,7 +186,7 @@ def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
 
 def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca.Function:
     """The derivatives with inputs, parameters and the rates of inputs in given symbols."""
-    plain = stage.model.inverse_dynamics
+    plain = stage.dynamics.inverse_dynamics
     residual = plain(*arguments, ca.DM(stage.model.inputs.size, 1))
     words = plain.name_in()[:-1]
     first = words.index("inputs")
