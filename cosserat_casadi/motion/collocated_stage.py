@@ -126,7 +126,7 @@ class MotionStage:
     @property
     def unknowns_size(self) -> int:
         """Number of unknowns of a stage, and of its equations."""
-        return self.method.stages * self._instant_size
+        return self.method.stages * len(self.accelerated)
 
     @property
     def dynamics(self) -> Model | SectionPairs:
@@ -138,9 +138,9 @@ class MotionStage:
         return 0 if self.pairs is None else self.pairs.count
 
     @property
-    def _instant_size(self) -> int:
-        """Number of unknowns of an instant."""
-        return self.model.size + self._forces
+    def accelerated(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns of an instant are accelerations, shape (unknowns_size / instants,)."""
+        return np.pad(self.differential, (0, self._forces))
 
     def state(self, x: FloatArray, v: FloatArray | None = None) -> FloatArray:
         """The state of a motion at one time, shape (state_size,).
@@ -274,8 +274,8 @@ class MotionStage:
         half = self.state_size // 2
         start = self.places @ state[:half]
         travel = self.places @ state[half:]
-        size = self._instant_size
-        accelerated = ca.DM(np.pad(self.differential.astype(float), (0, self._forces)))
+        size = len(self.accelerated)
+        accelerated = ca.DM(self.accelerated.astype(float))
         own = [unknowns[j * size : (j + 1) * size] for j in range(self.method.stages)]
         accelerations = [accelerated * each for each in own]
         positions = []
