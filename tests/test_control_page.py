@@ -39,6 +39,7 @@ LONG = {
     "tight = tightened(contact": "control/test_relaxed_contact.py",
     "condensing = Condensing(": "control/test_condensing.py",
     "stage = motion_stage(model, 0.02)  # s": "control/test_motion_stage.py",
+    "smoothing = opti.parameter()": "control/test_motion_stage_in_contact.py",
     "write_acados(model": "codegen/test_acados.py",
     "set_uncertainty_values(": "control/test_do_mpc.py",
 }

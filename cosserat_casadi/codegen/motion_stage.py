@@ -33,7 +33,8 @@ from cosserat_casadi.codegen.stage import (
 )
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
+from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations, differential_places
 from cosserat_casadi.numerics.progress import StageProgress
 
 
@@ -94,7 +95,7 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
         name: what the equations are called.
         curvature: whether the last one is exact.
     """
-    inverse_dynamics = written(stage.model.inverse_dynamics, f"{name}_at_instant")
+    inverse_dynamics = written(stage.dynamics.inverse_dynamics, f"{name}_at_instant")
     plain = stage.equations_by(inverse_dynamics, name)
     yield plain
     slopes = _equations_jacobian(stage, plain)
@@ -108,7 +109,11 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
 def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
     """As :func:`equations_functions`, of the poses of tips and bodies."""
     model = stage.model
-    state, _, *given, _ = stage.symbols
+    state, _, inputs, *_ = stage.symbols
+    given = [inputs]
+    if model.parameters.size:
+        # No pose reads the smoothing of contact, which stands behind the parameters of the model.
+        given.append(ca.MX.sym(PARAMETERS, model.parameters.size))
     x = stage.x(state)
     poses = poses_of(model)
     results = []
@@ -116,15 +121,15 @@ def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[
         position, quaternion, _ = pose(x, *given)
         results.append(ca.vertcat(position, quaternion))
     arguments = [state, *given]
-    of_motion = ("unknowns", "inputs_rate")
-    words = [word for word in stage.sizes if word not in of_motion]
-    whole = ca.Function(name, arguments, results, words, [*poses])
+    words = ["state", "inputs", PARAMETERS]
+    whole = ca.Function(name, arguments, results, words[: len(arguments)], [*poses])
     plain = written(whole, name)
     yield plain
     blocks = []
+    places = differential_places(model)
     for slope in [*model.tip_jacobian.values(), *model.body_jacobian.values()]:
         by_x, *by_given = slope(x, *given)
-        by_position = by_x @ stage.places
+        by_position = by_x @ places
         # No pose reads a velocity.
         blocks += [ca.horzcat(by_position, ca.DM(*by_position.shape)), *by_given]
     slopes = written(jacobian_of(plain, arguments, blocks), f"jac_{name}")
@@ -164,7 +169,7 @@ def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:
 
 def _tangents(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a of inverse dynamics at an instant."""
-    jacobian = stage.model.dynamics_jacobian
+    jacobian = stage.dynamics.dynamics_jacobian
     arguments = jacobian.mx_in()
     steady = ca.DM(stage.model.inputs.size, 1)
     matrices = jacobian(*arguments[:-1], steady)[:3]
@@ -174,7 +179,7 @@ def _tangents(stage: MotionStage, name: str) -> ca.Function:
 
 def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂p, ∂F/∂inputs_rate of inverse dynamics at an instant."""
-    plain = stage.model.inverse_dynamics
+    plain = stage.dynamics.inverse_dynamics
     if not chooses(plain):
         scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
         # Of scalars only what reads an input is differentiated, of matrices all.
@@ -186,7 +191,7 @@ def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
 
 def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca.Function:
     """The derivatives with inputs, parameters and the rates of inputs in given symbols."""
-    plain = stage.model.inverse_dynamics
+    plain = stage.dynamics.inverse_dynamics
     residual = plain(*arguments, ca.DM(stage.model.inputs.size, 1))
     words = plain.name_in()[:-1]
     first = words.index("inputs")
@@ -196,7 +201,7 @@ def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca
 
 def _columns(stage: MotionStage, differential: float, algebraic: float, stiffness: Matrix) -> Matrix:
     """The stiffness with its columns of differential and of algebraic entries multiplied by a number each."""
-    if np.all(stage.differential):
+    if np.all(stage.accelerated):
         return float(differential) * stiffness
-    weights: FloatArray = np.where(stage.differential, differential, algebraic)
+    weights: FloatArray = np.where(stage.accelerated, differential, algebraic)
     return stiffness @ ca.diag(ca.DM(weights))

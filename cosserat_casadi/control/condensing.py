@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 
@@ -78,13 +78,9 @@ class Condensing:
 
     Raises:
         ValueError: there is no stage, or no such input.
-        SceneError: the equations of the stage take parameters.
     """
 
     def __init__(self, stage: MotionStage, equations: StageEquations, stages: int, steered: Sequence[int]) -> None:
-        if stage.model.parameters.size:
-            problem = "the equations of the stage take parameters, and a horizon is condensed for given ones"
-            raise SceneError(Problem("parameters", problem, "make the stage of model.at(…)"))
         inputs = stage.model.inputs.size
         if stages < 1:
             raise ValueError(f"stages must be 1 or more, got {stages}")
@@ -102,20 +98,25 @@ class Condensing:
         self._transition = stage.transition.full()
         self._drive = stage.drive.full()
 
-    def condensed(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> Condensed:
+    def condensed(
+        self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray, p: FloatArray | None = None
+    ) -> Condensed:
         """The horizon linearised about a guess.
 
         Args:
             guess: states and unknowns.
             inputs: at the beginnings of all stages, shape (N, inputs).
             inputs_rate: in them, shape (N, inputs), units per second.
+            p: stacked parameters of all stages, of a stage that takes them, shape (N, parameters).
 
         Raises:
             ValueError: an array has another shape.
             numpy.linalg.LinAlgError: the unknowns of a stage do not follow from its equations.
         """
-        self._check(guess, inputs, inputs_rate)
-        unsolved, by_state, by_unknowns, by_inputs, by_rate = self._linearised(guess, inputs, inputs_rate)
+        given = np.zeros((self._stages, 0)) if p is None else p
+        self._check(guess, inputs, inputs_rate, given)
+        linear = self._linearised(guess, inputs, inputs_rate, given)
+        unsolved, by_state, by_unknowns, by_inputs, *_, by_rate = linear
         size = self._stage.state_size
         count = len(self._steered)
         right = [unsolved, by_state, by_inputs, by_rate[:, :, self._steered]]
@@ -152,7 +153,7 @@ class Condensing:
             unknowns_shift=unknowns_shift,
         )
 
-    def _check(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> None:
+    def _check(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray, p: FloatArray) -> None:
         """Refuse arrays of other shapes: entries would be read at wrong places.
 
         Raises:
@@ -165,6 +166,7 @@ class Condensing:
             "unknowns": (guess.unknowns, (self._stages, stage.unknowns_size)),
             "inputs": (inputs, moving),
             "inputs_rate": (inputs_rate, moving),
+            "p": (p, (self._stages, stage.sizes.get(PARAMETERS, 0))),
         }
         wrong = [
             f"{name} must have the shape {shape}, not {np.shape(given)}"
@@ -174,9 +176,12 @@ class Condensing:
         if wrong:
             raise ValueError("; ".join(wrong))
 
-    def _linearised(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> list[FloatArray]:
+    def _linearised(
+        self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray, p: FloatArray
+    ) -> list[FloatArray]:
         """Residual of the equations of all stages and their derivatives, each of shape (N, unknowns_size, columns)."""
-        arguments = [guess.states[:-1], guess.unknowns, inputs, inputs_rate]
+        parameters = [p] if p.size else []
+        arguments = [guess.states[:-1], guess.unknowns, inputs, *parameters, inputs_rate]
         columns = self._evaluate(*[argument.ravel() for argument in arguments])
         # Entries stand by columns, one stage after the other.
         stages = columns.reshape(self._stages, -1, self._stage.unknowns_size).transpose(0, 2, 1)

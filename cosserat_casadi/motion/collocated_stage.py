@@ -22,10 +22,10 @@ from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.motion_checks import immovable
+from cosserat_casadi.motion.section_pairs import SECTIONS, SectionPairs
 from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
 
 MECHANICAL = (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE)
@@ -78,7 +78,7 @@ class StageEquations:
         return residual
 
 
-def _asked_for(takes_parameters: bool, p: Matrix | None) -> list[Matrix]:
+def _asked_for(takes_parameters: bool, p: Matrix | FloatArray | None) -> list[Matrix | FloatArray]:
     """The parameters as arguments of a function; none of a stage that takes none.
 
     Raises:
@@ -97,18 +97,21 @@ class MotionStage:
 
     Its *state* are the differential unknowns and their changes per stage, (x, h v), without unit. Its *unknowns* are,
     for one instant after the other, a vector in the order of x: h² a of the differential entries, the values of
-    the algebraic ones. Inputs change linearly within the stage. Where the model has parameters they are an argument
-    p behind the inputs.
+    the algebraic ones; in exact contact behind them what the forces of :attr:`pairs` move by. Inputs change linearly
+    within the stage. Where the model has parameters they are an argument p behind the inputs; in exact contact the
+    smoothing is its last entry.
 
     Attributes:
         model: the model.
         duration: h, s.
         method: the collocation method.
+        pairs: forces and gaps of what may touch exactly; None where nothing may.
     """
 
     model: Model
     duration: float
     method: Collocation
+    pairs: SectionPairs | None = None
 
     @property
     def differential(self) -> npt.NDArray[np.bool_]:
@@ -123,7 +126,21 @@ class MotionStage:
     @property
     def unknowns_size(self) -> int:
         """Number of unknowns of a stage, and of its equations."""
-        return self.method.stages * self.model.size
+        return self.method.stages * len(self.accelerated)
+
+    @property
+    def dynamics(self) -> Model | SectionPairs:
+        """What has the equations of motion at an instant, and their derivatives."""
+        return self.model if self.pairs is None else self.pairs
+
+    @property
+    def _forces(self) -> int:
+        return 0 if self.pairs is None else self.pairs.count
+
+    @property
+    def accelerated(self) -> npt.NDArray[np.bool_]:
+        """Which unknowns of an instant are accelerations, shape (unknowns_size / instants,)."""
+        return np.pad(self.differential, (0, self._forces))
 
     def state(self, x: FloatArray, v: FloatArray | None = None) -> FloatArray:
         """The state of a motion at one time, shape (state_size,).
@@ -141,15 +158,16 @@ class MotionStage:
         Args:
             x: unknowns of the model, of which the algebraic ones are taken, shape (model.size,).
         """
-        return np.tile(np.where(self.differential, 0.0, x), self.method.stages)
+        still = np.where(self.differential, 0.0, x)
+        return np.tile(np.pad(still, (0, self._forces)), self.method.stages)
 
     def x(self, state: Matrix) -> Matrix:
         """Unknowns of the model in a state, shape (model.size,); zero for the algebraic ones, which no pose reads."""
-        return self.places @ state[: self.state_size // 2]
+        return differential_places(self.model) @ state[: self.state_size // 2]
 
     def v(self, state: Matrix) -> Matrix:
         """Their rates, 1/s, shape (model.size,)."""
-        return self.places @ state[self.state_size // 2 :] / self.duration
+        return differential_places(self.model) @ state[self.state_size // 2 :] / self.duration
 
     def independent_rates(
         self, state: Matrix, x: FloatArray, inputs: FloatArray, p: FloatArray | None = None
@@ -206,13 +224,13 @@ class MotionStage:
     @cached_property
     def equations(self) -> StageEquations:
         """The equations of motion at all instants: (state, unknowns, inputs, inputs_rate=…, p=…) ↦ residual."""
-        return StageEquations(self.equations_by(self.model.inverse_dynamics, "equations"))
+        return StageEquations(self.equations_by(self.dynamics.inverse_dynamics, "equations"))
 
     def equations_by(self, inverse_dynamics: ca.Function, name: str) -> ca.Function:
         """The function of :attr:`equations`, by a function that evaluates the equations of motion at an instant.
 
         Args:
-            inverse_dynamics: with the arguments and the result of that of the model.
+            inverse_dynamics: with the arguments and the result of that of :attr:`dynamics`.
             name: of the function.
         """
         arguments = self.symbols
@@ -228,7 +246,7 @@ class MotionStage:
     @property
     def sizes(self) -> dict[str, int]:
         """Entries of the arguments of the equations by name."""
-        parameters = self.model.parameters.size
+        parameters = self.model.parameters.size + (self.pairs is not None)
         return {
             "state": self.state_size,
             "unknowns": self.unknowns_size,
@@ -247,7 +265,7 @@ class MotionStage:
         return inputs + float(self.method.nodes[i]) * self.duration * rate
 
     def instants(self, state: Matrix, unknowns: Matrix) -> Instants:
-        """Unknowns of the model, their rates and accelerations at all instants.
+        """Unknowns of :attr:`dynamics`, their rates and accelerations at all instants.
 
         Args:
             state: shape (state_size,).
@@ -256,8 +274,9 @@ class MotionStage:
         half = self.state_size // 2
         start = self.places @ state[:half]
         travel = self.places @ state[half:]
-        accelerated = ca.DM(self.differential.astype(float))
-        own = [unknowns[j * self.model.size : (j + 1) * self.model.size] for j in range(self.method.stages)]
+        size = len(self.accelerated)
+        accelerated = ca.DM(self.accelerated.astype(float))
+        own = [unknowns[j * size : (j + 1) * size] for j in range(self.method.stages)]
         accelerations = [accelerated * each for each in own]
         positions = []
         velocities = []
@@ -273,8 +292,9 @@ class MotionStage:
 
     @cached_property
     def places(self) -> ca.DM:
-        """Differential entries to their places in x, sparse, shape (model.size, state_size / 2)."""
-        return differential_places(self.model)
+        """Differential entries to their places in x of :attr:`dynamics`, sparse, state_size / 2 columns."""
+        places: ca.DM = ca.vertcat(differential_places(self.model), ca.DM(self._forces, self.state_size // 2))
+        return places
 
 
 def differential_places(model: Model) -> ca.DM:
@@ -294,7 +314,12 @@ def _places(chosen: npt.NDArray[np.bool_]) -> ca.DM:
 
 
 def motion_stage(
-    model: Model, duration: float, method: Collocation | None = None, *, parameters: bool = False
+    model: Model,
+    duration: float,
+    method: Collocation | None = None,
+    *,
+    parameters: bool = False,
+    sections: int = SECTIONS,
 ) -> MotionStage:
     """One stage of an optimal-control problem in which a model moves.
 
@@ -302,19 +327,28 @@ def motion_stage(
         model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely. Parameters
             have the values of the scene, or those of ``model.at(…)``, unless they are asked for.
         duration: of the stage, s.
-        method: by default that of the simulator, Radau IIA with three stages, ``radau(3)``.
+        method: by default that of the simulator, Radau IIA with three stages, ``radau(3)``; in exact contact
+            ``radau(1)``, Euler's implicit method.
         parameters: whether the parameters of the scene, if it names some, are an argument of the equations.
+        sections: stretches of a rod, at whose ends it may touch an obstacle without a width.
 
     Raises:
-        SceneError: a rod has no mass, the duration is not positive, or the method does not suit the constraints.
+        SceneError: a rod has no mass, the duration is not positive, or the method does not suit the constraints, or
+            exact contact.
     """
-    refuse_obstacles(model.scene, "an optimal-control problem")
-    chosen = method or radau(STAGES)
+    exact = model.scene.touches_exactly
+    chosen = method or radau(1 if exact else STAGES)
     problems = immovable(model)
     if not 0.0 < duration < np.inf:
         problems.append(Problem("duration", f"{duration} s is no positive time", "give the length of a stage"))
     if not chosen.stiffly_accurate and not np.all(model.discrete.unknowns.differential):
         what = f"{chosen.name} does not converge for supports, joints, carried rods and cables of given length"
         problems.append(Problem("method", what, "take Radau IIA, radau(2)"))
+    if exact and not (chosen.stages == 1 and chosen.stiffly_accurate):
+        what = f"{chosen.name} throws back what meets an obstacle without restitution"
+        problems.append(Problem("method", what, "take radau(1), or give each obstacle a width, m"))
+    if sections < 1:
+        problems.append(Problem("sections", f"must be 1 or more, got {sections}", f"take {SECTIONS}"))
     refuse(problems)
-    return MotionStage(model if parameters else model.at(), duration, chosen)
+    own = model if parameters else model.at()
+    return MotionStage(own, duration, chosen, SectionPairs(own, sections, duration) if exact else None)

@@ -23,9 +23,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
 from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_inside, told_passage, too_deep
+from cosserat_casadi.motion.contact_guards import SAME_PLACE
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
-from cosserat_casadi.motion.event_restart import Restart
+from cosserat_casadi.motion.event_restart import LAID_DOWN, Restart
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -78,6 +79,12 @@ LEAST_SLOPE_AFTER_IMPACTS = 0.08
 
 Until steps tell the waves along a rod, motions may be nearer to each other than to the true one.
 """
+
+LEAST_SLOPE_OF_ALIKE = 0.2
+"""The same of two motions whose impacts are alike: neither is off by an impact that the other one has elsewhere."""
+
+LYING = ("lie_down", LAID_DOWN)
+"""Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
 
 FEW_STEPS = 10.0
 """Number of steps at which a told error counts twice: a few steps may happen to suit the motion."""
@@ -166,17 +173,14 @@ class TimedHistory:
         error: estimated error of the paths that the steps leave, over the length; nan where none was made.
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
         companion: the motion by which the error was told; None where none was made.
+        distance: of the paths from those of that motion, over the length; nan without one.
     """
 
     history: History
     error: float
     tolerance: float = float("nan")
     companion: Companion | None = None
-
-    @property
-    def distance(self) -> float:
-        """Distance of the paths from those of the motion by which the error was told; nan without one."""
-        return float("nan") if self.companion is None else self.error / self.companion.factor
+    distance: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -337,10 +341,15 @@ class Simulator:
             fine, tolerance = finer, tolerance / TIGHTER
         distance = path_distance(self.paths(timed.history), self.paths(fine))
         left = left_by(factor, fine, timed.history)
-        if timed.companion is not None and is_struck(fine) and distance > 0.0:
+        alike = are_struck_alike(fine, timed.history)
+        earlier = timed.companion
+        three_alike = alike and earlier is not None and are_struck_alike(timed.history, earlier.history)
+        if earlier is not None and is_struck(fine) and not three_alike and distance > 0.0:
             # Which section strikes next may be decided by chance: two motions may agree that both err as others do.
             left = max(left, timed.distance / distance)
-        return TimedHistory(fine, left * distance, tolerance, Companion(timed.history, left))
+        # Of two that are struck elsewhere no error below that of a step is believed.
+        error = left * distance if alike else max(left * distance, tolerance)
+        return TimedHistory(fine, error, tolerance, Companion(timed.history, left), distance)
 
     def _with_given_step(self, size: float) -> TimedHistory:
         history = self.stepped(size)
@@ -356,13 +365,13 @@ class Simulator:
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
         error = HALVED * distance if shorter.completed else float("nan")
-        return TimedHistory(history, error, step_tolerance, Companion(shorter, HALVED))
+        return TimedHistory(history, error, step_tolerance, Companion(shorter, HALVED), distance)
 
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
         size = self.simulation.duration / FIRST_GAUSS_STEPS
         history = self.stepped(size)
         history_paths = self.paths(history)
-        error = float("nan")
+        error = distance = float("nan")
         companion = None
         for _ in range(MOST_HALVINGS):
             size = size / 2.0
@@ -372,13 +381,14 @@ class Simulator:
                 return TimedHistory(shorter, float("nan"))
             shorter_paths = self.paths(shorter)
             if history.completed and shorter.completed:
-                error = LEFT_BY_HALF * path_distance(history_paths, shorter_paths)
+                distance = path_distance(history_paths, shorter_paths)
+                error = LEFT_BY_HALF * distance
             companion = Companion(history, LEFT_BY_HALF)
             history = shorter
             history_paths = shorter_paths
             if error <= tolerance:
                 break
-        return TimedHistory(history, error, companion=companion)
+        return TimedHistory(history, error, companion=companion, distance=distance)
 
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
@@ -445,9 +455,32 @@ def impacts_of(history: History) -> int:
     return sum(event.kind == "impact" for event in history.events)
 
 
-def left_by(factor: float, finer: History, *coarser: History) -> float:
-    """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances."""
-    slope = LEAST_SLOPE_AFTER_IMPACTS if any(map(is_struck, [finer, *coarser])) else LEAST_SLOPE
+def are_struck_alike(first: History, second: History) -> bool:
+    """Whether two motions have the same impacts, one by one: of the same owners, on the same obstacles and sections.
+
+    The impacts of a rod that lies down are like no others.
+    """
+    if any(event.kind in LYING for event in (*first.events, *second.events)):
+        return False
+    impacts = [[event for event in history.events if event.kind == "impact"] for history in (first, second)]
+    return len(impacts[0]) == len(impacts[1]) and all(
+        (one.owner, one.obstacle) == (other.owner, other.obstacle) and abs(one.place - other.place) <= SAME_PLACE
+        for one, other in zip(*impacts, strict=True)
+    )
+
+
+def left_by(factor: float, finer: History, coarser: History | None = None) -> float:
+    """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances.
+
+    Args:
+        factor: the larger tolerance of a step over the smaller one.
+        finer: the motion with the smaller one.
+        coarser: the other motion; None where its impacts count as unlike.
+    """
+    slope = LEAST_SLOPE
+    if is_struck(finer) or (coarser is not None and is_struck(coarser)):
+        alike = coarser is not None and are_struck_alike(finer, coarser)
+        slope = LEAST_SLOPE_OF_ALIKE if alike else LEAST_SLOPE_AFTER_IMPACTS
     return (1.0 + FEW_STEPS / max(finer.statistics.steps, 1)) / float(factor**slope - 1.0)
 
 

@@ -36,6 +36,12 @@ CLOSED = 1e-9
 ON_GUARD = 1e-13
 """Value of a guard that counts as zero."""
 
+ROUNDED = 1e-11
+"""The same where another length of the step brings the guard no nearer: as much is left by Newton's method."""
+
+NEARER = 0.5
+"""Share of the value at the length before from which on a guard is no nearer."""
+
 MOST_LASTING = 100.0
 """Largest factor on the error of a step by its shortness: what Newton's method leaves of short ones counts too."""
 
@@ -304,6 +310,7 @@ class StepRun:
         assert self.guards is not None
         time = cut.end.time
         stands = cut
+        last: tuple[float, float] | None = None
         for _ in range(MOST_LENGTHS):
             self.size = time - cut.start.time
             solution = self.solve()
@@ -311,15 +318,22 @@ class StepRun:
                 break
             self.accept(solution, time, cut.error, self.size)
             step = self.steps[-1]
-            value = self.guards(step.end)[guard]
-            before = self.guards(step.at(time - NEARBY * step.size))[guard]
-            rate = (value - before) / (NEARBY * step.size)
-            if abs(value) <= ON_GUARD:
+            value = float(self.guards(step.end)[guard])
+            is_nearer = last is None or abs(value) < NEARER * abs(last[1])
+            if abs(value) <= (ON_GUARD if is_nearer else ROUNDED):
                 return
             self.steps.pop()
             if stands is cut and self._open(cut):
                 stands = step
-            following = time - float(value / rate) if rate < 0.0 else time
+            if last is None:
+                earlier = time - NEARBY * step.size
+                last = earlier, float(self.guards(step.at(earlier))[guard])
+            elif not is_nearer:
+                break
+            # The state at the end of a step does not change with its length as it does along the step.
+            rate = (value - last[1]) / (time - last[0])
+            last = time, value
+            following = time - value / rate if rate < 0.0 else time
             latest = min(2.0 * cut.end.time - cut.start.time, self.stop)
             # What needs a change of the time below its rounding, or another step altogether, is not found so.
             if not cut.start.time < following < latest or following == time:

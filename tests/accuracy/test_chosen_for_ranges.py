@@ -209,13 +209,13 @@ def test_a_model_with_no_more_freedom_than_constraints_is_locked() -> None:
 
 @pytest.mark.slow
 def test_modes_are_chosen_beside_a_thin_bar() -> None:
-    """They begin with intervals that see its layer, and a few points are tried; away from them the error holds too."""
+    """Few intervals do, for its layer is summed between nodes; away from points that are tried the error holds too."""
     free = "accuracy = { modes = 2, nodes = 24 }"
     pressed = parse_scene(ON_A_BAR.replace(free, ""), ["bar.radius=2e-3", "bar.width=1e-3", "accuracy.tolerance=1e-3"])
     chosen = choose(pressed, {"push.force.z": (-0.05, -0.03)})
     assert chosen.met and not chosen.without_equilibrium
-    assert chosen.solves == 1 + 2 + 2 + 2 + 2
-    fine = build(chosen.scene, discretise(chosen.scene, 6, 120))
+    assert max(own.nodes for own in chosen.model.discretisation.values()) <= 12
+    fine = build(chosen.scene, discretise(chosen.scene, 5, 24))
     push = {"push.force": [0.0, 0.0, -0.037]}
     coarse = solve(chosen.model, push, estimate_error=False)
     assert coarse.converged

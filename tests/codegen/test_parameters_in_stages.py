@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, Solution, solve
+from cosserat_casadi import Model, Solution, solve
 from cosserat_casadi.codegen.acados import acados_expressions, acados_functions
 from cosserat_casadi.codegen.motion_stage import compiled_motion_stage, equations_functions, poses_functions
 from cosserat_casadi.codegen.stage import compiled_stage, stage_functions
-from cosserat_casadi.control import Condensing, embedded, lifted, motion_stage
+from cosserat_casadi.control import Condensing, Horizon, embedded, lifted, motion_stage
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_parameters_in_c import RECIPES
 
@@ -88,8 +88,10 @@ def test_stage_in_motion(model: Model) -> None:
     pose_at = [at[0], at[2], at[3]]
     for block, wanted in zip(pose_slopes(*pose_at, ca.DM(7, 1)), slopes_of(poses, pose_at), strict=True):
         assert_allclose(block.full(), wanted, rtol=0, atol=1e-11)
-    with pytest.raises(SceneError, match="a horizon is condensed for given ones"):
-        Condensing(stage, stage.equations, 3, [0])
+    horizon = Horizon(np.tile(at[0], (2, 1)), at[1][None])
+    with_p = Condensing(stage, stage.equations, 1, [0]).condensed(horizon, at[2][None], at[4][None], at[3][None])
+    wanted = Condensing(fixed, fixed.equations, 1, [0]).condensed(horizon, at[2][None], at[4][None])
+    assert_allclose(with_p.states_by_rates, wanted.states_by_rates, rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("moving", [False, pytest.param(True, marks=pytest.mark.slow)])

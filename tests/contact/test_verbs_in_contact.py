@@ -235,7 +235,7 @@ VERBS: dict[str, Verb] = {
         relaxed_contact(model(contact), 2), "robot"
     ),
     "`compiled_stage`": lambda contact, _: compiled_stage(model(contact), "verb", curvature=False),
-    "`motion_stage`": lambda contact, _: motion_stage(model(contact, moving=True), 1e-2).equations,
+    "`motion_stage`": lambda contact, _: motion_stage(model(contact, moving=True), 1e-2).equations.function,
     "`compiled_motion_stage`": _compiled_stage_in_motion,
     "`acados_expressions`": lambda contact, _: acados_expressions(model(contact), "robot"),
 }

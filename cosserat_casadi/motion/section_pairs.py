@@ -1,0 +1,272 @@
+"""Exact contact in stages of motions, as equations that stay as contacts come and go: pairs of force and gap.
+
+An optimiser goes on from contacts to others, and its equations must not change. So each of a number of sections, and
+each body that may touch, has a force and the gap g over the length, which are the pair of a cable that may go slack,
+
+    Λ + g − √(Λ² + g² + a ε²) = 0,    which is Λ g = a ε²/2 with Λ, g > 0.
+
+Λ = a N is the force N, without unit, by what it moves its section within a stage, over the length: of the size of gaps,
+as other unknowns of a stage are. Whatever the stage, N g = ε²/2. The gap is that at the end of a stage of one instant, which is Euler's implicit method. What approaches
+stops at the obstacle at the end of a stage, and with g = 0 at two ends it rests: a blow takes the whole speed, the
+coefficient of restitution being none. With another coefficient e the gap is that at
+
+    (x₊ + e x₋)/(1 + e),    x₊ at the end of the stage and x₋ at the beginning of the last one,
+
+which gives the share e of the speed back (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
+more instants have no such pairs: a force at the first of them throws back what has no restitution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.constraints.cable_length import pair_kernel
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, reach_of
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
+from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.maths.numbers import as_matrix
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS, expressions_of
+from cosserat_casadi.model.section_poses import section_weights
+from cosserat_casadi.model.system import System
+from cosserat_casadi.motion.coincident_ends import watched_ends
+
+SECTIONS = 8
+"""Stretches of a rod, at whose ends are the sections that may touch an obstacle."""
+
+
+@dataclass(frozen=True)
+class TouchingSections:
+    """Sections of a rod, or a body, that may touch an obstacle.
+
+    Attributes:
+        owner: name of the rod or the body.
+        obstacle: the obstacle.
+        places: abscissae X of the sections, base to tip; one number of a body.
+        of_body: whether it is a body.
+    """
+
+    owner: str
+    obstacle: scenes.ObstacleRecord
+    places: tuple[float, ...]
+    of_body: bool
+
+
+@dataclass(frozen=True)
+class SectionPairs:
+    """The equations of motion of a model at the end of a stage, with pairs of force and gap.
+
+    Their unknowns x are those of the model and behind them Λ of all pairs; parameters are those of the model and behind
+    them the smoothing ε.
+
+    Attributes:
+        model: the model, with or without parameters.
+        sections: stretches of a rod, at whose ends are sections that may touch.
+        duration: of the stage, s.
+    """
+
+    model: Model
+    sections: int
+    duration: float
+
+    @cached_property
+    def _nominal(self) -> Model:
+        """The model with the parameters of the scene."""
+        return self.model.at()
+
+    @cached_property
+    def touching(self) -> tuple[TouchingSections, ...]:
+        """What may touch, in the order of the pairs: with one coefficient of restitution after the other."""
+        return tuple(sorted(self._all(), key=lambda touching: touching.obstacle.restitution))
+
+    def _all(self) -> Iterator[TouchingSections]:
+        nominal = self._nominal
+        X = np.linspace(0.0, 1.0, self.sections + 1).tolist()
+        for rod, obstacle in pairs(nominal.scene):
+            base, tip = watched_ends(nominal, rod, obstacle)
+            places = X[0 if base else 1 : None if tip else -1]
+            if places:
+                yield TouchingSections(rod, obstacle, tuple(places), of_body=False)
+        for body, obstacle in body_pairs(nominal.scene):
+            yield TouchingSections(body.name, obstacle, (0.0,), of_body=True)
+
+    @cached_property
+    def count(self) -> int:
+        """Number of pairs."""
+        return sum(len(touching.places) for touching in self.touching)
+
+    @cached_property
+    def gaps(self) -> ca.Function:
+        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the lengths, of unknowns of the model."""
+        return self._gaps(self.touching, "gaps")
+
+    @cached_property
+    def force_units(self) -> FloatArray:
+        """Force of each pair whose Λ is 1, N, shape (count,)."""
+        rows = [self._force_units(touching) for touching in self.touching]
+        return np.concatenate([np.zeros(0), *rows])
+
+    @cached_property
+    def softness(self) -> FloatArray:
+        """By what EI/ℓ² moves each section, or body, within a stage, over the length, shape (count,)."""
+        discrete = self._nominal.discrete
+        units = [
+            np.full(len(touching.places), discrete.contact_unit(touching.owner, of_body=touching.of_body))
+            for touching in self.touching
+        ]
+        return np.concatenate([np.zeros(0), *units]) / self.force_units
+
+    @cached_property
+    def inverse_dynamics(self) -> ca.Function:
+        """As that of the model, with the pairs behind its equations: (x, v, a, inputs, p, inputs_rate, …) ↦ residual."""
+        arguments = self._symbols
+        plain = ca.vertcat(self.model.inverse_dynamics(*self._of_model(arguments)), ca.MX(self.count, 1))
+        return self._function("inverse_dynamics", arguments, [plain + self._rows(arguments)], ["residual"])
+
+    @cached_property
+    def dynamics_jacobian(self) -> ca.Function:
+        """As that of the model: derivatives of :attr:`inverse_dynamics` with x, v and a, and the residual."""
+        arguments = self._symbols
+        *matrices, residual = self.model.dynamics_jacobian(*self._of_model(arguments))
+        rows = self._rows(arguments)
+        room = ca.MX(self.count, self.count)
+        whole = [
+            ca.diagcat(matrix, room) + ca.jacobian(rows, argument)
+            for matrix, argument in zip(matrices, arguments[:3], strict=True)
+        ]
+        residual = ca.vertcat(residual, ca.MX(self.count, 1)) + rows
+        names = self.model.dynamics_jacobian.name_out()
+        return self._function("dynamics_jacobian", arguments, [*whole, residual], names)
+
+    @cached_property
+    def _symbols(self) -> list[Matrix]:
+        """Symbols for x, v, a, inputs, p, inputs_rate and inputs_acceleration."""
+        size = self.model.size + self.count
+        inputs = self.model.inputs.size
+        sizes = [size, size, size, inputs, self.model.parameters.size + 1, inputs, inputs]
+        return [ca.MX.sym(name, length) for name, length in zip(self._words, sizes, strict=True)]
+
+    @property
+    def _words(self) -> list[str]:
+        return ["x", "v", "a", "inputs", PARAMETERS, "inputs_rate", "inputs_acceleration"]
+
+    def _function(self, name: str, arguments: list[Matrix], results: list[Matrix], names: list[str]) -> ca.Function:
+        return ca.Function(name, arguments, results, self._words, names)
+
+    def _of_model(self, arguments: list[Matrix]) -> list[Matrix]:
+        """Arguments of the functions of the model."""
+        *moving, inputs, p, rate, acceleration = arguments
+        return [*(each[: self.model.size] for each in moving), inputs, *self._parameters(p), rate, acceleration]
+
+    def _parameters(self, p: Matrix) -> list[Matrix]:
+        """The parameters of the model, if it has any."""
+        return [p[:-1]] if self.model.parameters.size else []
+
+    def _rows(self, arguments: list[Matrix]) -> Matrix:
+        """What the pairs add to the equations of the model, and their own equations."""
+        x, v, a, inputs, p, rate, _ = arguments
+        own = slice(0, self.model.size)
+        moved_by = x[self.model.size :]
+        energies = ca.DM(self.force_units * self._lengths) * moved_by
+        pushes: Matrix = ca.MX(self.model.size, 1)
+        gaps: list[Matrix] = []
+        first = 0
+        for restitution, group in groupby(self.touching, lambda touching: touching.obstacle.restitution):
+            function = self._gaps(tuple(group), "gaps_of_restitution")
+            # x₋ = x₊ − 2 h v₊ + h² a₊ with Euler's implicit method.
+            back = restitution / (1.0 + restitution)
+            x_between = x[own] - back * (2.0 * self.duration * v[own] - self.duration**2 * a[own])
+            inputs_between = inputs - 2.0 * back * self.duration * rate
+            at = ca.MX.sym("at", self.model.size)
+            given = [at, ca.MX.sym("inputs", inputs.shape[0])]
+            given += [ca.MX.sym(PARAMETERS, each.shape[0]) for each in self._parameters(p)]
+            weights = ca.MX.sym("weights", function.size1_out(0))
+            push = ca.densify(ca.jtimes(function(*given), at, weights, True))
+            pushed = ca.Function("push", [*given, weights], [push])
+            between = [x_between, inputs_between, *self._parameters(p)]
+            count = function.size1_out(0)
+            gaps.append(function(*between))
+            pushes = pushes + pushed(*between, energies[first : first + count])
+            first += count
+        kernel = pair_kernel(slack=True, softness=1.0).map(self.count)
+        smoothings = p[-1] * ca.DM(np.sqrt(self.softness))
+        residual, _, _ = kernel(ca.vertcat(*gaps).T, moved_by.T, smoothings.T)
+        return ca.vertcat(-pushes / ca.DM(self.model.discrete.unknowns.units), residual.T)
+
+    def _gaps(self, touching: tuple[TouchingSections, ...], name: str) -> ca.Function:
+        words = ["x", "inputs", *([PARAMETERS] if self.model.parameters.size else [])]
+        written = expressions_of(self.model, tuple(words), "")
+        gaps = [self._gaps_of(written.system, each) for each in touching]
+        return ca.Function(name, list(written.symbols.values()), [ca.densify(ca.vertcat(*gaps))], words, ["gaps"])
+
+    def _gaps_of(self, system: System, touching: TouchingSections) -> Matrix:
+        """Distances of surfaces from an obstacle over the length, k×1."""
+        positions = self._positions(system, touching)
+        seen = system.seen_from(touching.obstacle.body, positions)
+        distances = distance_from(touching.obstacle).map(seen.shape[1])(seen).T
+        if touching.of_body:
+            body = self._body(touching.owner)
+            _, normal, _ = surface(touching.obstacle)(seen)
+            axes = system.body(touching.owner).rotation
+            reach = reach_of(body, normal, system.turned_to(touching.obstacle.body, axes))
+        else:
+            rod = self.model.discrete.rods[touching.owner].properties
+            reach = as_matrix(section_radii(rod, np.array(touching.places)))
+        gaps: Matrix = (distances - reach) / self._length(touching)
+        return gaps
+
+    def _positions(self, system: System, touching: TouchingSections) -> Matrix:
+        """World positions of sections, or of a body, 3×k, m."""
+        if touching.of_body:
+            return system.body(touching.owner).position
+        weights = section_weights(self.model.discrete, touching.owner, touching.places)
+        base = system.base(touching.owner)
+        turned = quaternion_to_matrix(base.quaternion) @ (system.shapes[touching.owner].position @ weights)
+        return ca.repmat(ca.MX(base.position), 1, len(touching.places)) + turned
+
+    def _body(self, name: str) -> scenes.Body:
+        (body,) = [body for body in self._nominal.scene.bodies if body.name == name]
+        return body
+
+    def _length(self, touching: TouchingSections) -> float:
+        """Length that gaps are counted in, m."""
+        discrete = self._nominal.discrete
+        if touching.of_body:
+            return float(discrete.body_frame(touching.owner).length)
+        return float(discrete.rods[touching.owner].properties.length)
+
+    @cached_property
+    def _lengths(self) -> FloatArray:
+        """The same of each pair, shape (count,)."""
+        lengths = [np.full(len(touching.places), self._length(touching)) for touching in self.touching]
+        return np.concatenate([np.zeros(0), *lengths])
+
+    def _force_units(self, touching: TouchingSections) -> FloatArray:
+        """Force that moves each section by the length within a stage, in the direction in which it yields most, N."""
+        nominal = self._nominal
+        at = nominal.unloaded(), nominal.pack()
+        written = expressions_of(nominal, ("x", "inputs"), "")
+        positions = ca.vec(ca.MX(self._positions(written.system, touching)))
+        slopes = ca.Function("slopes", list(written.symbols.values()), [ca.jacobian(positions, written["x"])])
+        still = [np.zeros(nominal.size)] * 2
+        steady = [np.zeros(nominal.inputs.size)] * 2
+        stiffness, damping, mass, _ = nominal.dynamics_jacobian(at[0], *still, at[1], *steady)
+        matrix = stiffness + damping / self.duration + mass / self.duration**2
+        moved = slopes(*at).full()
+        yields = np.linalg.solve(matrix.full(), (moved / nominal.discrete.unknowns.units).T)
+        units = []
+        for of_section in np.split(moved, len(touching.places)):
+            rows = slice(3 * len(units), 3 * len(units) + 3)
+            most = np.linalg.norm(of_section @ yields[:, rows], 2)
+            # What cannot move is pushed by any force.
+            units.append(self._length(touching) / most if most > 0.0 else 1.0)
+        return np.array(units)
