@@ -226,18 +226,9 @@ class Facing(ABC):
 
     def _lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float], *, all_ends: bool) -> Minimum:
         found = ValleyRecord()
-        places, left_out = (np.array([*numbers, 0.0]) for numbers in (but, ends))
-        called(
-            "lowest_gap",
-            self.in_law.address,
-            _address(nodes),
-            all_ends,
-            places.ctypes.data,
-            len(but),
-            left_out.ctypes.data,
-            len(ends),
-            ctypes.addressof(found),
-        )
+        places, left_out = ((ctypes.c_double * len(numbers))(*numbers) for numbers in (but, ends))
+        lists = (places, len(but), left_out, len(ends))
+        called("lowest_gap", self.in_law.address, _address(nodes), all_ends, *lists, ctypes.byref(found))
         return _minimum(found)
 
     def gradient(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:

@@ -24,7 +24,7 @@ PROVIDER = "cosserat_casadi.codegen.moving_contacts"
 """The module that compiles the law; it stands above motions, and is loaded where one of them touches something."""
 
 POINTER = ctypes.c_void_p
-CALL = ctypes.CFUNCTYPE(None)
+CALL = ctypes.CFUNCTYPE(ctypes.c_int)
 
 
 class CompiledLaw(NamedTuple):
@@ -138,7 +138,7 @@ ARGUMENTS: dict[str, tuple[Any, Sequence[Any]]] = {
 """Functions of the law: result, and arguments."""
 
 _RAISED: list[BaseException] = []
-"""What a function of Python has raised that C called."""
+"""Exceptions of functions of Python that C has called."""
 
 
 @lru_cache(maxsize=1)
@@ -279,11 +279,13 @@ def _give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray
 
 
 def _have_evaluated(held: Held, call: RepeatedCall) -> None:
-    def evaluate() -> None:
+    def evaluate() -> int:
         try:
             call.evaluate()
         except BaseException as raised:
             _RAISED.append(raised)
+            return 1
+        return 0
 
     wrapped = CALL(evaluate)
     held.keep(wrapped)

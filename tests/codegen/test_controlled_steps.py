@@ -10,12 +10,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import MotionOutcome, scene_from_dict, simulate
+from cosserat_casadi import MotionOutcome, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.codegen.controlled_steps import MOST_TRIES, CompiledSteps
 from cosserat_casadi.codegen.motion_compiler import MotionCompiler
+from cosserat_casadi.codegen.scalar_program import scalar_program
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.centred_coordinates import can_be_centred
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Simulator, started
-from cosserat_casadi.motion.step_kernels import StepKernels
+from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import consistent_start
@@ -246,6 +249,33 @@ def test_rod_that_a_tendon_moves(always: bool, tmp_path: Any, monkeypatch: pytes
     assert (in_c.steps, in_c.rejected, in_c.jacobians) == (plain.steps, plain.rejected, plain.jacobians)
     assert_allclose(at.x, expected.x, rtol=0, atol=1e-8)
     assert_allclose(at.v, expected.v, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("as_program", [False, True], ids=["virtual machine", "program"])
+@pytest.mark.parametrize("example", ["bouncing_rod", "rod_hits_floor"])
+def test_steps_in_exact_contact(example: str, as_program: bool) -> None:
+    """C takes the forces of contacts itself; of a rod that nothing holds in coordinates that no program has."""
+    scene = read_scene(f"examples/{example}.toml", ["accuracy.modes=2", "accuracy.nodes=8"])
+    assert scene.simulation is not None
+    simulation = scene.simulation.model_copy(update={"duration": 0.33})
+    model = build(scene.with_motion_inputs(), moving=True)
+    found = []
+    for stepper in (None, CompiledSteps):
+        kernels = replace(interpreted(model), stepper=stepper)
+        assert isinstance(kernels.residual, RepeatedCall)
+        if as_program and not can_be_centred(model):
+            kernels.residual.program = scalar_program(model.inverse_dynamics_in_scalars)
+        history = Simulator(model, simulation, started(model, simulation, None), source=Kernels(kernels)).controlled(
+            1e-5
+        )
+        assert history.completed
+        found.append(history)
+    plain, in_c = found
+    assert [event.kind for event in plain.events][:2] in (["impact", "lift_off"], ["impact", "impact"])
+    for mine, expected in zip(in_c.events, plain.events, strict=True):
+        assert (mine.kind, mine.owner) == (expected.kind, expected.owner)
+        assert_allclose([mine.time, mine.place], [expected.time, expected.place], rtol=0, atol=1e-7)
+    assert_allclose(in_c.end.x, plain.end.x, rtol=0, atol=1e-7)
 
 
 def test_without_a_compiler_python_takes_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:

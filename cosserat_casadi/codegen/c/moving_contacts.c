@@ -1,6 +1,11 @@
 /* Gaps and contacts of a simulated motion: where rods and bodies touch, and what forces there do. It is compiled once, for
    models of all sizes; contact_gaps.c, which exported steps have too, says what a gap is. */
 
+/* What is compiled for speed waits for it: the functions that take most of the time are elsewhere. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O1")
+#endif
+
 #include <math.h>
 #include <string.h>
 
@@ -29,7 +34,7 @@ typedef struct {
   int lines;
   int size; /* of the result of the program */
   void (*run)(const int *program, int lines, real *slots);
-  void (*evaluate)(void); /* in Python */
+  int (*evaluate)(void); /* in Python; not zero where it was interrupted */
 } kernel;
 
 /* The nodes of a rod, or the origin of a body. */
@@ -99,19 +104,22 @@ static int all_finite(const real *a, int count) {
   return sum == 0;
 }
 
-static void call(kernel *function) {
+/* Zero where Python has raised something: no value counts then. */
+static int call(kernel *function) {
   if (function->code) {
     function->code(function->code_arguments, function->code_results, function->integers, function->scratch, 0);
   } else if (function->program) {
     real *slot = function->slots;
     for (int k = 0; k < KERNEL_ARGUMENTS; k++) {
-      for (int i = 0; i < function->counts[k]; i++, slot += 4) slot[0] = slot[1] = slot[2] = slot[3] = function->arguments[k][i];
+      const real *values = function->arguments[k];
+      for (int i = 0; i < function->counts[k]; i++, slot += 4) slot[0] = slot[1] = slot[2] = slot[3] = values[i];
     }
     function->run(function->program, function->lines, function->slots);
     for (int i = 0; i < function->size; i++) function->result[i] = slot[4 * i];
   } else {
-    function->evaluate();
+    return !function->evaluate();
   }
+  return 1;
 }
 
 /* Writes an argument; whether it is another one than that of the last call. */
@@ -308,8 +316,7 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
 /* Positions of the points, at the state that they were asked for last. */
 static const real *positions_at(moving_points *points, const real *x, const real *inputs) {
   const int moved = give(points->positions, 0, x) | give(points->positions, 1, inputs);
-  if (moved || !points->is_known) call(points->positions);
-  points->is_known = 1;
+  if (moved || !points->is_known) points->is_known = call(points->positions);
   return points->positions->result;
 }
 
