@@ -5,16 +5,16 @@ each body that may touch, has a force and the gap g over the length, which are t
 
     Λ + g − √(Λ² + g² + a ε²) = 0,    which is Λ g = a ε²/2 with Λ, g > 0.
 
-Λ = a N is the force N, without unit, by what it moves its section within a stage, over the length: of the size of gaps,
-as other unknowns of a stage are. Whatever the stage, N g = ε²/2. The gap is that at the end of a stage of one instant,
-which is Euler's implicit method. What approaches stops at the obstacle at the end of a stage, and with g = 0 at two
-ends it rests: a blow takes the whole speed, the coefficient of restitution being none. With another coefficient e the
-gap is that at
+Λ = a N is the force N, without unit, times the way a, over the length, by which a unit of it moves its section within
+a stage: it is of the size of gaps, as other unknowns of a stage are. Whatever the stage, N g = ε²/2. The gap is that at
+the end of a stage of one instant, which is Euler's implicit method. A section that approaches stops at the obstacle at
+the end of a stage, and rests once g is zero at two ends: a blow takes the whole speed, the coefficient of restitution
+being none. With another coefficient e the gap is that at
 
     (x₊ + e x₋)/(1 + e),    x₊ at the end of the stage and x₋ at the beginning of the last one,
 
 which gives the share e of the speed back (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
-more instants have no such pairs: a force at the first of them throws back what has no restitution.
+more instants have no such pairs: a force at the first of them throws back a section without restitution.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class TouchingSections:
 
 
 @dataclass(frozen=True)
-class SectionPairs:
+class TouchingPairs:
     """The equations of motion of a model at the end of a stage, with pairs of force and gap.
 
     Their unknowns x are those of the model and behind them Λ of all pairs; parameters are those of the model and behind
@@ -86,7 +86,7 @@ class SectionPairs:
 
     @cached_property
     def touching(self) -> tuple[TouchingSections, ...]:
-        """What may touch, in the order of the pairs: with one coefficient of restitution after the other."""
+        """Sections and bodies that may touch, in the order of the pairs: by their coefficients of restitution."""
         return tuple(sorted(self._all(), key=lambda touching: touching.obstacle.restitution))
 
     def _all(self) -> Iterator[TouchingSections]:
@@ -174,7 +174,7 @@ class SectionPairs:
         return [p[:-1]] if self.model.parameters.size else []
 
     def _rows(self, arguments: list[Matrix]) -> Matrix:
-        """What the pairs add to the equations of the model, and their own equations."""
+        """Forces in the equations of the model, and the equations of the pairs."""
         x, v, a, inputs, p, rate, _ = arguments
         own = slice(0, self.model.size)
         moved_by = x[self.model.size :]

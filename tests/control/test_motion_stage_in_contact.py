@@ -14,7 +14,7 @@ from cosserat_casadi.control import Condensing, Horizon, MotionStage, gauss, mot
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.section_pairs import SectionPairs
+from cosserat_casadi.motion.section_pairs import TouchingPairs
 
 LENGTH = 0.1
 FRAMES = 21
@@ -79,7 +79,7 @@ def assembly() -> Model:
     return build(scene_from_dict(tables), moving=True)
 
 
-def pairs_of(stage: MotionStage) -> SectionPairs:
+def pairs_of(stage: MotionStage) -> TouchingPairs:
     assert stage.pairs is not None
     return stage.pairs
 
