@@ -31,6 +31,11 @@ class BodyFacing(Facing):
         """Length of the longest rod that holds it, m."""
         return float(self.model.discrete.body_frame(self.owner).length)
 
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Its radius, twice, m."""
+        return self.radius, self.radius
+
     def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
         """The gap, whatever the abscissa."""
         still = np.zeros(3)
