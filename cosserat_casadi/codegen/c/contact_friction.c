@@ -11,8 +11,9 @@
    (V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008). Blows: J. J. Moreau,
    Unilateral contact and dry friction in finite freedom dynamics, Springer 1988. */
 
-/* Residual of the law, over the largest force, up to which it holds. */
+/* Residual of the law, over the largest force, up to which it holds; and what is rounding, over the terms of its sum. */
 static const real LAW_HOLDS = (real)1e-12;
+static const real LAW_ROUNDING = (real)1e-13;
 
 /* Share of what a section yields to a force by which sections that stick yield more in Newton's matrix, not in its residual:
    how several share what holds a rod that does not stretch is not determined. */
@@ -153,13 +154,18 @@ static int settle_law(int count, const int *members, workspace *work) {
   real *pushes = work->law_pushes;
   real *matrix = work->law_matrix;
   real *values = work->law_values;
+  real *terms = work->law_terms;
   for (int turn = 0; turn < LAW_TURNS; turn++) {
-    real largest = 0, residual = 0;
+    real largest = 0, excess = 0;
     pushes_of(count, members, forces, pushes, work);
     for (int i = 0; i < order; i++) {
       largest = larger(largest, ABSOLUTE(forces[i]));
       values[i] = work->law_open[i];
-      for (int j = 0; j < order; j++) values[i] += answers[j * order + i] * pushes[j];
+      terms[i] = ABSOLUTE(values[i]);
+      for (int j = 0; j < order; j++) {
+        values[i] += answers[j * order + i] * pushes[j];
+        terms[i] += ABSOLUTE(answers[j * order + i] * pushes[j]);
+      }
     }
     for (int q = 0; q < count; q++) {
       const touch *own = work->touches + members[q];
@@ -180,14 +186,16 @@ static int settle_law(int count, const int *members, workspace *work) {
       const real slide[2] = {values[first + 1], values[first + 2]};
       const real slides =
           larger(ABSOLUTE(matrix[(first + 1) * order + first + 1]), ABSOLUTE(matrix[(first + 2) * order + first + 2]));
+      const real scale = slides > 0 ? 1 / slides : 1;
+      const real rounding = LAW_ROUNDING * larger(terms[first + 1], terms[first + 2]) * scale;
       if (!(yields > 0)) return 0;
       for (int j = 0; j < order; j++) matrix[j * order + first] /= yields;
       values[first] /= -yields;
-      residual = larger(residual, ABSOLUTE(values[first]));
-      residual = larger(residual, drag_rows(q, order, slide, slides > 0 ? 1 / slides : 1, forces, matrix, values, work));
+      excess = larger(excess, ABSOLUTE(values[first]) - LAW_ROUNDING * terms[first] / yields);
+      excess = larger(excess, drag_rows(q, order, slide, scale, forces, matrix, values, work) - rounding);
     }
-    if (!isfinite(residual)) return 0;
-    if (residual <= LAW_HOLDS * largest) return 1;
+    if (!isfinite(excess)) return 0;
+    if (excess <= LAW_HOLDS * largest) return 1;
     if (!factorise_small(order, matrix, work->law_pivots)) return 0;
     solve_small(order, matrix, work->law_pivots, values);
     for (int i = 0; i < order; i++) forces[i] += values[i];
