@@ -105,7 +105,7 @@ inputs = ["push.force", "cable.tension"]
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
     disks: tuple[Disks, ...] = Field((), description="rows of disks on rods")
-    obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
+    obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave")
     rod_contacts: tuple[RodContact, ...] = Field((), description="rods that may not enter each other, or themselves")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; of what acts on these, loads alone"

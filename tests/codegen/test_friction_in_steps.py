@@ -11,7 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, scene_from_dict, simulate
-from cosserat_casadi.codegen.compiled_motion import StepMemory, StepOptions, StepState
+from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
 
@@ -94,8 +95,8 @@ def test_a_block_that_is_shaken_sticks_and_slips_as_its_closed_form(tmp_path: Pa
         rates[:, 0] = np.diff(largest * np.sin(rate * times)) / dt
         found = way(made, run(made, start, made.compiled.step_memory(), dt, inputs, rates))
         errors.append(np.abs(found - shaken(friction * G, largest, rate, times)).max())
-    assert errors[0] < 2e-4
-    assert errors[1] < errors[0] / 4.0
+    assert errors[0] < 5e-4
+    assert errors[1] < errors[0] / 6.0
 
 
 def shaken(holds: float, largest: float, rate: float, times: FloatArray) -> FloatArray:
@@ -190,13 +191,17 @@ def test_derivatives_of_a_step_that_sticks_are_those_of_differences(tmp_path: Pa
     tables["simulation"]["start"] = "equilibrium"
     made = Moving(tables, tmp_path)
     memory = made.compiled.step_memory()
-    start = made.steps(1e-3, 20, memory)[-1]
+    start = made.steps(1e-2, 20, memory)[-1]
     (contact,) = made.compiled.step_contacts(memory)
     assert not contact.slips and contact.force > 1e-3
-    compare_with_differences(made, start, memory, 1e-3)
+    # What opens the gap at the start asks for large forces, which soon leave what sticks.
+    compare_with_differences(made, start, memory, 1e-2, small=1e-9)
 
 
-def compare_with_differences(made: Moving, start: StepState, memory: StepMemory, dt: float) -> None:
+def compare_with_differences(
+    made: Moving, start: StepState, memory: StepMemory, dt: float, small: float = 1e-8
+) -> None:
+    """Hold derivatives of a step by its start and by inputs against differences."""
     values, still = made.model.pack(), np.zeros(made.model.inputs.size)
     n = made.model.size
 
@@ -211,7 +216,6 @@ def compare_with_differences(made: Moving, start: StepState, memory: StepMemory,
     step, found = call(start, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
     assert step.done and found is not None
     columns = []
-    small = 1e-8
     for k in range(2 * n):
         change = np.eye(2 * n)[k] * (small if k < n else small / dt)
         ends = [end(start.x + sign * change[:n], start.v + sign * change[n:], *given) for sign in (1.0, -1.0)]
@@ -238,5 +242,7 @@ def compare_with_differences(made: Moving, start: StepState, memory: StepMemory,
 
 
 def test_friction_of_exact_contact_is_refused_where_it_does_not_act() -> None:
-    motion = simulate(build(scene_from_dict(block(0.3)), moving=True))
-    assert not motion.converged
+    with pytest.raises(SceneError, match="acts in steps of motions in C alone"):
+        simulate(build(scene_from_dict(block(0.3)), moving=True))
+    with pytest.raises(SceneError, match="is of a contact that is smooth"):
+        scene_from_dict(block(0.3, slip_speed=1e-3))
