@@ -128,13 +128,13 @@ class ObstacleRecord(Entry):
     )
     friction: Coefficients = Field(
         0.0,
-        description="coefficient μ of Coulomb's friction, without unit, or a table of those along a rod, back and across "
-        "it: with width in motion and along paths, without in exported steps of motions",
+        description="coefficient μ of Coulomb's friction, without unit, or a table of those along a rod, back and "
+        "across it: with width in motion and along paths, without in exported steps of motions",
     )
     slip_speed: Positive = Field(
         1e-3,
-        description="with width and friction: speed, m/s, below which what sticks creeps in motion, under a force that grows "
-        "with it",
+        description="with width and friction: speed, m/s, below which what sticks creeps in motion, under a force "
+        "that grows with it",
     )
     restitution: Share = Field(
         0.0,

@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
-from cosserat_casadi.codegen.contact.rubbing import Rubbing
+from cosserat_casadi.codegen.contact.rubbing import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
@@ -57,7 +57,7 @@ def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
         found[name] = _surface_function(obstacle, name)
     for number, facing in enumerate(facings(model)):
         if facing.obstacle.rubs:
-            rubbing = Rubbing(facing)
+            rubbing = SurfaceSliding(facing)
             found[names.kernel(f"rubbing_{number}")] = rubbing.function
             found[names.kernel(f"rubbing_derivatives_{number}")] = rubbing.derivatives
     return found
@@ -104,7 +104,7 @@ def contact_pattern(model: Model) -> ca.Sparsity:
         moving = sorted(set(positions.jac_sparsity(0, 0).get_col()))
         together[np.ix_(moving, moving)] = True
     for facing in facings(model) if model.scene.rubs_exactly else ():
-        moving = Rubbing(facing).moving
+        moving = SurfaceSliding(facing).moving
         together[np.ix_(moving, moving)] = True
     rows, columns = np.nonzero(together)
     return ca.Sparsity.triplet(model.size, model.size, rows.tolist(), columns.tolist())

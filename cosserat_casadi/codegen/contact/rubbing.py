@@ -21,7 +21,7 @@ from cosserat_casadi.motion.contact_gap import Facing
 
 
 @dataclass(frozen=True)
-class Rubbing:
+class SurfaceSliding:
     """The velocity along the surface of a rod or a body before an obstacle, as functions of unknowns and rates.
 
     Attributes:
@@ -39,7 +39,14 @@ class Rubbing:
         """
         model = self.facing.model
         size, count = model.size, model.inputs.size
-        sizes = {"x": size, "inputs": count, "v": size, "rate": count, "section": self.facing.points.count + 1, "axis": 3}
+        sizes = {
+            "x": size,
+            "inputs": count,
+            "v": size,
+            "rate": count,
+            "section": self.facing.points.count + 1,
+            "axis": 3,
+        }
         return [ca.MX.sym(name, rows) for name, rows in sizes.items()]
 
     def _sliding(self, section: Matrix) -> tuple[Matrix, Matrix]:
