@@ -25,6 +25,7 @@ static const real UPRIGHT = (real)0.9;
 enum {
   ROWS = 3,         /* of what touches: along the normal, and along both tangents */
   LAW_TURNS = 60,   /* iterations of the law */
+  HALVINGS = 8,     /* of a step of these */
   FAINTER = 8       /* halvings of the restitution of a blow that would give energy */
 };
 
@@ -110,95 +111,130 @@ static void pushes_of(int count, const int *members, const real *forces, real *p
   }
 }
 
-/* Rows of Newton's matrix for the drag of one of those that touch, from how both slides change; returns the residual. */
-static real drag_rows(int q, int order, const real *slide, real scale, const real *forces, real *matrix, real *values,
-                      workspace *work) {
-  const real *drag = forces + ROWS * q + 1;
-  const int first = ROWS * q + 1;
-  const real bound = larger(forces[ROWS * q], 0);
-  real tried[2];
-  for (int a = 0; a < 2; a++) tried[a] = drag[a] - scale * slide[a];
-  const real length = SQUARE_ROOT(inner_of_two(tried, tried));
-  work->law_slips[q] = length > bound;
-  if (length <= bound) {
-    for (int a = 0; a < 2; a++) {
-      for (int j = 0; j < order; j++) matrix[j * order + first + a] *= scale;
-      matrix[(first + a) * order + first + a] += YIELDING;
-      values[first + a] = -scale * slide[a];
-    }
-  } else {
-    const real share = bound / length;
-    const real way[2] = {tried[0] / length, tried[1] / length};
+/* The drag, less the multiple of the slide that Newton's method weighs it against, of one of those that press; its length. */
+static real tried_drag(int q, const workspace *work, real tried[2]) {
+  for (int a = 0; a < 2; a++) {
+    tried[a] = work->law_forces[ROWS * q + 1 + a] - work->law_scales[q] * work->law_slides[q][a];
+  }
+  return SQUARE_ROOT(inner_of_two(tried, tried));
+}
+
+/* What gaps and the law miss by with the forces at hand, as forces; tells by how much the largest is more than rounding, and
+   returns the length of all. */
+static real misses_of_law(int count, const int *members, real *excess, workspace *work) {
+  const int order = ROWS * count;
+  const real *answers = work->law_answers;
+  const real *forces = work->law_forces;
+  real *misses = work->law_misses;
+  real sum = 0;
+  *excess = 0;
+  pushes_of(count, members, forces, work->law_pushes, work);
+  for (int i = 0; i < order; i++) {
+    const int q = i / ROWS;
+    const real weight = i % ROWS == 0 ? 1 / answers[i * order + i] : work->law_scales[q];
+    real value = work->law_open[i];
+    real terms = ABSOLUTE(value);
     for (int j = 0; j < order; j++) {
-      real *column = matrix + j * order + first;
-      const real along = inner_of_two(way, column);
-      for (int a = 0; a < 2; a++) column[a] = share * scale * (column[a] - along * way[a]);
+      const real term = answers[j * order + i] * work->law_pushes[j];
+      value += term;
+      terms += ABSOLUTE(term);
     }
-    for (int a = 0; a < 2; a++) {
-      for (int b = 0; b < 2; b++) {
-        matrix[(first + b) * order + first + a] += (a == b) - share * ((a == b) - way[a] * way[b]);
-      }
-      if (bound > 0) matrix[(first - 1) * order + first + a] -= way[a];
-      values[first + a] = bound * way[a] - drag[a];
+    misses[i] = weight * value;
+    work->law_terms[i] = LAW_ROUNDING * ABSOLUTE(weight) * terms;
+    if (i % ROWS > 0) work->law_slides[q][i % ROWS - 1] = value;
+  }
+  for (int q = 0; q < count; q++) {
+    const real bound = larger(forces[ROWS * q], 0);
+    real tried[2];
+    const real length = tried_drag(q, work, tried);
+    work->law_slips[q] = length > bound;
+    for (int a = 0; a < 2 && length > bound; a++) {
+      misses[ROWS * q + 1 + a] = forces[ROWS * q + 1 + a] - bound * tried[a] / length;
     }
   }
-  return larger(ABSOLUTE(values[first]), ABSOLUTE(values[first + 1]));
+  for (int i = 0; i < order; i++) {
+    *excess = larger(*excess, ABSOLUTE(misses[i]) - work->law_terms[i] - LAW_HOLDS * ABSOLUTE(forces[i - i % ROWS]));
+    sum += misses[i] * misses[i];
+  }
+  return SQUARE_ROOT(sum);
+}
+
+/* Newton's matrix of what the law misses by. */
+static void matrix_of_law(int count, const int *members, real *matrix, workspace *work) {
+  const int order = ROWS * count;
+  const real *answers = work->law_answers;
+  const real *forces = work->law_forces;
+  for (int q = 0; q < count; q++) {
+    const touch *own = work->touches + members[q];
+    const int first = ROWS * q;
+    real by_drag[2][2] = {{0, 0}, {0, 0}};
+    if (rubs(own)) coefficients_of(own, work->law_along[q], forces + first + 1, by_drag);
+    for (int i = 0; i < order; i++) {
+      matrix[first * order + i] = answers[first * order + i];
+      for (int b = 0; b < 2; b++) {
+        matrix[(first + 1 + b) * order + i] =
+            answers[(first + 1) * order + i] * by_drag[0][b] + answers[(first + 2) * order + i] * by_drag[1][b];
+      }
+    }
+  }
+  for (int q = 0; q < count; q++) {
+    const int normal = ROWS * q, first = normal + 1;
+    const real bound = larger(forces[normal], 0);
+    const real yields = answers[normal * order + normal];
+    real tried[2];
+    const real length = tried_drag(q, work, tried);
+    const real way[2] = {length > 0 ? tried[0] / length : 0, length > 0 ? tried[1] / length : 0};
+    const real share = work->law_slips[q] ? bound / length : 1;
+    for (int j = 0; j < order; j++) {
+      real *column = matrix + j * order + first;
+      const real along = work->law_slips[q] ? inner_of_two(way, column) : 0;
+      matrix[j * order + normal] /= yields;
+      for (int a = 0; a < 2; a++) column[a] = share * work->law_scales[q] * (column[a] - along * way[a]);
+    }
+    for (int a = 0; a < 2; a++) {
+      if (work->law_slips[q] && bound > 0) matrix[normal * order + first + a] -= way[a];
+      for (int b = 0; b < 2; b++) {
+        const real turns = (a == b) - share * ((a == b) - way[a] * way[b]);
+        matrix[(first + b) * order + first + a] += work->law_slips[q] ? turns : YIELDING * (a == b);
+      }
+    }
+  }
 }
 
 /* Normal forces that close what is open, and drags that obey the law, of so many that press: open and law_answers tell gaps,
-   or their rates, and slides without forces and by forces, law_forces is the first guess. Zero where they are not found. */
+   or their rates, and slides without forces and by forces, law_forces is the first guess. Steps of Newton's method are halved
+   while what is missed does not become less: its kinks may send it round in circles. Zero where they are not found. */
 static int settle_law(int count, const int *members, workspace *work) {
   const int order = ROWS * count;
-  const real *answers = work->law_answers;
-  real *forces = work->law_forces;
-  real *pushes = work->law_pushes;
-  real *matrix = work->law_matrix;
-  real *values = work->law_values;
-  real *terms = work->law_terms;
+  real *steps = work->law_values;
+  real excess;
+  for (int q = 0; q < count; q++) {
+    const real *given = FACING[work->touches[members[q]].facing].coefficients;
+    real slides = 0;
+    for (int slot = ROWS * q + 1; slot < ROWS * q + ROWS; slot++) {
+      slides = larger(slides, ABSOLUTE(work->law_answers[slot * order + slot]));
+    }
+    slides *= larger(given[0], larger(given[1], given[2]));
+    work->law_scales[q] = slides > 0 ? 1 / slides : 1;
+    if (!(ABSOLUTE(work->law_answers[ROWS * q * (order + 1)]) > 0)) return 0;
+  }
+  real missed = misses_of_law(count, members, &excess, work);
   for (int turn = 0; turn < LAW_TURNS; turn++) {
-    real largest = 0, excess = 0;
-    pushes_of(count, members, forces, pushes, work);
-    for (int i = 0; i < order; i++) {
-      largest = larger(largest, ABSOLUTE(forces[i]));
-      values[i] = work->law_open[i];
-      terms[i] = ABSOLUTE(values[i]);
-      for (int j = 0; j < order; j++) {
-        values[i] += answers[j * order + i] * pushes[j];
-        terms[i] += ABSOLUTE(answers[j * order + i] * pushes[j]);
-      }
+    if (!isfinite(missed)) return 0;
+    if (excess <= 0) return 1;
+    matrix_of_law(count, members, work->law_matrix, work);
+    if (!factorise_small(order, work->law_matrix, work->law_pivots)) return 0;
+    for (int i = 0; i < order; i++) steps[i] = -work->law_misses[i];
+    solve_small(order, work->law_matrix, work->law_pivots, steps);
+    real share = 1;
+    for (int i = 0; i < order; i++) work->law_forces[i] += steps[i];
+    const real before = missed;
+    missed = misses_of_law(count, members, &excess, work);
+    for (int halving = 0; halving < HALVINGS && excess > 0 && !(missed < before); halving++) {
+      share /= 2;
+      for (int i = 0; i < order; i++) work->law_forces[i] -= share * steps[i];
+      missed = misses_of_law(count, members, &excess, work);
     }
-    for (int q = 0; q < count; q++) {
-      const touch *own = work->touches + members[q];
-      const int first = ROWS * q;
-      real by_drag[2][2] = {{0, 0}, {0, 0}};
-      if (rubs(own)) coefficients_of(own, work->law_along[q], forces + first + 1, by_drag);
-      for (int i = 0; i < order; i++) {
-        matrix[first * order + i] = answers[first * order + i];
-        for (int b = 0; b < 2; b++) {
-          matrix[(first + 1 + b) * order + i] =
-              answers[(first + 1) * order + i] * by_drag[0][b] + answers[(first + 2) * order + i] * by_drag[1][b];
-        }
-      }
-    }
-    for (int q = 0; q < count; q++) {
-      const int first = ROWS * q;
-      const real yields = ABSOLUTE(matrix[first * order + first]);
-      const real slide[2] = {values[first + 1], values[first + 2]};
-      const real slides =
-          larger(ABSOLUTE(matrix[(first + 1) * order + first + 1]), ABSOLUTE(matrix[(first + 2) * order + first + 2]));
-      const real scale = slides > 0 ? 1 / slides : 1;
-      const real rounding = LAW_ROUNDING * larger(terms[first + 1], terms[first + 2]) * scale;
-      if (!(yields > 0)) return 0;
-      for (int j = 0; j < order; j++) matrix[j * order + first] /= yields;
-      values[first] /= -yields;
-      excess = larger(excess, ABSOLUTE(values[first]) - LAW_ROUNDING * terms[first] / yields);
-      excess = larger(excess, drag_rows(q, order, slide, scale, forces, matrix, values, work) - rounding);
-    }
-    if (!isfinite(excess)) return 0;
-    if (excess <= LAW_HOLDS * largest) return 1;
-    if (!factorise_small(order, matrix, work->law_pivots)) return 0;
-    solve_small(order, matrix, work->law_pivots, values);
-    for (int i = 0; i < order; i++) forces[i] += values[i];
   }
   return 0;
 }
