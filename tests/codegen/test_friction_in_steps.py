@@ -198,6 +198,18 @@ def test_derivatives_of_a_step_that_sticks_are_those_of_differences(tmp_path: Pa
     compare_with_differences(made, start, memory, 1e-2, small=1e-9)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("friction", "restitution", "free"), [(0.3, 0.9, True), (ACROSS, 0.0, False)])
+def test_friction_and_blows_give_no_energy(friction: Any, restitution: float, free: bool, tmp_path: Path) -> None:
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0.1], **({"free": True} if free else {})}
+    leaning = floor(-0.1, normal=[-0.26, 0, 1], friction=friction, restitution=restitution)
+    # A stiff rod whose tip is pressed askew: forces along and across the floor are hardly independent.
+    made = Moving(scene(leaning, rod(base=base, stiffness={"bending_y": 0.02 if free else 0.5})), tmp_path)
+    states = made.steps(1e-3, 400)
+    assert np.diff(made.energies(states)).max() <= 1e-11
+    assert made.least_gap(states) >= -2e-7
+
+
 def compare_with_differences(
     made: Moving, start: StepState, memory: StepMemory, dt: float, small: float = 1e-8
 ) -> None:
