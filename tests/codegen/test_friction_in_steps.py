@@ -84,7 +84,7 @@ def test_a_block_that_is_shaken_sticks_and_slips_as_its_closed_form(tmp_path: Pa
     friction, largest, rate = 0.3, 6.0, 20.0
     made = Moving(block(friction), tmp_path)
     errors = []
-    for count in (200, 800):
+    for count in (200, 3200):
         dt = 0.6 / count
         times = dt * np.arange(count + 1)
         start = made.compiled.contact_start()
@@ -95,8 +95,9 @@ def test_a_block_that_is_shaken_sticks_and_slips_as_its_closed_form(tmp_path: Pa
         rates[:, 0] = np.diff(largest * np.sin(rate * times)) / dt
         found = way(made, run(made, start, made.compiled.step_memory(), dt, inputs, rates))
         errors.append(np.abs(found - shaken(friction * G, largest, rate, times)).max())
+    # A reversal within a step leaves the first power of its length in the velocity.
     assert errors[0] < 5e-4
-    assert errors[1] < errors[0] / 6.0
+    assert errors[1] < errors[0] / 8.0
 
 
 def shaken(holds: float, largest: float, rate: float, times: FloatArray) -> FloatArray:
