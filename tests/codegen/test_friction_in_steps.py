@@ -251,7 +251,7 @@ def compare_with_differences(
             difference = (ends[0] - ends[1]) / (2.0 * size)
             for rows in (slice(0, n), slice(n, 2 * n)):
                 # A push on what sticks moves nothing, to the share by which it yields in the matrix.
-                atol = max(1e-5 * np.abs(difference[rows]).max(), 1e-8 * np.abs(derivative[rows]).max(), 1e-8)
+                atol = max(1e-5 * np.abs(difference[rows]).max(), 1e-7)
                 assert_allclose(derivative[rows, j], difference[rows], rtol=0, atol=atol)
 
 
