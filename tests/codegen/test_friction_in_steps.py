@@ -238,7 +238,7 @@ def compare_with_differences(
         assert_allclose(found.by_start[rows], np.array(columns).T[rows], rtol=0, atol=2e-6 * largest)
     by_each = (found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration)
     # A base that moves opens or closes the gap, which stays below what touches.
-    sizes = zip((1e-3, 1.0, 1e3), (1e-8, 1e-5, 1e-2), strict=True)
+    sizes = zip((1e-3, 1e-1, 1e1), (1e-8, 1e-5, 1e-2), strict=True)
     moves = [bool(entry.declared.moves) for entry, _ in made.model.inputs for _ in range(entry.size)]
     for which, (derivative, (of_load, of_base)) in enumerate(zip(by_each, sizes, strict=True)):
         for j, is_base in enumerate(moves):
