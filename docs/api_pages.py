@@ -150,6 +150,8 @@ CONCEPTS = (
             "codegen.stage.compiled_stage",
             "codegen.motion_stage.compiled_motion_stage",
             "codegen.motion_stage.CompiledMotionStage",
+            "motion.section_pairs.TouchingPairs",
+            "motion.section_pairs.TouchingSections",
             "codegen.acados.acados_expressions",
             "codegen.acados.write_acados",
         ),

@@ -72,6 +72,8 @@ class StepContact:
         of_body: whether a body touches.
         place: abscissa X of the section; 0 of a body.
         force: on it along the normal of the obstacle, mean of the last stretch of the step, N.
+        friction: on it along the surface, at the end of the step, world axes, shape (3,), N.
+        slips: whether it slips at the end of the step; else it sticks, where the obstacle has friction.
     """
 
     owner: str
@@ -79,6 +81,8 @@ class StepContact:
     of_body: bool
     place: float
     force: float
+    friction: FloatArray
+    slips: bool
 
 
 @dataclass(frozen=True)
@@ -185,6 +189,10 @@ class _Contact(ctypes.Structure):
     _fields_ = (("pair", ctypes.c_int), ("place", ctypes.c_double), ("force", ctypes.c_double))
 
 
+class _RubbingContact(ctypes.Structure):
+    _fields_ = (*_Contact._fields_, ("friction", 3 * ctypes.c_double), ("slips", ctypes.c_int))
+
+
 class _Info(ctypes.Structure):
     _fields_ = (
         ("status", ctypes.c_int),
@@ -262,13 +270,16 @@ class CompiledMotion(LoadedLibrary):
         function = self._motion_function("step_contacts")
         described = self.manifest["motion"]
         pairs = described["contacts"]
-        in_c = (_Contact * described["most_contacts"])()
+        record = _RubbingContact if described.get("contacts_rub") else _Contact
+        in_c = (record * described["most_contacts"])()
         count = function(memory.kept, in_c)
         found = []
         for own in in_c[:count]:
             pair = pairs[own.pair]
             owner = pair.get("rod") or pair["body"]
-            found.append(StepContact(owner, pair["obstacle"], "body" in pair, own.place, own.force))
+            friction = np.array(getattr(own, "friction", (0.0, 0.0, 0.0)))
+            slips = bool(getattr(own, "slips", True))
+            found.append(StepContact(owner, pair["obstacle"], "body" in pair, own.place, own.force, friction, slips))
         return found
 
     def rest(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import tempfile
 import textwrap
 from collections.abc import Iterable, Sequence
@@ -23,7 +24,7 @@ from cosserat_casadi.codegen.program_in_c import program_in_c
 from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.texts import fill, resource
-from cosserat_casadi.errors import ExportError, Problem, WriteError
+from cosserat_casadi.errors import WriteError
 from cosserat_casadi.maths.calls import chooses
 
 QUIET = """/* All kernels have the arguments of CasADi, whether they need them or not. */
@@ -93,6 +94,12 @@ END = """#ifdef __cplusplus
 
 GENERATOR = {"with_header": True}
 
+HELPER = re.compile(r"^(?:void|casadi_real|casadi_int|int) casadi_\w+\(", re.MULTILINE)
+"""Beginning of a function of CasADi's runtime, which is no kernel."""
+
+PROTOTYPE = re.compile(r"^(?:void|int|const \w+ ?\*|casadi_int|casadi_real) ?(?!casadi_)\w+\([^{;]*\);", re.MULTILINE)
+"""Declaration of a kernel in CasADi's header."""
+
 
 def kernel_sources(
     kernels: Sequence[Kernel], names: Names, stem: str | None = None, *, on_device: bool = False
@@ -104,9 +111,6 @@ def kernel_sources(
         names: of the library.
         stem: of the file names.
         on_device: whether compilers for GPUs are to take them too.
-
-    Raises:
-        ExportError: they are for a GPU, and CasADi prints one of them.
     """
     prologue = QUIET + OF_A_LIBRARY.format(macro=names.macro) + (ON_DEVICE if on_device else "")
     return _files(kernels, stem or f"{names.name}_kernels", "int", prologue, on_device=on_device)
@@ -167,9 +171,6 @@ def _files(
     written = [in_c(kernel) for kernel in kernels]
     own = [kernel for kernel in written if isinstance(kernel, PrintedKernel)]
     by_casadi = [kernel for kernel in written if isinstance(kernel, ca.Function)]
-    if on_device and by_casadi:
-        problem = f"CasADi prints {by_casadi[0].name()}, without the qualifiers of functions for a GPU"
-        raise ExportError(Problem("--cuda", problem, "leave it out"))
     sources = printed_sources(own, stem, "SOLVER_DEVICE " if on_device else "")
     types = TYPES.format(integer=integer)
     descriptions = "".join(_description(kernel) for kernel in own) if described else ""
@@ -177,10 +178,17 @@ def _files(
     header = f"{BEGIN}{types}{sources.prototypes}{END}"
     if by_casadi:
         generated = _by_casadi(by_casadi, stem, integer)
+        if on_device:
+            generated = {file: _qualified(text) for file, text in generated.items()}
         text = generated[f"{stem}.c"]
         source = (text if described else HIDDEN.format(text=text)) + source
         header = generated[f"{stem}.h"] + header
     return {f"{stem}.c": prologue + source, f"{stem}.h": header, **sources.included}
+
+
+def _qualified(text: str) -> str:
+    """Text of CasADi whose functions are functions of the device: kernels, and the functions that kernels call."""
+    return HELPER.sub(r"static \g<0>", PROTOTYPE.sub(r"SOLVER_DEVICE \g<0>", text))
 
 
 def _description(kernel: PrintedKernel) -> str:

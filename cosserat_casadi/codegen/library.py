@@ -16,7 +16,7 @@ from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
-from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, contact_words
+from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, FRICTION_FILES, contact_words
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
@@ -60,7 +60,7 @@ PROGRAM = ("program.h",)
 LEAST_MISFIT = "least_misfit.c"
 SECOND_VARIATION = "second_variation.c"
 SOLVER_FILES = (
-    *(*SHARED, *ERROR_FILES, *PASSAGE_FILES, *CONTACT_FILES, *DENSE, *BLOCKS, *MOTION_FILES),
+    *(*SHARED, *ERROR_FILES, *PASSAGE_FILES, *CONTACT_FILES, *FRICTION_FILES, *DENSE, *BLOCKS, *MOTION_FILES),
     *(LEAST_MISFIT, SECOND_VARIATION),
 )
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
@@ -103,6 +103,8 @@ ROLES = {
     "least_pushes.c": "which of several contacts push",
     "contact_steps.c": "forces and blows of exact contact in a step",
     "contact_sensitivity.c": "their part in its derivatives",
+    "contact_friction.c": "friction of exact contact in a step",
+    "friction_sensitivity.c": "its part in the derivatives",
     "interpolation.c": "positions between nodes",
     "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
@@ -177,7 +179,8 @@ class FolderContents:
         motion = () if self.motion is None else MOTION_FILES
         passages = PASSAGE_FILES if watches_passages(model) else ()
         contact = CONTACT_FILES if self.motion is not None and model.scene.touches_exactly else ()
-        return (*SHARED, *estimate, *passages, *linear, *motion, *contact)
+        friction = FRICTION_FILES if self.motion is not None and model.scene.rubs_exactly else ()
+        return (*SHARED, *estimate, *passages, *linear, *motion, *contact, *friction)
 
     def to_compile(self, names: Names) -> dict[str, str]:
         """Words of the build file for sources and headers that a plain folder does not have."""

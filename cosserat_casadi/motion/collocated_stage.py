@@ -25,7 +25,7 @@ from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.motion_checks import immovable
-from cosserat_casadi.motion.section_pairs import SECTIONS, SectionPairs
+from cosserat_casadi.motion.section_pairs import SECTIONS, TouchingPairs
 from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
 
 MECHANICAL = (BlockKind.STRAIN, BlockKind.POSE, BlockKind.COORDINATE)
@@ -97,7 +97,7 @@ class MotionStage:
 
     Its *state* are the differential unknowns and their changes per stage, (x, h v), without unit. Its *unknowns* are,
     for one instant after the other, a vector in the order of x: h² a of the differential entries, the values of
-    the algebraic ones; in exact contact behind them what the forces of :attr:`pairs` move by. Inputs change linearly
+    the algebraic ones; in exact contact behind them the forces of :attr:`pairs`. Inputs change linearly
     within the stage. Where the model has parameters they are an argument p behind the inputs; in exact contact the
     smoothing is its last entry.
 
@@ -105,13 +105,13 @@ class MotionStage:
         model: the model.
         duration: h, s.
         method: the collocation method.
-        pairs: forces and gaps of what may touch exactly; None where nothing may.
+        pairs: forces and gaps of sections and bodies that may touch exactly; None where none may.
     """
 
     model: Model
     duration: float
     method: Collocation
-    pairs: SectionPairs | None = None
+    pairs: TouchingPairs | None = None
 
     @property
     def differential(self) -> npt.NDArray[np.bool_]:
@@ -129,8 +129,8 @@ class MotionStage:
         return self.method.stages * len(self.accelerated)
 
     @property
-    def dynamics(self) -> Model | SectionPairs:
-        """What has the equations of motion at an instant, and their derivatives."""
+    def dynamics(self) -> Model | TouchingPairs:
+        """The model, or its pairs, which have the equations of motion at an instant and their derivatives."""
         return self.model if self.pairs is None else self.pairs
 
     @property
@@ -351,4 +351,4 @@ def motion_stage(
         problems.append(Problem("sections", f"must be 1 or more, got {sections}", f"take {SECTIONS}"))
     refuse(problems)
     own = model if parameters else model.at()
-    return MotionStage(own, duration, chosen, SectionPairs(own, sections, duration) if exact else None)
+    return MotionStage(own, duration, chosen, TouchingPairs(own, sections, duration) if exact else None)

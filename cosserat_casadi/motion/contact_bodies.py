@@ -29,6 +29,11 @@ class BodyFacing(Facing):
         return float(self.model.discrete.body_frame(self.owner).length)
 
     @property
+    def radii(self) -> tuple[float, float]:
+        """Its radius, twice, m."""
+        return self.radius, self.radius
+
+    @property
     def ends(self) -> Sequence[float]:
         """The abscissae of base and tip of a rod, whatever the body."""
         return (0.0, 1.0)
@@ -39,7 +44,7 @@ class BodyFacing(Facing):
         return np.zeros(0)
 
     def describe(self, held: Held) -> None:
-        """Write the radius into the record."""
+        """Write its radius into the record."""
         record = held.record
         record.elements = record.nodes = 1
-        record.radius_at_base = record.radius_at_tip = self.radius
+        record.radius_at_base, record.radius_at_tip = self.radii

@@ -41,6 +41,9 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
     if simulation is not None and simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
+    if simulation is not None and model.scene.rubs_exactly:
+        what = "friction of exact contact acts in steps of motions in C alone"
+        yield Problem("obstacles", what, f"export with --dynamics, or {remedy}; or leave friction out")
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]

@@ -139,6 +139,11 @@ class Facing(ABC):
     def length(self) -> float:
         """Length that gaps are counted in, m."""
 
+    @property
+    @abstractmethod
+    def radii(self) -> tuple[float, float]:
+        """Radius at base and tip of a rod, between which it is linear, or of a body twice, m."""
+
     @cached_property
     def force_unit(self) -> float:
         """Unit of the contact forces, N."""

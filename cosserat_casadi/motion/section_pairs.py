@@ -5,15 +5,16 @@ each body that may touch, has a force and the gap g over the length, which are t
 
     Λ + g − √(Λ² + g² + a ε²) = 0,    which is Λ g = a ε²/2 with Λ, g > 0.
 
-Λ = a N is the force N, without unit, by what it moves its section within a stage, over the length: of the size of gaps,
-as other unknowns of a stage are. Whatever the stage, N g = ε²/2. The gap is that at the end of a stage of one instant, which is Euler's implicit method. What approaches
-stops at the obstacle at the end of a stage, and with g = 0 at two ends it rests: a blow takes the whole speed, the
-coefficient of restitution being none. With another coefficient e the gap is that at
+Λ = a N is the force N, without unit, times the way a, over the length, by which a unit of it moves its section within
+a stage: it is of the size of gaps, as other unknowns of a stage are. Whatever the stage, N g = ε²/2. The gap is that at
+the end of a stage of one instant, which is Euler's implicit method. A section that approaches stops at the obstacle at
+the end of a stage, and rests once g is zero at two ends: a blow takes the whole speed, the coefficient of restitution
+being none. With another coefficient e the gap is that at
 
     (x₊ + e x₋)/(1 + e),    x₊ at the end of the stage and x₋ at the beginning of the last one,
 
 which gives the share e of the speed back (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
-more instants have no such pairs: a force at the first of them throws back what has no restitution.
+more instants have no such pairs: a force at the first of them throws back a section without restitution.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ class TouchingSections:
 
 
 @dataclass(frozen=True)
-class SectionPairs:
+class TouchingPairs:
     """The equations of motion of a model at the end of a stage, with pairs of force and gap.
 
     Their unknowns x are those of the model and behind them Λ of all pairs; parameters are those of the model and behind
@@ -85,7 +86,7 @@ class SectionPairs:
 
     @cached_property
     def touching(self) -> tuple[TouchingSections, ...]:
-        """What may touch, in the order of the pairs: with one coefficient of restitution after the other."""
+        """Sections and bodies that may touch, in the order of the pairs: by their coefficients of restitution."""
         return tuple(sorted(self._all(), key=lambda touching: touching.obstacle.restitution))
 
     def _all(self) -> Iterator[TouchingSections]:
@@ -106,7 +107,7 @@ class SectionPairs:
 
     @cached_property
     def gaps(self) -> ca.Function:
-        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the lengths, of unknowns of the model."""
+        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the lengths; x is that of the model."""
         return self._gaps(self.touching, "gaps")
 
     @cached_property
@@ -127,7 +128,7 @@ class SectionPairs:
 
     @cached_property
     def inverse_dynamics(self) -> ca.Function:
-        """As that of the model, with the pairs behind its equations: (x, v, a, inputs, p, inputs_rate, …) ↦ residual."""
+        """As that of the model, with the pairs behind its equations: (x, v, a, inputs, p, rates) ↦ residual."""
         arguments = self._symbols
         plain = ca.vertcat(self.model.inverse_dynamics(*self._of_model(arguments)), ca.MX(self.count, 1))
         return self._function("inverse_dynamics", arguments, [plain + self._rows(arguments)], ["residual"])
@@ -165,14 +166,15 @@ class SectionPairs:
     def _of_model(self, arguments: list[Matrix]) -> list[Matrix]:
         """Arguments of the functions of the model."""
         *moving, inputs, p, rate, acceleration = arguments
-        return [*(each[: self.model.size] for each in moving), inputs, *self._parameters(p), rate, acceleration]
+        own = [each[: self.model.size] for each in moving]
+        return [*own, inputs, *self._parameters(p), rate, acceleration]
 
     def _parameters(self, p: Matrix) -> list[Matrix]:
         """The parameters of the model, if it has any."""
         return [p[:-1]] if self.model.parameters.size else []
 
     def _rows(self, arguments: list[Matrix]) -> Matrix:
-        """What the pairs add to the equations of the model, and their own equations."""
+        """Forces in the equations of the model, and the equations of the pairs."""
         x, v, a, inputs, p, rate, _ = arguments
         own = slice(0, self.model.size)
         moved_by = x[self.model.size :]
@@ -200,7 +202,8 @@ class SectionPairs:
         kernel = pair_kernel(slack=True, softness=1.0).map(self.count)
         smoothings = p[-1] * ca.DM(np.sqrt(self.softness))
         residual, _, _ = kernel(ca.vertcat(*gaps).T, moved_by.T, smoothings.T)
-        return ca.vertcat(-pushes / ca.DM(self.model.discrete.unknowns.units), residual.T)
+        rows: Matrix = ca.vertcat(-pushes / ca.DM(self.model.discrete.unknowns.units), residual.T)
+        return rows
 
     def _gaps(self, touching: tuple[TouchingSections, ...], name: str) -> ca.Function:
         words = ["x", "inputs", *([PARAMETERS] if self.model.parameters.size else [])]
@@ -263,10 +266,10 @@ class SectionPairs:
         matrix = stiffness + damping / self.duration + mass / self.duration**2
         moved = slopes(*at).full()
         yields = np.linalg.solve(matrix.full(), (moved / nominal.discrete.unknowns.units).T)
-        units = []
+        units: list[float] = []
         for of_section in np.split(moved, len(touching.places)):
             rows = slice(3 * len(units), 3 * len(units) + 3)
-            most = np.linalg.norm(of_section @ yields[:, rows], 2)
+            most = float(np.linalg.norm(of_section @ yields[:, rows], 2))
             # What cannot move is pushed by any force.
             units.append(self._length(touching) / most if most > 0.0 else 1.0)
         return np.array(units)

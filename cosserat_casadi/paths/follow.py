@@ -171,7 +171,7 @@ def follow_path(
         path = follow_contact_path(
             model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
         )
-        message = _sentence(path.outcome, path.factor) + path.stopped_at
+        message = _sentence(path.outcome, path.factor) + path.stopped_at + left_out_on_paths(model.scene)
         return _resolved(replace(path, message=message))
     left_out = left_out_on_paths(model.scene)
     if model.rubs_on_paths:

@@ -26,7 +26,7 @@ from cosserat_casadi.maths.numbers import (
     repeated,
     without_rounding,
 )
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import Field
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def _per_reference_length(rod: DiscreteRod, diagonal: Field, element: int, X: Fl
     return each_times(coefficients, reciprocal(rate[: coefficients.shape[0]]))
 
 
-def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) -> Matrix:
+def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) -> Numbers:
     """The same where the coefficients are expressions: its entries are linear in them."""
     points = [_gauss_points(rod, e) for e in range(rod.grid.elements)]
     element = np.repeat(np.arange(rod.grid.elements), [len(X) for X, _ in points])
@@ -105,4 +105,6 @@ def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) ->
         own = column(coefficients, c)
         size = phi.shape[1]
         blocks.append(ca.reshape(product(pairs, own), size, size))
-    return ca.diagcat(*blocks)
+    matrix = ca.diagcat(*blocks)
+    # Parameters may be of strains alone that the rod does not have.
+    return matrix if is_symbolic(matrix) else ca.DM(matrix).full()

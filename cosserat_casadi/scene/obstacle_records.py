@@ -34,7 +34,7 @@ from cosserat_casadi.scene.values import (
 SHEARS = {3, 4}
 """Indices of the shears among the strains."""
 
-SMOOTH_KEYS = ("width", "stiffness", "damping", "friction", "slip_speed")
+SMOOTH_KEYS = ("width", "stiffness", "damping", "slip_speed")
 """Keys of an obstacle whose contact is smooth."""
 
 SMOOTH_NUMBERS = ("width", "stiffness")
@@ -128,13 +128,13 @@ class ObstacleRecord(Entry):
     )
     friction: Coefficients = Field(
         0.0,
-        description="with width: coefficient μ of Coulomb's friction in motion and along paths, without unit, or a "
-        "table of those along a rod, back and across it",
+        description="coefficient μ of Coulomb's friction, without unit, or a table of those along a rod, back and "
+        "across it: with width in motion and along paths, without in exported steps of motions",
     )
     slip_speed: Positive = Field(
         1e-3,
-        description="with friction: speed, m/s, below which what sticks creeps in motion, under a force that grows "
-        "with it",
+        description="with width and friction: speed, m/s, below which what sticks creeps in motion, under a force "
+        "that grows with it",
     )
     restitution: Share = Field(
         0.0,

@@ -105,7 +105,7 @@ inputs = ["push.force", "cable.tension"]
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between sections of rods and bodies")
     disks: tuple[Disks, ...] = Field((), description="rows of disks on rods")
-    obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
+    obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave")
     rod_contacts: tuple[RodContact, ...] = Field((), description="rods that may not enter each other, or themselves")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
         (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
@@ -233,8 +233,14 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def rubs(self) -> bool:
-        """Whether there is friction of contact."""
-        return any(obstacle.rubs for obstacle in self.obstacles) or any(pair.friction for pair in self.rod_contacts)
+        """Whether there is friction of contact that is smooth."""
+        smooth = any(obstacle.rubs and obstacle.is_smooth for obstacle in self.obstacles)
+        return smooth or any(pair.friction for pair in self.rod_contacts)
+
+    @property
+    def rubs_exactly(self) -> bool:
+        """Whether there is friction of exact contact, which acts in steps of motions in C."""
+        return any(obstacle.rubs and not obstacle.is_smooth for obstacle in self.obstacles)
 
     def in_proportion(self) -> Scene:
         """The scene whose materials have the coefficients of their Young's moduli: parameters scale whole laws."""

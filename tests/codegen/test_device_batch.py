@@ -33,6 +33,7 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.sweeps.device_rows import device_rows
 from tests.codegen.libraries import HAND, LEGS, LOAD, WRISTS, run
 from tests.conftest import quickest_compiler
+from tests.contact.test_verbs_in_contact import touching
 from tests.families import mostly_slow
 from tests.scenes import push, scene
 
@@ -51,6 +52,7 @@ SCENES: dict[str, tuple[Callable[[], Scene], int, int, bool]] = {
     "robot": (lambda: example("two_section_robot"), 1, 3, False),
     "platform": (lambda: scene(LOAD, rods=LEGS, bodies=[HAND], joints=WRISTS), 1, 3, False),
     "adjustable": (lambda: scene(push(), strain="planar", parameters=["rod.stiffness.bending_y"]), 2, 4, True),
+    "crossing": (lambda: touching("these with friction"), 2, 4, True),
 }
 """Scenes with few modes and nodes, and whether they move."""
 
@@ -115,7 +117,7 @@ def test_solve_vs_c(name: str, root: Path) -> None:
         assert_allclose(arrays["d_poses_d_inputs"][i][: len(tips)], tips, rtol=1e-12, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", mostly_slow(["wire", "adjustable"], quick=["adjustable"]))
+@pytest.mark.parametrize("name", mostly_slow(["wire", "adjustable", "crossing"], quick=["adjustable"]))
 def test_steps_vs_c(name: str, root: Path) -> None:
     """Two steps, the second with derivatives; one row is given what is no number."""
     batch, compiled = both(name, root)
@@ -284,7 +286,7 @@ def test_ordinary_exports_have_no_word_of_it() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["robot", "adjustable"])
+@pytest.mark.parametrize("name", ["robot", "adjustable", "crossing"])
 @pytest.mark.parametrize("single", [False, True])
 def test_nvcc_takes_it_without_a_warning(name: str, single: bool, root: Path, tmp_path: Path) -> None:
     try:

@@ -1,8 +1,7 @@
-"""A stage in motion in exact contact: forces by another route, motions of the simulator, an optimum that uses a floor."""
+"""A stage in motion in exact contact: its forces by another route, and its motions against the simulator."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -10,12 +9,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, SceneError, build, scene_from_dict, simulate, solve
+from cosserat_casadi import Model, SceneError, build, scene_from_dict, simulate
 from cosserat_casadi.control import Condensing, Horizon, MotionStage, gauss, motion_stage, radau
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_sections import facings
-from cosserat_casadi.motion.section_pairs import SectionPairs
+from cosserat_casadi.motion.section_pairs import TouchingPairs
 
 LENGTH = 0.1
 FRAMES = 21
@@ -80,7 +79,7 @@ def assembly() -> Model:
     return build(scene_from_dict(tables), moving=True)
 
 
-def pairs_of(stage: MotionStage) -> SectionPairs:
+def pairs_of(stage: MotionStage) -> TouchingPairs:
     assert stage.pairs is not None
     return stage.pairs
 
@@ -147,6 +146,13 @@ def test_forces_and_gaps_vs_those_of_the_simulator() -> None:
     plain = model.inverse_dynamics(x, *[np.zeros(model.size)] * 2, inputs, steady, steady)
     pushed = follower.push(gaps, x, inputs, forces)
     assert_allclose((plain - whole[: model.size]).full()[:, 0], pushed, rtol=0, atol=1e-13)
+    # Where a gap is open, the pair is N g = ε²/2.
+    apart = np.array([gap.value for gap in gaps])
+    balanced = 0.1**2 / 2 / np.abs(apart)
+    held = pairs.inverse_dynamics(np.append(x, balanced * pairs.softness), still, still, inputs, 0.1, steady, steady)
+    residuals = held.full()[model.size :, 0]
+    assert np.sum(apart > 0) > 5
+    assert_allclose(residuals[apart > 0], 0.0, rtol=0, atol=1e-14)
 
 
 def test_a_rod_that_hits_a_floor_vs_the_simulator() -> None:

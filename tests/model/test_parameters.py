@@ -880,3 +880,18 @@ def test_algorithms_take_the_values_of_the_scene_or_those_that_are_bound() -> No
     # From a solution of the model with other parameters: unknowns mean the same.
     again = solve(model, start=softer)
     assert_allclose(again.x, solve(model).x, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", ["wire.material.poisson_ratio", "wire.section.shear_correction"])
+def test_parameters_of_strains_that_a_rod_does_not_have(name: str) -> None:
+    """They change nothing, and errors are estimated as without."""
+    section = {"shape": "circle", "radius": 0.01, "shear_correction": 0.9}
+    material = {"youngs_modulus": 2.0e9, "poisson_ratio": 0.3}
+    rod = {"name": "wire", "length": 1.0, "strain": "planar", "material": material, "section": section}
+    push = {"name": "push", "kind": "tip_wrench", "rod": "wire", "force": [3.0, 0.0, 0.0]}
+    wanted = scene_from_dict({"schema": 1, "rods": [rod], "loads": [push], "parameters": [name]})
+    model = build(wanted, discretise(wanted, 2, 4))
+    ours, theirs = (solve(each, estimate_error=True) for each in (model, build(wanted.baked(), model.discretisation)))
+    assert_allclose(ours.x, theirs.x, rtol=0, atol=1e-12)
+    assert theirs.error_estimate is not None
+    assert ours.error_estimate == pytest.approx(theirs.error_estimate, rel=1e-6)

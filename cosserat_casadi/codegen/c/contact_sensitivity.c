@@ -1,6 +1,10 @@
 /* Derivatives of steps in which what presses goes on to press: gaps are equations of both stages, with second derivatives of
    the gaps in the stiffness. See cosserat_casadi/motion/contact_gap.py for the formulas. */
 
+#ifdef CONTACT_RUBS
+static void curve_friction(int stage, int m, const section_gap *gap, int by_inputs, workspace *work);
+#endif
+
 /* Takes the changes of the forces' directions from the matrices of a stage, and notes the derivatives of the gaps. */
 static void curve_stage(int stage, int by_inputs, workspace *work) {
   for (int m = 0; m < work->part_pressing; m++) {
@@ -13,6 +17,9 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
     gradient_at(own, own->places[stage], work->at.state, work->at.inputs, &gap, work->stage_gradients[stage][m], work);
     curve_matrices(own, &gap, force, work->matrices[stage], work);
     for (int j = 0; j < INPUTS; j++) work->gaps_by_inputs[stage][m * INPUTS + j] = 0;
+#ifdef CONTACT_RUBS
+    curve_friction(stage, m, &gap, by_inputs, work);
+#endif
     if (!by_inputs || !points->by_inputs) continue;
     move_section(own, &gap, 1, work->moved_by_inputs, work);
     memset(work->weights, 0, (size_t)count * sizeof *work->weights);
@@ -33,6 +40,9 @@ static real gap_of_stages(int stage, int m, const real *unknowns, const workspac
   return STAGE_MATRIX_SQUARED[stage][0] * dot(gradient, unknowns) + STAGE_MATRIX_SQUARED[stage][1] * dot(gradient, unknowns + N);
 }
 
+#ifdef CONTACT_RUBS
+#include "friction_sensitivity.c"
+#else
 /* How the gaps of both stages answer to forces in these: unknowns that close them. Zero where they depend on each other. */
 static int border_stages(const stage_factors *factors, workspace *work) {
   const int count = work->part_pressing;
@@ -99,6 +109,8 @@ static void change_gaps_by_input(real size, int column, int lane, workspace *wor
     }
   }
 }
+
+#endif
 
 /* The touches that press in a part of a step. */
 static void press_in_part(int number, workspace *work) {

@@ -139,6 +139,10 @@ static real rate_of(const touch *own, const instant *at, const section_gap *gap,
   return rate / faces->length;
 }
 
+#ifdef CONTACT_RUBS
+#include "contact_friction.c"
+#endif
+
 /* ---- Blows ---- */
 
 static void mark_constraints(const real *matrices, int *is_constraint);
@@ -158,15 +162,17 @@ static int factorise_masses(const instant *at, const stage_factors *factors, wor
   return factorise_system(matrix_of_masses(), work->stage_values, factors);
 }
 
-/* What unit impulses along the gaps do to velocities, and by how much gaps open then, all joints closed. */
+/* What a unit impulse along a row does to velocities, all joints closed. */
+static void respond_to(const real *row, const stage_factors *factors, real *response, workspace *work) {
+  for (int i = 0; i < N; i++) work->stage_solution[i] = work->is_constraint[i] ? 0 : row[i];
+  solve_system(matrix_of_masses(), 1, factors, work->stage_solution, work);
+  for (int i = 0; i < N; i++) response[i] = IS_SHAPE[i] ? work->stage_solution[i] : 0;
+}
+
+/* The same of all gaps, and by how much gaps open then. */
 static void respond(const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
-  for (int k = 0; k < count; k++) {
-    real *response = work->responses[k];
-    for (int i = 0; i < N; i++) work->stage_solution[i] = work->is_constraint[i] ? 0 : work->gradients[k][i];
-    solve_system(matrix_of_masses(), 1, factors, work->stage_solution, work);
-    for (int i = 0; i < N; i++) response[i] = IS_SHAPE[i] ? work->stage_solution[i] : 0;
-  }
+  for (int k = 0; k < count; k++) respond_to(work->gradients[k], factors, work->responses[k], work);
   for (int j = 0; j < count; j++) {
     for (int k = 0; k < count; k++) {
       work->compliance[j * count + k] =
@@ -175,6 +181,7 @@ static void respond(const stage_factors *factors, workspace *work) {
   }
 }
 
+/* Gradients of the gaps of all that touches, at an instant. */
 static int gradients_at(const real *x, const real *inputs, workspace *work) {
   for (int k = 0; k < work->touch_count; k++) {
     touch *own = work->touches + k;
@@ -182,9 +189,18 @@ static int gradients_at(const real *x, const real *inputs, workspace *work) {
     gradient_at(own, own->place, x, inputs, &gap, work->gradients[k], work);
     own->place = gap.place;
     own->gap = gap.value;
+#ifdef CONTACT_RUBS
+    note_slide(k, &gap, x, inputs, work);
+#endif
     if (!all_finite(work->gradients[k], N) || !isfinite(gap.value)) return 0;
   }
   return 1;
+}
+
+/* Rate that a blow is to take from a gap, with what it gives back. */
+static real wanted_of(int k, real still, const workspace *work) {
+  const real restitution = work->touches[k].presses ? 0 : FACING[work->touches[k].facing].restitution;
+  return work->rates[k] - (work->rates[k] < -still ? -restitution * work->rates[k] : 0);
 }
 
 /* Closes gaps below zero, and takes speeds of approach from what touches, at an instant, in place: by the smallest changes in
@@ -233,15 +249,16 @@ static int strike(instant *at, real size, workspace *work) {
   }
   /* Newton's law of impact: what closes leaves with a share of its speed. */
   const real still = STILL * fastest;
-  for (int k = 0; k < count; k++) {
-    const real restitution = work->touches[k].presses ? 0 : FACING[work->touches[k].facing].restitution;
-    wanted[k] = rates[k] - (rates[k] < -still ? -restitution * rates[k] : 0);
-  }
+#ifdef CONTACT_RUBS
+  return strike_with_friction(at, still, &factors, work);
+#else
+  for (int k = 0; k < count; k++) wanted[k] = wanted_of(k, still, work);
   if (!least_pushes(work->compliance, wanted, count, still, work->pushes, work)) return 0;
   for (int k = 0; k < count; k++) {
     for (int i = 0; i < N; i++) v[i] += work->pushes[k] * work->responses[k][i];
   }
   return all_finite(at->state, 2 * N);
+#endif
 }
 
 /* ---- Forces in the stages ---- */
@@ -256,6 +273,9 @@ static void push_in_stage(int stage, const instant *at, real *residual, workspac
     if (gap.bend > FLATTEST) own->places[stage] = gap.place;
     work->stage_gaps[stage][k] = gap.value;
     for (int i = 0; i < N; i++) residual[i] -= own->forces[stage] * work->stage_gradients[stage][k][i];
+#ifdef CONTACT_RUBS
+    rub_in_stage(stage, k, &gap, at, residual, work);
+#endif
   }
 }
 
@@ -332,6 +352,9 @@ static void guess_forces(workspace *work) {
     for (int stage = 0; stage < STAGES; stage++) {
       own->forces[stage] = own->force;
       own->places[stage] = own->place;
+#ifdef CONTACT_RUBS
+      memcpy(own->drags[stage], own->drag, sizeof own->drag);
+#endif
     }
   }
 }
@@ -378,11 +401,19 @@ static int factorise_border(workspace *work) {
    other. */
 static int border_step(const stage_factors *factors, workspace *work) {
   answer_gaps(factors, work);
-  return factorise_border(work);
+  if (!factorise_border(work)) return 0;
+#ifdef CONTACT_RUBS
+  answer_slides(factors, work);
+  answers_of_stages(work);
+#endif
+  return 1;
 }
 
 /* Corrections along the eigenvector that close the gaps of what presses, from those without; moves the forces. */
 static void close_gaps(real *solution, workspace *work) {
+#ifdef CONTACT_RUBS
+  settle_stages(solution, work);
+#else
   const int pressing = work->pressing;
   real *values = work->border_values;
   for (int m = 0; m < pressing; m++) {
@@ -407,6 +438,7 @@ static void close_gaps(real *solution, workspace *work) {
       work->touches[k].forces[stage] += FROM_EIGENVECTOR[stage][1] * imaginary - FROM_EIGENVECTOR[stage][0] * whole;
     }
   }
+#endif
 }
 
 /* ---- Stretches between blows ---- */
@@ -432,7 +464,13 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     own->end_place = gap.place;
     own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
     holds &= own->presses ? own->force >= 0 : gap.value >= -GAP_OPEN;
+#ifdef CONTACT_RUBS
+    note_friction(k, &gap, work);
+#endif
   }
+#ifdef CONTACT_RUBS
+  if (work->friction_lost) return -1;
+#endif
   if (holds) return 1;
   for (int j = 0; j < count; j++) {
     for (int k = 0; k < count; k++) {
@@ -487,6 +525,10 @@ static int slides_too_far(const workspace *work) {
 static solver_motion_status solve_stretch(const step_start *start, const solver_step_options *options, real *unknowns,
                                           solver_step_memory *memory, workspace *work, solver_step_info *info) {
   int tried_again = 0;
+#ifdef CONTACT_RUBS
+  work->stretch_size = start->size;
+  work->friction_lost = 0;
+#endif
   for (int set = 0; set < SETS; set++) {
     if (set > 0) {
       /* Where places slide far within the step, gradients at its end serve better than those at its start. */
@@ -494,6 +536,9 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
       stage_at(start, STAGES - 1, unknowns, &work->at);
       for (int k = 0; k < work->touch_count; k++) {
         gradient_at(work->touches + k, work->touches[k].place, work->at.state, work->at.inputs, &gap, work->gradients[k], work);
+#ifdef CONTACT_RUBS
+        note_slide(k, &gap, work->at.state, work->at.inputs, work);
+#endif
         if (!all_finite(work->gradients[k], N)) return SOLVER_MOTION_NOT_FINITE;
       }
     }
@@ -637,6 +682,10 @@ static void know_touches(workspace *work) {
       if (!before[i].presses || before[i].facing != own->facing || before[i].slides != own->slides || !is_same) continue;
       own->presses = 1;
       own->force = before[i].force;
+#ifdef CONTACT_RUBS
+      memcpy(own->axis, before[i].axis, sizeof own->axis);
+      memcpy(own->drag, before[i].drag, sizeof own->drag);
+#endif
     }
   }
 }

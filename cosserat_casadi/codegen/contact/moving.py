@@ -10,6 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
+from cosserat_casadi.codegen.contact.rubbing import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
@@ -23,6 +24,9 @@ from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_star
 
 CONTACT_FILES = ("contact_gaps.c", "contact_ways.c", "least_pushes.c", "contact_steps.c", "contact_sensitivity.c")
 """Files of the folder ``c`` that a library with steps in exact contact includes."""
+
+FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
+"""Files that it includes where something rubs."""
 
 LOOKS = 64
 """Sections of an element at which gaps are looked at first: steps of one length see no more than that."""
@@ -47,6 +51,11 @@ def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
     for number, obstacle in enumerate(_obstacles(model)):
         name = names.kernel(f"surface_{number}")
         found[name] = _surface_function(obstacle, name)
+    for number, facing in enumerate(facings(model)):
+        if facing.obstacle.rubs:
+            rubbing = SurfaceSliding(facing)
+            found[names.kernel(f"rubbing_{number}")] = rubbing.function
+            found[names.kernel(f"rubbing_derivatives_{number}")] = rubbing.derivatives
     return found
 
 
@@ -58,13 +67,15 @@ def contact_words(model: Model, names: Names) -> Words:
         names: of the library.
     """
     if not model.scene.touches_exactly:
-        return {"steps_in_contact": False}
+        return {"steps_in_contact": False, "contact_rubs": False}
     faces = facings(model)
     points = touching_points(model)
     rods = [own for own in faces if isinstance(own, RodFacing)]
     nodes = [own.nodes_of_element for own in rods]
     words: Words = {
         "steps_in_contact": True,
+        "contact_rubs": model.scene.rubs_exactly,
+        "friction_words": "with Coulomb's friction" if model.scene.rubs_exactly else "without friction",
         "facings": len(faces),
         "most_touches": _most_touches(faces),
         "most_nodes": max([*nodes, 2]),
@@ -88,6 +99,9 @@ def contact_pattern(model: Model) -> ca.Sparsity:
         positions = points.in_steps["positions"]
         moving = sorted(set(positions.jac_sparsity(0, 0).get_col()))
         together[np.ix_(moving, moving)] = True
+    for facing in facings(model) if model.scene.rubs_exactly else ():
+        moving = SurfaceSliding(facing).moving
+        together[np.ix_(moving, moving)] = True
     rows, columns = np.nonzero(together)
     return ca.Sparsity.triplet(model.size, model.size, rows.tolist(), columns.tolist())
 
@@ -109,9 +123,16 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
         return 0
     touches = words["most_touches"]
     of_touch = 10
+    friction = 0
+    if words["contact_rubs"]:
+        # Places of touches have forces of friction, and each three rows in place of one.
+        of_touch += 15
+        rows = 6 * touches
+        friction = touches * (26 * size + 20 * inputs + 40) + 3 * rows**2 + 20 * rows
+        friction += (6 + size) * (1 + size + inputs) + 3 * words["most_points"]
     records = of_touch * touches * (3 + words["most_step_parts"]) + 4 * touches
     vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 12 * words["most_points"]
-    return int(records + vectors + 9 * touches**2 + 22 * touches + words["most_looks"] + 8 * inputs)
+    return int(friction + records + vectors + 9 * touches**2 + 22 * touches + words["most_looks"] + 8 * inputs)
 
 
 def described_contact(model: Model) -> dict[str, Any]:
@@ -120,7 +141,8 @@ def described_contact(model: Model) -> dict[str, Any]:
         return {}
     faces = facings(model)
     pairs = [{"body" if own.of_body else "rod": own.owner, "obstacle": own.obstacle.name} for own in faces]
-    return {"contacts": pairs, "most_contacts": _most_touches(faces)}
+    described: dict[str, Any] = {"contacts": pairs, "most_contacts": _most_touches(faces)}
+    return described | ({"contacts_rub": True} if model.scene.rubs_exactly else {})
 
 
 def _most_touches(faces: Sequence[Facing]) -> int:
@@ -149,6 +171,10 @@ def _functions(model: Model, names: Names) -> Iterator[str]:
         yield render("points_in_motion.c.in", words)
     for number in range(len(_obstacles(model))):
         yield render("surface_in_motion.c.in", {"number": number, "kernel": names.kernel(f"surface_{number}")})
+    for number, facing in enumerate(facings(model)):
+        if facing.obstacle.rubs:
+            kernels = {word: names.kernel(f"{word}_{number}") for word in ("rubbing", "rubbing_derivatives")}
+            yield render("rubbing_in_motion.c.in", {"number": number, **kernels})
 
 
 def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
@@ -177,6 +203,9 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
             fields |= _rod_fields(facing, number)
         elif isinstance(facing, BodyFacing):
             fields |= _ball_fields(facing)
+        if facing.obstacle.rubs:
+            fields |= {f"{word}": f"{word}_of_{number}" for word in ("rubbing", "rubbing_derivatives")}
+            fields["coefficients"] = f"{{{numbers(list(facing.obstacle.coefficients))}}}"
         records.append(record(fields))
     yield record_table("facing", "FACING", "FACINGS", records)
 

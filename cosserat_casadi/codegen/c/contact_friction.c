@@ -1,0 +1,477 @@
+/* Coulomb's friction of exact contact in the steps of a motion. The point of a section that touches slides along the surface
+   with the velocity u. A force of friction is that of a drag w, of the size of a force along the normal f:
+
+     |w| <= f and u = 0 where it sticks,   w = -f u / |u| where it slips,   for each stage of a step,
+
+   and the force is the coefficients times the drag: one in all directions, or one along the rod, one back, one across.
+   Stages and blows are the same problem: gaps, or their rates, and velocities are linear in the forces of all that touches,
+   with the law between them. Newton's method for it takes w as the projection of w - r u to the disk of the radius f
+   (P. Alart, A. Curnier, Computer Methods in Applied Mechanics and Engineering 92, 1991). By stages a stiffly accurate
+   method whose work of friction is never positive takes energy, and what sticks at the end has no velocity to rounding
+   (V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008). Blows: J. J. Moreau,
+   Unilateral contact and dry friction in finite freedom dynamics, Springer 1988. */
+
+/* Residual of the law, over the largest force, up to which it holds; and what is rounding, over the terms of its sum. */
+static const real LAW_HOLDS = (real)1e-12;
+static const real LAW_ROUNDING = (real)1e-13;
+
+/* Share of what a section yields to a force by which sections that stick yield more in Newton's matrix, not in its residual:
+   how several share what holds a rod that does not stretch is not determined. */
+static const real YIELDING = (real)1e-9;
+
+/* Cosine of the axis of the tangents to the normal from which on another one is taken. */
+static const real UPRIGHT = (real)0.9;
+
+enum {
+  ROWS = 3,         /* of what touches: along the normal, and along both tangents */
+  LAW_TURNS = 60,   /* iterations of the law */
+  HALVINGS = 8,     /* of a step of these */
+  FAINTER = 8       /* halvings of the restitution of a blow that would give energy */
+};
+
+static real inner_of_two(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1]; }
+
+static void respond_to(const real *row, const stage_factors *factors, real *response, workspace *work);
+static real wanted_of(int k, real still, const workspace *work);
+
+static int rubs(const touch *own) { return FACING[own->facing].rubbing != 0; }
+
+/* ---- Sliding ---- */
+
+static void both_tangents(const real *normal, const real *axis, real tangents[2][3]) {
+  const real share = inner(normal, axis);
+  for (int i = 0; i < 3; i++) tangents[0][i] = axis[i] - share * normal[i];
+  const real length = SQUARE_ROOT(inner(tangents[0], tangents[0]));
+  for (int i = 0; i < 3; i++) tangents[0][i] /= length;
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    tangents[1][i] = normal[j] * tangents[0][k] - normal[k] * tangents[0][j];
+  }
+}
+
+/* An axis across the normal, as far as axes of the world are; that of before serves while it is. */
+static void choose_axis(touch *own, const real *normal) {
+  int best = 0;
+  if (inner(own->axis, own->axis) > 0 && ABSOLUTE(inner(own->axis, normal)) < UPRIGHT) return;
+  for (int i = 1; i < 3; i++) best = ABSOLUTE(normal[i]) < ABSOLUTE(normal[best]) ? i : best;
+  for (int i = 0; i < 3; i++) own->axis[i] = (real)(i == best);
+  own->drag[0] = own->drag[1] = 0;
+}
+
+static rubbed section_of(const touch *own, const section_gap *gap, const real *x, const real *inputs, workspace *work) {
+  const int count = POINTS[FACING[own->facing].points].count;
+  const rubbed at = {x, inputs, x + N, inputs + INPUTS, work->section, own->axis};
+  memset(work->section, 0, (size_t)count * sizeof *work->section);
+  memcpy(work->section + gap->first, gap->rows[0], (size_t)gap->nodes * sizeof *work->section);
+  work->section[count] = gap->place;
+  return at;
+}
+
+/* How a section that touches slides at a state, whose velocities are behind the positions as in an instant. */
+static void slide_at(const touch *own, const section_gap *gap, const real *x, const real *inputs, real *slide,
+                     real rows[2][N], real *along, workspace *work) {
+  const rubbed at = section_of(own, gap, x, inputs, work);
+  FACING[own->facing].rubbing(&at, slide, rows[0], along, work);
+}
+
+/* The same of a section by its number, at the start of a stretch or for a blow. */
+static void note_slide(int k, const section_gap *gap, const real *x, const real *inputs, workspace *work) {
+  touch *own = work->touches + k;
+  memset(work->slide_rows[k], 0, sizeof work->slide_rows[k]);
+  memset(work->slides[k], 0, sizeof work->slides[k]);
+  if (!rubs(own)) return;
+  choose_axis(own, gap->normal);
+  slide_at(own, gap, x, inputs, work->slides[k], work->slide_rows[k], work->along[k], work);
+}
+
+/* What a drag is multiplied by to be a force; its direction tells whether the rod slides along or back. */
+static void coefficients_of(const touch *own, const real *along, const real *drag, real matrix[2][2]) {
+  const real *given = FACING[own->facing].coefficients;
+  const real more = (inner_of_two(along, drag) > 0 ? given[1] : given[0]) - given[2];
+  for (int a = 0; a < 2; a++) {
+    for (int b = 0; b < 2; b++) matrix[a][b] = (a == b ? given[2] : 0) + more * along[a] * along[b];
+  }
+}
+
+static void friction_of(const touch *own, const real *along, const real *drag, real *force) {
+  real matrix[2][2];
+  coefficients_of(own, along, drag, matrix);
+  for (int a = 0; a < 2; a++) force[a] = inner_of_two(matrix[a], drag);
+}
+
+/* ---- The law of several at once ---- */
+
+/* The forces, along normals and tangents, of normal forces and drags. */
+static void pushes_of(int count, const int *members, const real *forces, real *pushes, const workspace *work) {
+  for (int q = 0; q < count; q++) {
+    const touch *own = work->touches + members[q];
+    pushes[ROWS * q] = forces[ROWS * q];
+    pushes[ROWS * q + 1] = pushes[ROWS * q + 2] = 0;
+    if (rubs(own)) friction_of(own, work->law_along[q], forces + ROWS * q + 1, pushes + ROWS * q + 1);
+  }
+}
+
+/* The drag, less the multiple of the slide that Newton's method weighs it against, of one of those that press; its length. */
+static real tried_drag(int q, const workspace *work, real tried[2]) {
+  for (int a = 0; a < 2; a++) {
+    tried[a] = work->law_forces[ROWS * q + 1 + a] - work->law_scales[q] * work->law_slides[q][a];
+  }
+  return SQUARE_ROOT(inner_of_two(tried, tried));
+}
+
+/* What gaps and the law miss by with the forces at hand, as forces; tells by how much the largest is more than rounding, and
+   returns the length of all. */
+static real misses_of_law(int count, const int *members, real *excess, workspace *work) {
+  const int order = ROWS * count;
+  const real *answers = work->law_answers;
+  const real *forces = work->law_forces;
+  real *misses = work->law_misses;
+  real sum = 0;
+  *excess = 0;
+  pushes_of(count, members, forces, work->law_pushes, work);
+  for (int i = 0; i < order; i++) {
+    const int q = i / ROWS;
+    const real weight = i % ROWS == 0 ? 1 / answers[i * order + i] : work->law_scales[q];
+    real value = work->law_open[i];
+    real terms = ABSOLUTE(value);
+    for (int j = 0; j < order; j++) {
+      const real term = answers[j * order + i] * work->law_pushes[j];
+      value += term;
+      terms += ABSOLUTE(term);
+    }
+    misses[i] = weight * value;
+    work->law_terms[i] = LAW_ROUNDING * ABSOLUTE(weight) * terms;
+    if (i % ROWS > 0) work->law_slides[q][i % ROWS - 1] = value;
+  }
+  for (int q = 0; q < count; q++) {
+    const real bound = larger(forces[ROWS * q], 0);
+    real tried[2];
+    const real length = tried_drag(q, work, tried);
+    work->law_slips[q] = length > bound;
+    for (int a = 0; a < 2 && length > bound; a++) {
+      misses[ROWS * q + 1 + a] = forces[ROWS * q + 1 + a] - bound * tried[a] / length;
+    }
+  }
+  for (int i = 0; i < order; i++) {
+    *excess = larger(*excess, ABSOLUTE(misses[i]) - work->law_terms[i] - LAW_HOLDS * ABSOLUTE(forces[i - i % ROWS]));
+    sum += misses[i] * misses[i];
+  }
+  return SQUARE_ROOT(sum);
+}
+
+/* Newton's matrix of what the law misses by. */
+static void matrix_of_law(int count, const int *members, real *matrix, workspace *work) {
+  const int order = ROWS * count;
+  const real *answers = work->law_answers;
+  const real *forces = work->law_forces;
+  for (int q = 0; q < count; q++) {
+    const touch *own = work->touches + members[q];
+    const int first = ROWS * q;
+    real by_drag[2][2] = {{0, 0}, {0, 0}};
+    if (rubs(own)) coefficients_of(own, work->law_along[q], forces + first + 1, by_drag);
+    for (int i = 0; i < order; i++) {
+      matrix[first * order + i] = answers[first * order + i];
+      for (int b = 0; b < 2; b++) {
+        matrix[(first + 1 + b) * order + i] =
+            answers[(first + 1) * order + i] * by_drag[0][b] + answers[(first + 2) * order + i] * by_drag[1][b];
+      }
+    }
+  }
+  for (int q = 0; q < count; q++) {
+    const int normal = ROWS * q, first = normal + 1;
+    const real bound = larger(forces[normal], 0);
+    const real yields = answers[normal * order + normal];
+    real tried[2];
+    const real length = tried_drag(q, work, tried);
+    const real way[2] = {length > 0 ? tried[0] / length : 0, length > 0 ? tried[1] / length : 0};
+    const real share = work->law_slips[q] ? bound / length : 1;
+    for (int j = 0; j < order; j++) {
+      real *column = matrix + j * order + first;
+      const real along = work->law_slips[q] ? inner_of_two(way, column) : 0;
+      matrix[j * order + normal] /= yields;
+      for (int a = 0; a < 2; a++) column[a] = share * work->law_scales[q] * (column[a] - along * way[a]);
+    }
+    for (int a = 0; a < 2; a++) {
+      if (work->law_slips[q] && bound > 0) matrix[normal * order + first + a] -= way[a];
+      for (int b = 0; b < 2; b++) {
+        const real turns = (a == b) - share * ((a == b) - way[a] * way[b]);
+        matrix[(first + b) * order + first + a] += work->law_slips[q] ? turns : YIELDING * (a == b);
+      }
+    }
+  }
+}
+
+/* Normal forces that close what is open, and drags that obey the law, of so many that press: open and law_answers tell gaps,
+   or their rates, and slides without forces and by forces, law_forces is the first guess. Steps of Newton's method are halved
+   while what is missed does not become less: its kinks may send it round in circles. Zero where they are not found. */
+static int settle_law(int count, const int *members, workspace *work) {
+  const int order = ROWS * count;
+  real *steps = work->law_values;
+  real excess;
+  for (int q = 0; q < count; q++) {
+    const real *given = FACING[work->touches[members[q]].facing].coefficients;
+    real slides = 0;
+    for (int slot = ROWS * q + 1; slot < ROWS * q + ROWS; slot++) {
+      slides = larger(slides, ABSOLUTE(work->law_answers[slot * order + slot]));
+    }
+    slides *= larger(given[0], larger(given[1], given[2]));
+    work->law_scales[q] = slides > 0 ? 1 / slides : 1;
+    if (!(ABSOLUTE(work->law_answers[ROWS * q * (order + 1)]) > 0)) return 0;
+  }
+  real missed = misses_of_law(count, members, &excess, work);
+  for (int turn = 0; turn < LAW_TURNS; turn++) {
+    if (!isfinite(missed)) return 0;
+    if (excess <= 0) return 1;
+    matrix_of_law(count, members, work->law_matrix, work);
+    if (!factorise_small(order, work->law_matrix, work->law_pivots)) return 0;
+    for (int i = 0; i < order; i++) steps[i] = -work->law_misses[i];
+    solve_small(order, work->law_matrix, work->law_pivots, steps);
+    real share = 1;
+    for (int i = 0; i < order; i++) work->law_forces[i] += steps[i];
+    const real before = missed;
+    missed = misses_of_law(count, members, &excess, work);
+    for (int halving = 0; halving < HALVINGS && excess > 0 && !(missed < before); halving++) {
+      share /= 2;
+      for (int i = 0; i < order; i++) work->law_forces[i] -= share * steps[i];
+      missed = misses_of_law(count, members, &excess, work);
+    }
+  }
+  return 0;
+}
+
+/* ---- In stages ---- */
+
+/* Takes the friction of a section that presses from the equations of a stage, and notes how it slides. */
+static void rub_in_stage(int stage, int k, const section_gap *gap, const instant *at, real *residual, workspace *work) {
+  const touch *own = work->touches + k;
+  real(*rows)[N] = work->stage_slide_rows[stage][k];
+  real force[2];
+  if (!rubs(own)) return;
+  slide_at(own, gap, at->state, at->inputs, work->stage_slides[stage][k], rows, work->stage_along[stage][k], work);
+  friction_of(own, work->stage_along[stage][k], own->drags[stage], force);
+  for (int i = 0; i < N; i++) residual[i] -= force[0] * rows[0][i] + force[1] * rows[1][i];
+}
+
+static const real *row_of(int k, int row, const workspace *work) {
+  return row == 0 ? work->gradients[k] : work->slide_rows[k][row - 1];
+}
+
+static real *response_of(int k, int row, workspace *work) {
+  return row == 0 ? work->responses[k] : work->slide_responses[k][row - 1];
+}
+
+/* What unit forces along normals and tangents do to positions by the factorised matrix of the step, and how gaps and the
+   positions of what slides answer. */
+static void answer_slides(const stage_factors *factors, workspace *work) {
+  const int count = work->touch_count;
+  const int order = ROWS * count;
+  for (int j = 0; j < order; j++) {
+    real *response = response_of(j / ROWS, j % ROWS, work);
+    if (j % ROWS > 0) {
+      memcpy(response, row_of(j / ROWS, j % ROWS, work), N * sizeof *response);
+      memset(response + N, 0, N * sizeof *response);
+      solve_system(complex_matrix(), 2, factors, response, work);
+    }
+    for (int i = 0; i < order; i++) {
+      const real *row = row_of(i / ROWS, i % ROWS, work);
+      work->complex_answers[0][j * order + i] = dot(row, response);
+      work->complex_answers[1][j * order + i] = dot(row, response + N);
+    }
+  }
+}
+
+/* The change at a stage of a gap or a slide by a complex one along the eigenvector; a slide is a velocity. */
+static real at_stage(int stage, int row, real whole, real imaginary, real size) {
+  const real rate = row > 0 ? RATE[0] / size : 1;
+  const real rate_imaginary = row > 0 ? RATE[1] / size : 0;
+  const real product = rate * whole - rate_imaginary * imaginary;
+  const real product_imaginary = rate * imaginary + rate_imaginary * whole;
+  return FROM_EIGENVECTOR[stage][0] * product - FROM_EIGENVECTOR[stage][1] * product_imaginary;
+}
+
+/* How gaps and slides of what presses answer at both stages to forces at both. */
+static void answers_of_stages(workspace *work) {
+  const int pressing = work->pressing;
+  const int all = ROWS * work->touch_count;
+  const int order = STAGES * ROWS * pressing;
+  for (int j = 0; j < order; j++) {
+    const int stage = j / (ROWS * pressing);
+    const int column = ROWS * work->border_members[j / ROWS % pressing] + j % ROWS;
+    for (int i = 0; i < order; i++) {
+      const int row = ROWS * work->border_members[i / ROWS % pressing] + i % ROWS;
+      const real whole = work->complex_answers[0][column * all + row];
+      const real imaginary = work->complex_answers[1][column * all + row];
+      work->law_answers[j * order + i] = at_stage(
+          i / (ROWS * pressing), i % ROWS, TO_EIGENVECTOR[stage][0] * whole - TO_EIGENVECTOR[stage][1] * imaginary,
+          TO_EIGENVECTOR[stage][0] * imaginary + TO_EIGENVECTOR[stage][1] * whole, work->stretch_size);
+    }
+  }
+}
+
+/* Corrections along the eigenvector with which what presses obeys the law at both stages, from those without a change of
+   forces; moves the forces. */
+static void settle_stages(real *solution, workspace *work) {
+  const int pressing = work->pressing;
+  const int count = STAGES * pressing;
+  const int order = ROWS * count;
+  real *forces = work->law_forces;
+  real *before = work->law_pushes;
+  int *members = work->law_members;
+  if (pressing == 0) return;
+  for (int q = 0; q < count; q++) {
+    const int stage = q / pressing;
+    const int k = members[q] = work->border_members[q % pressing];
+    const touch *own = work->touches + k;
+    forces[ROWS * q] = own->forces[stage];
+    for (int a = 0; a < 2; a++) {
+      forces[ROWS * q + 1 + a] = own->drags[stage][a];
+      work->law_along[q][a] = work->stage_along[stage][k][a];
+    }
+    for (int row = 0; row < ROWS; row++) {
+      const real *own_row = row_of(k, row, work);
+      const real slide = row > 0 && rubs(own) ? work->stage_slides[stage][k][row - 1] : 0;
+      const real present = row == 0 ? work->stage_gaps[stage][k] : slide;
+      work->law_open[ROWS * q + row] =
+          present - at_stage(stage, row, dot(own_row, solution), dot(own_row, solution + N), work->stretch_size);
+    }
+  }
+  pushes_of(count, members, forces, before, work);
+  for (int i = 0; i < order; i++) {
+    for (int j = 0; j < order; j++) work->law_open[i] -= work->law_answers[j * order + i] * before[j];
+  }
+  memcpy(work->law_before, before, (size_t)order * sizeof *before);
+  work->friction_lost = !settle_law(count, members, work);
+  pushes_of(count, members, forces, work->law_pushes, work);
+  for (int j = 0; j < ROWS * pressing; j++) {
+    const real *response = response_of(work->border_members[j / ROWS], j % ROWS, work);
+    real whole = 0, imaginary = 0;
+    for (int stage = 0; stage < STAGES; stage++) {
+      const int entry = stage * ROWS * pressing + j;
+      const real change = work->law_pushes[entry] - work->law_before[entry];
+      whole -= TO_EIGENVECTOR[stage][0] * change;
+      imaginary -= TO_EIGENVECTOR[stage][1] * change;
+    }
+    for (int i = 0; i < N; i++) {
+      solution[i] += response[i] * whole - response[N + i] * imaginary;
+      solution[N + i] += response[i] * imaginary + response[N + i] * whole;
+    }
+  }
+  for (int q = 0; q < count; q++) {
+    touch *own = work->touches + members[q];
+    own->forces[q / pressing] = forces[ROWS * q];
+    memcpy(own->drags[q / pressing], forces + ROWS * q + 1, sizeof own->drags[0]);
+    own->slips[q / pressing] = work->law_slips[q];
+  }
+}
+
+/* What a section that touches is told to rub with at the end of a stretch; the next one begins its guess with it. */
+static void note_friction(int k, const section_gap *gap, workspace *work) {
+  touch *own = work->touches + k;
+  real tangents[2][3], force[2];
+  memset(own->drag, 0, sizeof own->drag);
+  memset(own->friction, 0, sizeof own->friction);
+  if (!own->presses || !rubs(own)) return;
+  memcpy(own->drag, own->drags[STAGES - 1], sizeof own->drag);
+  friction_of(own, work->stage_along[STAGES - 1][k], own->drag, force);
+  both_tangents(gap->normal, own->axis, tangents);
+  for (int i = 0; i < 3; i++) {
+    own->friction[i] = FACING[own->facing].force_unit * (force[0] * tangents[0][i] + force[1] * tangents[1][i]);
+  }
+}
+
+/* ---- In blows ---- */
+
+/* Impulses of a blow: which of those that touch are struck is tried, from those without friction. */
+static int settle_blow(const real *wanted, real still, workspace *work) {
+  const int count = work->touch_count;
+  const int all = ROWS * count;
+  const real *answers = work->complex_answers[0];
+  int *members = work->law_members;
+  int *struck = work->law_slips + count;
+  if (!least_pushes(work->compliance, wanted, count, still, work->pushes, work)) return 0;
+  for (int k = 0; k < count; k++) struck[k] = work->pushes[k] > 0;
+  for (int turn = 0; turn < LAW_TURNS; turn++) {
+    int own = 0, worst = -1;
+    real least = 0;
+    for (int k = 0; k < count; k++) {
+      if (struck[k]) members[own++] = k;
+    }
+    const int order = ROWS * own;
+    for (int i = 0; i < order; i++) {
+      const int k = members[i / ROWS];
+      const int row = i % ROWS;
+      work->law_open[i] = row == 0 ? wanted[k] : work->slides[k][row - 1];
+      work->law_forces[i] = row == 0 ? work->pushes[k] : 0;
+      for (int j = 0; j < order; j++) {
+        work->law_answers[j * order + i] = answers[(ROWS * members[j / ROWS] + j % ROWS) * all + ROWS * k + row];
+      }
+      if (row == 0) memcpy(work->law_along[i / ROWS], work->along[k], sizeof work->along[k]);
+    }
+    if (own > 0 && !settle_law(own, members, work)) return 0;
+    pushes_of(own, members, work->law_forces, work->law_pushes, work);
+    memset(work->blow, 0, (size_t)all * sizeof *work->blow);
+    for (int i = 0; i < order; i++) work->blow[ROWS * members[i / ROWS] + i % ROWS] = work->law_pushes[i];
+    for (int q = 0; q < own; q++) {
+      if (work->law_forces[ROWS * q] < least) {
+        least = work->law_forces[ROWS * q];
+        worst = members[q];
+      }
+    }
+    for (int k = 0; k < count && least == 0; k++) {
+      real opening = wanted[k];
+      for (int j = 0; j < all; j++) opening += answers[j * all + ROWS * k] * work->blow[j];
+      if (!struck[k] && opening < -still && (worst < 0 || opening < work->rates_after[worst])) worst = k;
+      work->rates_after[k] = opening;
+    }
+    if (worst < 0) return 1;
+    struck[worst] = !struck[worst];
+  }
+  return 0;
+}
+
+/* Work of the impulses of a blow, over a unit of energy: half of that on the velocities before and after. */
+static real work_of_blow(workspace *work) {
+  const int all = ROWS * work->touch_count;
+  real sum = 0;
+  for (int i = 0; i < all; i++) {
+    const facing *faces = FACING + work->touches[i / ROWS].facing;
+    const real before = i % ROWS == 0 ? work->rates[i / ROWS] : work->slides[i / ROWS][i % ROWS - 1];
+    real change = 0;
+    for (int j = 0; j < all; j++) change += work->complex_answers[0][j * all + i] * work->blow[j];
+    sum += faces->force_unit * faces->length * work->blow[i] * (before + change / 2);
+  }
+  return sum;
+}
+
+/* A blow with friction: Newton's law of impact along normals, Coulomb's along tangents, of velocities after it. With friction
+   restitution may give energy; it is so many times halved, and then none, as it takes that it does not. */
+static int strike_with_friction(instant *at, real still, const stage_factors *factors, workspace *work) {
+  const int count = work->touch_count;
+  const int all = ROWS * count;
+  real *v = at->state + N;
+  for (int k = 0; k < count; k++) {
+    section_gap gap;
+    follow_touch(work->touches + k, work->touches[k].place, at->state, at->inputs, &gap, work);
+    note_slide(k, &gap, at->state, at->inputs, work);
+    for (int row = 1; row < ROWS; row++) respond_to(row_of(k, row, work), factors, response_of(k, row, work), work);
+  }
+  for (int j = 0; j < all; j++) {
+    for (int i = 0; i < all; i++) {
+      work->complex_answers[0][j * all + i] =
+          (dot(row_of(i / ROWS, i % ROWS, work), response_of(j / ROWS, j % ROWS, work)) +
+           dot(row_of(j / ROWS, j % ROWS, work), response_of(i / ROWS, i % ROWS, work))) / 2;
+    }
+  }
+  real share = 1;
+  for (int fainter = 0; fainter <= FAINTER + 1; fainter++) {
+    for (int k = 0; k < count; k++) work->wanted[k] = share * wanted_of(k, still, work) + (1 - share) * work->rates[k];
+    if (!settle_blow(work->wanted, still, work)) return 0;
+    if (work_of_blow(work) <= 0 || share == 0) break;
+    share = fainter < FAINTER ? share / 2 : 0;
+  }
+  for (int j = 0; j < all; j++) {
+    const real *response = response_of(j / ROWS, j % ROWS, work);
+    for (int i = 0; i < N; i++) v[i] += work->blow[j] * response[i];
+  }
+  return all_finite(at->state, 2 * N);
+}

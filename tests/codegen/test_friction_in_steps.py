@@ -1,0 +1,262 @@
+"""Friction of exact contact in steps of motions in C: closed forms, smooth friction in Python, differences, energy."""
+
+from __future__ import annotations
+
+import copy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import build, scene_from_dict, simulate
+from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
+
+G = 9.81
+MASS = 0.2 * LENGTH
+FREE = {"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}
+SMALL = {"modes": 1, "nodes": 4, "tolerance": 1e-3}
+IN_SPACE = {"bending_y": 0.016, "bending_x": 0.016, "torsion": 0.012}
+
+
+def block(friction: Any, **more: Any) -> dict[str, Any]:
+    """A straight rod on a floor, as stiff as a block."""
+    record = rod(base=FREE, stiffness={"bending_y": 0.5})
+    return scene(floor(0.0, friction=friction, **more), record, accuracy=SMALL, inputs=["weight.acceleration"])
+
+
+def run(
+    made: Moving, start: StepState, memory: StepMemory, dt: float, inputs: FloatArray, rates: FloatArray | None = None
+) -> list[StepState]:
+    """States at the ends of steps, with the inputs at their starts, one row for each."""
+    states = [start]
+    for k, own in enumerate(inputs):
+        step = made.compiled.step(states[-1], dt, own, None if rates is None else rates[k], memory=memory)
+        assert step.done, (k, step.status.value)
+        states.append(step.state)
+    return states
+
+
+def weights(angle: float, count: int) -> FloatArray:
+    """Weight on an incline, which goes down along the rod, for so many steps."""
+    return np.tile(G * np.array([np.sin(angle), 0.0, -np.cos(angle)]), (count, 1))
+
+
+def way(made: Moving, states: list[StepState]) -> FloatArray:
+    """How far the tip has come along the floor, m."""
+    return (made.tips(states)[:, 0] - 1.0) * LENGTH
+
+
+def test_a_block_sticks_below_the_angle_of_friction_slides_above_it_and_stops(tmp_path: Path) -> None:
+    friction = 0.3
+    made = Moving(block(friction), tmp_path)
+    below, above = np.arctan(friction) * np.array([0.999, 1.5])
+    dt, memory, start = 1e-3, made.compiled.step_memory(), made.compiled.contact_start()
+    stays = run(made, start, memory, dt, weights(below, 100))
+    assert np.abs(way(made, stays)).max() < 1e-13
+    contacts = made.compiled.step_contacts(memory)
+    assert not any(contact.slips for contact in contacts)
+    assert_allclose(sum(contact.friction[0] for contact in contacts), -MASS * G * np.sin(below), rtol=1e-9, atol=0)
+    slides = run(made, stays[-1], memory, dt, weights(above, 100))
+    assert all(contact.slips for contact in made.compiled.step_contacts(memory))
+    down = G * (np.sin(above) - friction * np.cos(above))
+    times = dt * np.arange(101)
+    assert_allclose(way(made, slides), down * times**2 / 2, rtol=0, atol=1e-12)
+    # On the level it is held back by μ g until it stops, and stays.
+    speed = down * 0.1
+    stops = speed / (friction * G)
+    ends = run(made, slides[-1], memory, dt, weights(0.0, 200))
+    later = np.minimum(dt * np.arange(201), stops)
+    wanted = down * 0.1**2 / 2 + speed * later - friction * G * later**2 / 2
+    # Within the step in which it stops the law holds at its stages.
+    assert_allclose(way(made, ends), wanted, rtol=0, atol=friction * G * dt**2)
+    assert np.ptp(way(made, ends[-100:])) < 1e-13
+    # How several sections share it is not determined where a rod does not stretch; their sum is.
+    assert abs(sum(contact.friction[0] for contact in made.compiled.step_contacts(memory))) < 1e-9
+
+
+@pytest.mark.slow
+def test_a_block_that_is_shaken_sticks_and_slips_as_its_closed_form(tmp_path: Path) -> None:
+    friction, largest, rate = 0.3, 6.0, 20.0
+    made = Moving(block(friction), tmp_path)
+    errors = []
+    for count in (200, 3200):
+        dt = 0.6 / count
+        times = dt * np.arange(count + 1)
+        start = made.compiled.contact_start()
+        inputs = np.zeros((count, 3))
+        inputs[:, 2] = -G
+        inputs[:, 0] = largest * np.sin(rate * times[:-1])
+        rates = np.zeros((count, 3))
+        rates[:, 0] = np.diff(largest * np.sin(rate * times)) / dt
+        found = way(made, run(made, start, made.compiled.step_memory(), dt, inputs, rates))
+        errors.append(np.abs(found - shaken(friction * G, largest, rate, times)).max())
+    # A reversal within a step leaves the first power of its length in the velocity.
+    assert errors[0] < 5e-4
+    assert errors[1] < errors[0] / 8.0
+
+
+def shaken(holds: float, largest: float, rate: float, times: FloatArray) -> FloatArray:
+    """Way of a block under the acceleration of a sine that is held by friction, by the phases of a fine time."""
+    fine = np.linspace(0.0, times[-1], 600_001)
+    step = fine[1]
+    pulls = largest * np.sin(rate * (fine + step / 2))
+    x, v, ways = 0.0, 0.0, [0.0]
+    for pull in pulls[:-1]:
+        if v == 0.0 and abs(pull) <= holds:
+            ways.append(x)
+            continue
+        against = np.sign(v) if v != 0.0 else np.sign(pull)
+        after = v + step * (pull - against * holds)
+        # It stops within the step, and goes on only where the pull is stronger.
+        after = 0.0 if v * after < 0.0 else after
+        x += step * (v + after) / 2
+        v = after
+        ways.append(x)
+    return np.interp(times, fine, ways)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.1, 0.6])
+def test_a_block_that_strikes_askew_loses_what_friction_takes(friction: float, tmp_path: Path) -> None:
+    drop, speed, restitution = 0.05, 0.8, 0.5
+    made = Moving(block(friction, restitution=restitution), tmp_path)
+    start = made.compiled.contact_start()
+    x, v = start.x.copy(), np.zeros(made.model.size)
+    x[3], v[1] = drop / LENGTH, speed / LENGTH
+    state = StepState(x, v, start.a)
+    count = round(1.6 * np.sqrt(2 * drop / G) / 1e-3)
+    states = run(made, state, made.compiled.step_memory(), 1e-3, weights(0.0, count))
+    hit = np.sqrt(2 * drop / G)
+    after = max(0.0, speed - friction * (1 + restitution) * G * hit)
+    flown = 1e-3 * count - hit
+    assert_allclose(way(made, states)[-1], speed * hit + after * flown, rtol=0, atol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.5, 0.05])
+def test_a_ball_rolls_down_an_incline_or_slides(friction: float, tmp_path: Path) -> None:
+    radius, mass, angle = 0.02, 0.5, np.radians(20)
+    ball = {"name": "ball", "mass": mass, "radius": radius, "inertia": [0.4 * mass * radius**2] * 3}
+    # The rod that carries it weighs next to nothing.
+    carrier = rod(length=0.05, base=FREE | {"position": [-0.05, 0, 0]}, linear_density=1e-3, rotary_inertia=[1e-12] * 3)
+    tables = scene(
+        floor(-radius, friction=friction, bodies=["ball"]),
+        carrier,
+        bodies=[ball],
+        joints=[{"body": "ball", "rod": "rod", "kind": "fixed"}],
+        accuracy=SMALL,
+        inputs=["weight.acceleration"],
+    )
+    made = Moving(tables, tmp_path)
+    memory = made.compiled.step_memory()
+    states = run(made, made.compiled.contact_start(), memory, 1e-3, weights(angle, 100))
+    gone = (made.tips(states)[-1, 0] - made.tips(states)[0, 0]) * LENGTH
+    rolls = 5 / 7 * np.sin(angle)
+    slides = np.sin(angle) - friction * np.cos(angle)
+    (contact,) = made.compiled.step_contacts(memory)
+    assert contact.slips == (slides > rolls)
+    # To the share of the rod in the mass.
+    assert_allclose(gone, G * max(rolls, slides) * 0.1**2 / 2, rtol=1e-3, atol=0)
+
+
+ACROSS = {"along": 0.2, "back": 0.5, "across": 0.35}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.4, ACROSS])
+def test_derivatives_of_a_step_with_friction_are_those_of_differences(friction: Any, tmp_path: Path) -> None:
+    record = rod(strain="kirchhoff", stiffness=IN_SPACE)
+    tables = scene(
+        BALL | {"centre": [0.25, 0.01, -0.09], "friction": friction},
+        record,
+        accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-4},
+        inputs=["weight.acceleration", "rod.base.position"],
+    )
+    made = Moving(tables, tmp_path)
+    memory = made.compiled.step_memory()
+    start = made.steps(1e-3, 160, memory)[-1]
+    (contact,) = made.compiled.step_contacts(memory)
+    assert contact.slips
+    compare_with_differences(made, start, memory, 1e-3)
+
+
+@pytest.mark.slow
+def test_derivatives_of_a_step_that_sticks_are_those_of_differences(tmp_path: Path) -> None:
+    push = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0, 0, -0.02]}
+    tables = scene(floor(-0.02, friction=0.8), rod(), loads=[push], inputs=["push.force"])
+    tables["simulation"]["start"] = "equilibrium"
+    made = Moving(tables, tmp_path)
+    memory = made.compiled.step_memory()
+    start = made.steps(1e-2, 20, memory)[-1]
+    (contact,) = made.compiled.step_contacts(memory)
+    assert not contact.slips and contact.force > 1e-3
+    # What opens the gap at the start asks for large forces, which soon leave what sticks.
+    compare_with_differences(made, start, memory, 1e-2, small=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("friction", "restitution", "free"), [(0.3, 0.9, True), (ACROSS, 0.0, False)])
+def test_friction_and_blows_give_no_energy(friction: Any, restitution: float, free: bool, tmp_path: Path) -> None:
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0.1], **({"free": True} if free else {})}
+    leaning = floor(-0.1, normal=[-0.26, 0, 1], friction=friction, restitution=restitution)
+    # A stiff rod whose tip is pressed askew: forces along and across the floor are hardly independent.
+    made = Moving(scene(leaning, rod(base=base, stiffness={"bending_y": 0.02 if free else 0.5})), tmp_path)
+    states = made.steps(1e-3, 400)
+    assert np.diff(made.energies(states)).max() <= 1e-11
+    assert made.least_gap(states) >= -2e-7
+
+
+def compare_with_differences(
+    made: Moving, start: StepState, memory: StepMemory, dt: float, small: float = 1e-8
+) -> None:
+    """Hold derivatives of a step by its start and by inputs against differences."""
+    values, still = made.model.pack(), np.zeros(made.model.inputs.size)
+    n = made.model.size
+
+    def end(x: FloatArray, v: FloatArray, *given: FloatArray) -> FloatArray:
+        state = StepState(x, v, start.a)
+        step = made.compiled.step(state, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
+        assert step.done
+        return np.concatenate([step.state.x, step.state.v])
+
+    given = [values, still, still]
+    call = made.compiled.step_sensitivity
+    step, found = call(start, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
+    assert step.done and found is not None
+    columns = []
+    for k in range(2 * n):
+        change = np.eye(2 * n)[k] * (small if k < n else small / dt)
+        ends = [end(start.x + sign * change[:n], start.v + sign * change[n:], *given) for sign in (1.0, -1.0)]
+        columns.append((ends[0] - ends[1]) / (2.0 * change[k]))
+    for rows in (slice(0, n), slice(n, 2 * n)):
+        largest = np.abs(found.by_start[rows]).max()
+        assert_allclose(found.by_start[rows], np.array(columns).T[rows], rtol=0, atol=2e-6 * largest)
+    by_each = (found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration)
+    # A base that moves opens or closes the gap, which stays below what touches.
+    sizes = zip((1e-3, 1e-1, 1e1), (1e-8, 1e-5, 1e-2), strict=True)
+    moves = [bool(entry.declared.moves) for entry, _ in made.model.inputs for _ in range(entry.size)]
+    for which, (derivative, (of_load, of_base)) in enumerate(zip(by_each, sizes, strict=True)):
+        for j, is_base in enumerate(moves):
+            size = of_base if is_base else of_load
+            ends = []
+            for sign in (1.0, -1.0):
+                changed = [own.copy() for own in given]
+                changed[which][j] += sign * size
+                ends.append(end(start.x, start.v, *changed))
+            difference = (ends[0] - ends[1]) / (2.0 * size)
+            for rows in (slice(0, n), slice(n, 2 * n)):
+                # A push on what sticks moves nothing, to the share by which it yields in the matrix.
+                atol = max(1e-5 * np.abs(difference[rows]).max(), 1e-7)
+                assert_allclose(derivative[rows, j], difference[rows], rtol=0, atol=atol)
+
+
+def test_friction_of_exact_contact_is_refused_where_it_does_not_act() -> None:
+    with pytest.raises(SceneError, match="acts in steps of motions in C alone"):
+        simulate(build(scene_from_dict(block(0.3)), moving=True))
+    with pytest.raises(SceneError, match="is of a contact that is smooth"):
+        scene_from_dict(block(0.3, slip_speed=1e-3))
