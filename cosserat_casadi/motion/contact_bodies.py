@@ -44,7 +44,5 @@ class BodyFacing(Facing):
         return np.zeros(0)
 
     def describe(self, held: Held) -> None:
-        """Write its radius into the record."""
-        record = held.record
-        record.elements = record.nodes = 1
-        record.radius_at_base, record.radius_at_tip = self.radii
+        """Write into the record that it is one point."""
+        held.record.elements = held.record.nodes = 1

@@ -170,12 +170,13 @@ class Facing(ABC):
 
     @abstractmethod
     def describe(self, held: Held) -> None:
-        """Write what the law has to know beyond the obstacle into its record."""
+        """Write into the record how the sections follow from the points."""
 
     @cached_property
     def in_law(self) -> Held:
         """The pair as the law in C has it."""
         record = FacingRecord(is_body=self.of_body, length=self.length, laid_count=len(self.laid_at))
+        record.radius_at_base, record.radius_at_tip = self.radii
         held = Held(record)
         held.point("points", self.points.in_law)
         held.share("laid", np.ascontiguousarray(self.laid_at, dtype=float))

@@ -62,11 +62,10 @@ class RodFacing(Facing):
         return laid_sections(self.model, self.owner, self.watched_ends)
 
     def describe(self, held: Held) -> None:
-        """Write elements, radii, and how sections follow from nodes into the record."""
+        """Write elements, and how sections follow from nodes, into the record."""
         record = held.record
         record.elements, record.nodes = len(self.ends) - 1, self.nodes_of_element
         record.watches_base, record.watches_tip = self.watched_ends
-        record.radius_at_base, record.radius_at_tip = self.radii
         held.share("ends", np.array(self.ends))
         held.share("to_coefficients", np.ascontiguousarray(self.to_coefficients))
         held.share("looks", np.ascontiguousarray(self.looks(LOOKS)))
