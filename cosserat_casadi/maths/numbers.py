@@ -202,11 +202,20 @@ def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
     return ca.sparsify(ca.DM(at_zero)) + ca.sparsify(ca.DM(by_symbol)) @ symbol
 
 
-def without_rounding(entries: FloatArray) -> FloatArray:
+def sparse_known(entries: Matrix) -> Matrix:
+    """Entries that are known, without rounding and zeros; expressions as they are."""
+    return ca.sparsify(ca.DM(without_rounding(entries.full()))) if isinstance(entries, ca.DM) else entries
+
+
+def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray:
     """Entries, with what rounding alone makes differ made the same, so that expressions of them can be shared.
 
     Entries that are rounding errors beside the largest one are zero: orthogonal polynomials leave them. Entries of one
     size, but for rounding, take that of the middle one, or a whole number: symmetric rows leave them.
+
+    Args:
+        entries: of any shape.
+        noise: share of the largest entry below which an entry is zero.
     """
     sizes = np.abs(entries).ravel()
     order = np.argsort(sizes)
@@ -218,7 +227,7 @@ def without_rounding(entries: FloatArray) -> FloatArray:
     whole = np.round(middle)
     middle = np.where(np.abs(middle - whole) <= SAME * middle, whole, middle)
     sizes[order] = np.repeat(middle, counts)
-    sizes[sizes < ROUNDING * largest] = 0.0
+    sizes[sizes < noise * largest] = 0.0
     # No zero is a negative one.
     return np.copysign(sizes.reshape(entries.shape), entries) + 0.0
 

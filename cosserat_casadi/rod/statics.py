@@ -200,7 +200,7 @@ class Statics:
         profiles = wrench.profiles
         if not any_symbolic([profiles, rod.node_lengths]):
             to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
-            return force @ ca.DM(known(profiles) @ to_covector)
+            return force @ ca.sparsify(ca.DM(without_rounding(known(profiles) @ to_covector)))
         return force @ ca.vertcat(*[self._profile_covector(profile) for profile in rows_of(profiles)])
 
     def _profile_covector(self, profile: Numbers) -> Matrix:
