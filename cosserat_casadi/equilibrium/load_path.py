@@ -10,11 +10,12 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import without_rounding
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_layers import inexact_beside, longest_step
 from cosserat_casadi.model.system_functions import SystemFunctions
-from cosserat_casadi.model.unloaded_response import without_noise
+from cosserat_casadi.model.unloaded_response import NOISE
 from cosserat_casadi.numerics.broyden import Jacobian, solved
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 
@@ -67,7 +68,7 @@ def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> 
     stiffness = path_jacobian(unloaded, *given, 0.0).full()
     tangent = solved(stiffness, -rate(unloaded, 0.0))
     if tangent is not None:
-        tangent = without_noise(tangent)
+        tangent = without_rounding(tangent, NOISE)
     return Path(
         residual,
         jacobian,

@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import without_rounding
 from cosserat_casadi.maths.typing import AnyMatrix, FloatArray, Matrix
 
 
@@ -144,7 +145,7 @@ def mirror_factors(matrix: FloatArray, mirror: Indices, signs: FloatArray, parit
     # A row that mirrors itself is zero in the columns of the other parity.
     own_parity = signs[middle, None] == parities
     own = matrix[middle] * own_parity
-    half = np.vstack([sums, differences, own])
+    half = without_rounding(np.vstack([sums, differences, own]))
     return _fold(first, second, pair_signs, middle), sparse(half)
 
 

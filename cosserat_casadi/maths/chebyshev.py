@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from cosserat_casadi.maths.numbers import without_rounding
 from cosserat_casadi.maths.typing import FloatArray
 
 # How far an abscissa may lie outside [0, 1], and below what distance it is taken for a point.
@@ -187,7 +188,7 @@ def quadrature_weights(N: int) -> FloatArray:
     cosines = _cosine_matrix(N)[:, k]
     weights: FloatArray = (1 - cosines @ factors) / N
     weights[[0, -1]] /= 2
-    return weights
+    return without_rounding(weights)
 
 
 def integration_matrix(N: int) -> FloatArray:
@@ -213,7 +214,9 @@ def integration_matrix(N: int) -> FloatArray:
     second = squares[:, np.abs(j - 1)] / divisors
     second[:, j == 1] = 0.0
     antiderivatives: FloatArray = (first - second) / 2
-    return antiderivatives @ _cosine_transform(N)
+    integrals = antiderivatives @ _cosine_transform(N)
+    integrals[-1] = quadrature_weights(N)
+    return without_rounding(integrals)
 
 
 def _cosine_transform(N: int) -> FloatArray:

@@ -28,6 +28,9 @@ Scalar: TypeAlias = float | Matrix
 ROUNDING = 1e-15
 """Share of the largest entry below which an entry is zero by orthogonality."""
 
+SAME = 1e-14
+"""Share that entries of one size differ by, from linear algebra that rounds."""
+
 
 IndexArray: TypeAlias = npt.NDArray[np.int64]
 
@@ -199,10 +202,34 @@ def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
     return ca.sparsify(ca.DM(at_zero)) + ca.sparsify(ca.DM(by_symbol)) @ symbol
 
 
-def without_rounding(entries: FloatArray) -> FloatArray:
-    """Entries, with rounding errors set to zero: orthogonal polynomials leave them beside the largest entry."""
-    largest = np.abs(entries).max(initial=0.0)
-    return np.where(np.abs(entries) < ROUNDING * largest, 0.0, entries)
+def sparse_known(entries: Matrix) -> Matrix:
+    """Entries that are known, without rounding and zeros; expressions as they are."""
+    return ca.sparsify(ca.DM(without_rounding(entries.full()))) if isinstance(entries, ca.DM) else entries
+
+
+def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray:
+    """Entries, with what rounding alone makes differ made the same, so that expressions of them can be shared.
+
+    Entries that are rounding errors beside the largest one are zero: orthogonal polynomials leave them. Entries of one
+    size, but for rounding, take that of the middle one, or a whole number: symmetric rows leave them.
+
+    Args:
+        entries: of any shape.
+        noise: share of the largest entry below which an entry is zero.
+    """
+    sizes = np.abs(entries).ravel()
+    order = np.argsort(sizes)
+    ascending = sizes[order]
+    largest = ascending[-1:].max(initial=0.0)
+    begins = np.flatnonzero(np.diff(ascending, prepend=-1.0) > SAME * ascending)
+    counts = np.diff(begins, append=len(ascending))
+    middle = ascending[begins + counts // 2]
+    whole = np.round(middle)
+    middle = np.where(np.abs(middle - whole) <= SAME * middle, whole, middle)
+    sizes[order] = np.repeat(middle, counts)
+    sizes[sizes < noise * largest] = 0.0
+    # No zero is a negative one.
+    return np.copysign(sizes.reshape(entries.shape), entries) + 0.0
 
 
 def _affine(numbers: Matrix) -> tuple[Matrix, FloatArray, FloatArray] | None:

@@ -17,7 +17,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint
 from cosserat_casadi.loads.load_trace import TracedLoad, stored, traced
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, as_vector, is_symbolic, is_zero
+from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, as_vector, is_symbolic, is_zero, sparse_known
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -32,9 +32,6 @@ from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, WrenchAt
 
 WORLD_ARGUMENTS = [ARGUMENTS[0], ARGUMENTS[1], *ARGUMENTS[4:]]
 """Arguments of a wrench in world axes."""
-
-ROUNDING = 1e-16
-"""Entry of an arm, over its length, or of a rotation matrix below which it is rounding."""
 
 
 @dataclass(frozen=True)
@@ -74,11 +71,11 @@ class RidingBody:
     @cached_property
     def _rotation(self) -> Matrix:
         """section_R_body, 3×3; zeros of a constant one are not stored."""
-        return _sparse(self.in_section.rotation)
+        return sparse_known(self.in_section.rotation)
 
     def _arm(self, point: Sequence[Scalar]) -> Matrix:
         """A point of the body from the centre of the section, section axes, 3×1, m."""
-        return _sparse(self.in_section.position + self._rotation @ as_matrix(as_vector(point)))
+        return sparse_known(self.in_section.position + self._rotation @ as_matrix(as_vector(point)))
 
     def loads(self, base: RodBase, inputs: Matrix) -> Iterator[RodLoad]:
         """The loads on the body as loads on its section.
@@ -163,7 +160,7 @@ class RidingBody:
         if is_zero(self.body.mass) and is_zero(inertia):
             return None
         given = _Given()
-        origin, rotation = given(_sparse(self.in_section.position)), given(self._rotation)
+        origin, rotation = given(sparse_known(self.in_section.position)), given(self._rotation)
         mass, centre, moments = (given(part) for part in (self.body.mass, as_vector(self.body.centre_of_mass), inertia))
 
         def wrench(section: _Section) -> Sequence[Matrix]:
@@ -248,8 +245,3 @@ def _kernel(
     if energy is None:
         return SectionKernel(of_section, rates=rates)
     return SectionKernel(of_section, ca.Function("energy", arguments, [energy(section)], WORLD_ARGUMENTS, ["energy"]))
-
-
-def _sparse(entries: Matrix) -> Matrix:
-    """Entries without zeros that are known."""
-    return ca.sparsify(entries, ROUNDING) if isinstance(entries, ca.DM) else entries

@@ -19,7 +19,7 @@ from cosserat_casadi.constraints.joint_coordinate import JointEffort
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, sparse_known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -49,9 +49,6 @@ from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench
 
 DRIVE_GROWTH = 6
 """Power of the load factor by which drives of joints move: by turns of them at which their constraints are rigid."""
-
-ROUNDING = 1e-16
-"""Entry of a rotation matrix below which it is rounding."""
 
 
 @dataclass(frozen=True)
@@ -578,9 +575,7 @@ class System:
         for rod in self.discrete.rods:
             rotation = quaternion_to_matrix(self.base(rod).quaternion)
             # Zeros of a constant base, an upright rod's above all, cost no product.
-            if isinstance(rotation, ca.DM):
-                rotation = ca.sparsify(rotation, ROUNDING)
-            rotations[rod] = rotation.T
+            rotations[rod] = sparse_known(rotation).T
         return rotations
 
 

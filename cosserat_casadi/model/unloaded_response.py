@@ -5,7 +5,8 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.numbers import without_rounding
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.load_assembly import nonlinear_inputs
@@ -64,8 +65,8 @@ def unloaded_response(
     if discrete.size:
         response = -np.linalg.solve(jacobian.full(), rates)
     at_origin = response[:, :1]
-    constant = ca.DM(without_noise(at_origin[:, 0]))
-    by_inputs = without_noise(response[:, 1:] - at_origin)
+    constant = ca.DM(without_rounding(at_origin[:, 0], NOISE))
+    by_inputs = without_rounding(response[:, 1:] - at_origin, NOISE)
     return constant + ca.sparsify(ca.DM(by_inputs)) @ deviation
 
 
@@ -83,9 +84,3 @@ def parametric_response(written: Expressions) -> Matrix:
     jacobian, right_side = ca.substitute([equations.jacobian, rate], [x, load_factor], start)
     response: Matrix = -ca.solve(jacobian, right_side, "qr")
     return response
-
-
-def without_noise(values: FloatArray) -> FloatArray:
-    """Values, zero where they are rounding errors, which differ with the number of threads of a BLAS."""
-    largest = float(np.abs(values).max(initial=0.0))
-    return np.where(np.abs(values) < NOISE * largest, 0.0, values)

@@ -28,6 +28,7 @@ from cosserat_casadi.maths.numbers import (
     repeated,
     row_times,
     rows_of,
+    without_rounding,
 )
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -178,7 +179,7 @@ class Statics:
         """Matrix of the integral over X from each node to the tip, shape (M, M)."""
         grid = self.shape.rod.grid
         whole = grid.weights[None, :]
-        return np.asarray(whole - grid.integration_matrix)
+        return without_rounding(whole - grid.integration_matrix)
 
     def _force_covector_of(self, wrenches: Sequence[Wrench]) -> Matrix | None:
         return summed([self._force_covector(w, w.force) for w in wrenches if w.force is not None])
@@ -199,7 +200,7 @@ class Statics:
         profiles = wrench.profiles
         if not any_symbolic([profiles, rod.node_lengths]):
             to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
-            return force @ ca.DM(known(profiles) @ to_covector)
+            return force @ ca.sparsify(ca.DM(without_rounding(known(profiles) @ to_covector)))
         return force @ ca.vertcat(*[self._profile_covector(profile) for profile in rows_of(profiles)])
 
     def _profile_covector(self, profile: Numbers) -> Matrix:

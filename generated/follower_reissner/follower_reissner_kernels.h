@@ -16,7 +16,7 @@ int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, cas
 #define follower_reissner_k_jacobian_SZ_ARG 3
 #define follower_reissner_k_jacobian_SZ_RES 1
 #define follower_reissner_k_jacobian_SZ_IW 0
-#define follower_reissner_k_jacobian_SZ_W 1561
+#define follower_reissner_k_jacobian_SZ_W 1557
 int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_rate_SZ_ARG 5
 #define follower_reissner_k_rate_SZ_RES 1
@@ -36,7 +36,7 @@ int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** re
 #define follower_reissner_k_richer_balance_SZ_ARG 4
 #define follower_reissner_k_richer_balance_SZ_RES 1
 #define follower_reissner_k_richer_balance_SZ_IW 0
-#define follower_reissner_k_richer_balance_SZ_W 909
+#define follower_reissner_k_richer_balance_SZ_W 910
 int follower_reissner_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_watched_SZ_ARG 2
 #define follower_reissner_k_watched_SZ_RES 1

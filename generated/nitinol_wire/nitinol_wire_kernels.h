@@ -11,7 +11,7 @@ int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
 #define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 472
+#define nitinol_wire_k_residual_SZ_W 467
 int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_jacobian_SZ_ARG 3
 #define nitinol_wire_k_jacobian_SZ_RES 1
@@ -21,7 +21,7 @@ int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* 
 #define nitinol_wire_k_rate_SZ_ARG 5
 #define nitinol_wire_k_rate_SZ_RES 1
 #define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 680
+#define nitinol_wire_k_rate_SZ_W 676
 int nitinol_wire_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tangent_SZ_ARG 1
 #define nitinol_wire_k_tangent_SZ_RES 1
@@ -36,7 +36,7 @@ int nitinol_wire_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define nitinol_wire_k_richer_balance_SZ_ARG 4
 #define nitinol_wire_k_richer_balance_SZ_RES 1
 #define nitinol_wire_k_richer_balance_SZ_IW 0
-#define nitinol_wire_k_richer_balance_SZ_W 715
+#define nitinol_wire_k_richer_balance_SZ_W 718
 int nitinol_wire_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_watched_SZ_ARG 2
 #define nitinol_wire_k_watched_SZ_RES 1
@@ -46,7 +46,7 @@ int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* i
 #define nitinol_wire_k_igm_SZ_ARG 4
 #define nitinol_wire_k_igm_SZ_RES 3
 #define nitinol_wire_k_igm_SZ_IW 0
-#define nitinol_wire_k_igm_SZ_W 507
+#define nitinol_wire_k_igm_SZ_W 502
 int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_SZ_ARG 2
 #define nitinol_wire_k_tip_SZ_RES 2

@@ -102,13 +102,13 @@ static void MADE(planar_strip_k_jacobian_columns_0)(const casadi_real *w, const 
   b2 = w[42] * b2;
   b3 = w[43] * b3;
   b8 = b2 + b3;
-  b0 = b5 - b0;
-  b1 = b4 - b1;
-  b2 = b3 - b2;
-  STORE(columns + 0, EACH((-1.0)) * (EACH(C[1]) * b6 + EACH(C[2]) * b7 + EACH(C[3]) * b8));
-  STORE(columns + 4, EACH(C[4]) * b0 + EACH(C[5]) * b1 + EACH(C[6]) * b2);
-  STORE(columns + 8, EACH((-1.0)) * (EACH(C[7]) * b6 + EACH(C[8]) * b7 + EACH(C[9]) * b8));
-  STORE(columns + 12, EACH(C[10]) * b0 + EACH(C[11]) * b1 + EACH(C[12]) * b2);
+  b5 = b0 - b5;
+  b4 = b1 - b4;
+  b3 = b2 - b3;
+  STORE(columns + 0, EACH(C[1]) * b6 + EACH(C[2]) * b7 + EACH(C[3]) * b8);
+  STORE(columns + 4, EACH(C[4]) * b5 + EACH(C[5]) * b4 + EACH(C[4]) * b3);
+  STORE(columns + 8, EACH(C[6]) * b6 + EACH(C[7]) * b7 + EACH(1.5625) * b8);
+  STORE(columns + 12, EACH(C[8]) * b5 + EACH(C[9]) * b4 + EACH(C[10]) * b3);
 }
 
 static void MADE(planar_strip_k_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
@@ -132,12 +132,12 @@ static void MADE(planar_strip_k_tip_jacobian_columns_0)(const casadi_real *w, co
   b4 = w[132] * b0 + w[133] * b1 + w[134] * b2 + w[135] * b3 + w[136] * b4 + w[137] * b5;
   b3 = b5 * w[138] / EACH(2.0);
   b5 = b5 * w[139] / EACH(2.0);
-  STORE(columns + 0, EACH(C[13]) * b6 - b4);
+  STORE(columns + 0, EACH(C[11]) * b6 - b4);
   FILL(columns + 4, 0);
-  STORE(columns + 8, EACH((-1.0)) * (b6 + EACH(C[13]) * b4));
-  STORE(columns + 12, EACH((-1.0)) * (EACH(C[14]) * b3 + EACH(C[15]) * b5));
+  STORE(columns + 8, EACH((-1.0)) * (b6 + EACH(C[11]) * b4));
+  STORE(columns + 12, EACH((-1.0)) * (EACH(C[12]) * b3 + EACH(C[13]) * b5));
   FILL(columns + 16, 0);
-  STORE(columns + 20, EACH(C[14]) * b5 - EACH(C[15]) * b3);
+  STORE(columns + 20, EACH(C[12]) * b5 - EACH(C[13]) * b3);
   FILL(columns + 24, 0);
 }
 

@@ -460,8 +460,8 @@ static void MADE(precurved_tube_k_jacobian_columns_2)(const casadi_real *w, cons
   STORE(passed + 328, b18);
   b15 = EACH(C[12]) * (b14 - b15);
   b15 = EACH(C[13]) * PASSED(272) + EACH(C[14]) * PASSED(276) + EACH(C[15]) * b1 + EACH(C[16]) * (b8 - b9) + EACH(C[17]) * (b11 - b12) + b15;
-  STORE(passed + 332, b15 + EACH(C[18]) * b5);
-  b17 = EACH(C[19]) * b6 + EACH(C[20]) * b7 + EACH(C[21]) * b0 + EACH(C[22]) * b10 + EACH(C[23]) * b13 + EACH(C[24]) * b16 + EACH(C[25]) * b17;
+  STORE(passed + 332, b15 + EACH(C[6]) * b5);
+  b17 = EACH(C[18]) * b6 + EACH(C[19]) * b7 + EACH(C[20]) * b0 + EACH(C[21]) * b10 + EACH(C[22]) * b13 + EACH(C[23]) * b16 + EACH(C[24]) * b17;
   STORE(passed + 336, b17);
   b17 = w[300] * PASSED(204) + w[304] * PASSED(208) + w[308] * PASSED(212) + w[420] * TURN(84) + w[440] * TURN(140);
   b16 = w[458] * PASSED(216) + w[462] * PASSED(220) + w[466] * PASSED(224) + w[578] * TURN(108) + w[598] * TURN(164);
@@ -496,9 +496,9 @@ static void MADE(precurved_tube_k_jacobian_columns_3)(const casadi_real *w, cons
   b9 = w[339] * PASSED(288) + w[343] * PASSED(292) + w[347] * PASSED(296) + w[399] * TURN(12) + w[419] * TURN(68);
   b4 = EACH(C[17]) * (b3 - b4);
   b7 = EACH(C[12]) * (b6 - b7);
-  b6 = EACH(C[18]) * PASSED(312);
-  b3 = EACH(C[24]) * b8;
-  b10 = EACH(C[25]) * b9;
+  b6 = EACH(C[6]) * PASSED(312);
+  b3 = EACH(C[23]) * b8;
+  b10 = EACH(C[24]) * b9;
   b11 = w[312] * PASSED(204) + w[316] * PASSED(208) + w[320] * PASSED(212) + w[424] * TURN(84) + w[432] * TURN(112);
   b12 = w[470] * PASSED(216) + w[474] * PASSED(220) + w[478] * PASSED(224) + w[582] * TURN(108) + w[590] * TURN(136);
   b13 = b11 + b12;
@@ -534,16 +534,16 @@ static void MADE(precurved_tube_k_jacobian_columns_3)(const casadi_real *w, cons
   STORE(columns + 80, b9);
   b6 = EACH(C[13]) * PASSED(300) + EACH(C[14]) * PASSED(304) + EACH(C[15]) * PASSED(308) + EACH(C[16]) * (b0 - b1) + b4 + b7 + b6;
   STORE(columns + 96, b6);
-  b10 = EACH(C[19]) * PASSED(316) + EACH(C[20]) * PASSED(320) + EACH(C[21]) * PASSED(280) + EACH(C[22]) * b2 + EACH(C[23]) * b5 + b3 + b10;
+  b10 = EACH(C[18]) * PASSED(316) + EACH(C[19]) * PASSED(320) + EACH(C[20]) * PASSED(280) + EACH(C[21]) * b2 + EACH(C[22]) * b5 + b3 + b10;
   STORE(columns + 112, b10);
-  STORE(columns + 128, EACH(C[26]) * b13 + EACH(C[27]) * b16 + EACH(C[28]) * b19 + EACH(C[29]) * b20);
-  b10 = EACH(C[30]) * b12 + EACH(C[31]) * b15 + EACH(C[32]) * b18 + EACH(C[33]) * b11 + EACH(C[34]) * b23 + EACH(C[35]) * b26 + EACH(C[36]) * b27;
+  STORE(columns + 128, EACH(C[25]) * b13 + EACH(C[26]) * b16 + EACH(C[27]) * b19 + EACH(C[28]) * b20);
+  b10 = EACH(C[29]) * b12 + EACH(C[30]) * b15 + EACH(C[31]) * b18 + EACH(C[32]) * b11 + EACH(C[33]) * b23 + EACH(C[34]) * b26 + EACH(C[35]) * b27;
   STORE(columns + 144, b10);
-  b10 = EACH(C[37]) * b13 + EACH(C[38]) * b16 + EACH(C[39]) * b19 + EACH(C[40]) * b14 + EACH(C[41]) * b22 + EACH(C[42]) * b25 + EACH(C[43]) * b20;
+  b10 = EACH(C[36]) * b13 + EACH(C[37]) * b16 + EACH(C[38]) * b19 + EACH(C[39]) * b14 + EACH(C[40]) * b22 + EACH(C[41]) * b25 + EACH(C[30]) * b20;
   STORE(columns + 160, b10);
-  b27 = EACH(C[44]) * b12 + EACH(C[45]) * b15 + EACH(C[46]) * b18 + EACH(C[47]) * b11 + EACH(C[48]) * b23 + EACH(C[49]) * b26 + EACH(C[50]) * b27;
+  b27 = EACH(C[42]) * b12 + EACH(C[43]) * b15 + EACH(C[44]) * b18 + EACH(C[45]) * b11 + EACH(C[46]) * b23 + EACH(C[47]) * b26 + EACH(C[48]) * b27;
   STORE(columns + 176, b27);
-  b20 = EACH(C[51]) * b13 + EACH(C[52]) * b16 + EACH(C[53]) * b19 + EACH(C[54]) * b14 + EACH(C[55]) * b22 + EACH(C[56]) * b25 + EACH(C[57]) * b20;
+  b20 = EACH(C[49]) * b13 + EACH(C[50]) * b16 + EACH(C[51]) * b19 + EACH(C[52]) * b14 + EACH(C[53]) * b22 + EACH(C[54]) * b25 + EACH(C[55]) * b20;
   STORE(columns + 192, b20);
 }
 

@@ -56,7 +56,7 @@ int six_rod_platform_k_richer_balance(const casadi_real** arg, casadi_real** res
 #define six_rod_platform_k_richer_balance_SZ_ARG 4
 #define six_rod_platform_k_richer_balance_SZ_RES 1
 #define six_rod_platform_k_richer_balance_SZ_IW 0
-#define six_rod_platform_k_richer_balance_SZ_W 2720
+#define six_rod_platform_k_richer_balance_SZ_W 2730
 int six_rod_platform_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_watched_SZ_ARG 2
 #define six_rod_platform_k_watched_SZ_RES 1

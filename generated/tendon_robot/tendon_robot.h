@@ -180,7 +180,7 @@ typedef struct {
   tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 18 + 11];
   tendon_robot_real watched[11];
   tendon_robot_real watched_after[11];
-  tendon_robot_real kernel_reals[2228];
+  tendon_robot_real kernel_reals[2224];
   int kernel_integers[1];
 } tendon_robot_workspace;
 

@@ -11,17 +11,17 @@ int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define tendon_robot_k_residual_SZ_ARG 3
 #define tendon_robot_k_residual_SZ_RES 1
 #define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 715
+#define tendon_robot_k_residual_SZ_W 712
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_jacobian_SZ_ARG 3
 #define tendon_robot_k_jacobian_SZ_RES 1
 #define tendon_robot_k_jacobian_SZ_IW 0
-#define tendon_robot_k_jacobian_SZ_W 2227
+#define tendon_robot_k_jacobian_SZ_W 2223
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_rate_SZ_ARG 5
 #define tendon_robot_k_rate_SZ_RES 1
 #define tendon_robot_k_rate_SZ_IW 0
-#define tendon_robot_k_rate_SZ_W 916
+#define tendon_robot_k_rate_SZ_W 913
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
@@ -41,32 +41,32 @@ int tendon_robot_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define tendon_robot_k_richer_balance_SZ_ARG 4
 #define tendon_robot_k_richer_balance_SZ_RES 1
 #define tendon_robot_k_richer_balance_SZ_IW 0
-#define tendon_robot_k_richer_balance_SZ_W 1690
+#define tendon_robot_k_richer_balance_SZ_W 1689
 int tendon_robot_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_watched_SZ_ARG 2
 #define tendon_robot_k_watched_SZ_RES 1
 #define tendon_robot_k_watched_SZ_IW 0
-#define tendon_robot_k_watched_SZ_W 248
+#define tendon_robot_k_watched_SZ_W 246
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_igm_SZ_ARG 4
 #define tendon_robot_k_igm_SZ_RES 3
 #define tendon_robot_k_igm_SZ_IW 0
-#define tendon_robot_k_igm_SZ_W 756
+#define tendon_robot_k_igm_SZ_W 750
 int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_SZ_ARG 2
 #define tendon_robot_k_tip_SZ_RES 2
 #define tendon_robot_k_tip_SZ_IW 0
-#define tendon_robot_k_tip_SZ_W 248
+#define tendon_robot_k_tip_SZ_W 246
 int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_tip_jacobian_SZ_ARG 2
 #define tendon_robot_k_tip_jacobian_SZ_RES 2
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
-#define tendon_robot_k_tip_jacobian_SZ_W 928
+#define tendon_robot_k_tip_jacobian_SZ_W 925
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_shape_SZ_ARG 3
 #define tendon_robot_k_shape_SZ_RES 2
 #define tendon_robot_k_shape_SZ_IW 0
-#define tendon_robot_k_shape_SZ_W 264
+#define tendon_robot_k_shape_SZ_W 246
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3

@@ -236,7 +236,8 @@ def test_relaxed_contact_becomes_tight() -> None:
     tight = tightened(contact, held, tolerance=1e-4)
     assert tight.converged, tight.message
     assert smoothings == [1e-2, 1e-3, 1e-4]
-    assert near.contacts[0].start in tight.p[0]
+    # Sections are moved as often as they do not agree: what is left is rounding.
+    assert np.abs(tight.p[0] - near.contacts[0].start).min() < 1e-14
     assert pose_distance(tight.equilibria[0], near) < 1e-9
     last = contact.solution(tight.z[0], AT_EDGE, tight.p[0])
     np.testing.assert_allclose(tight.difference, pose_distance(last, near), rtol=1e-3, atol=0)
