@@ -9,6 +9,7 @@ import shlex
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 from collections.abc import Collection, Mapping, Sequence
@@ -33,7 +34,10 @@ from cosserat_casadi.numerics.progress import StageProgress
 
 LOG = logging.getLogger(__name__)
 
-REMEDY = "install gcc or clang, or name one in the environment variable CC"
+REMEDY = "install gcc or clang, or pip install ziglang, or name one in the environment variable CC"
+
+COMPILERS = ("cc", "gcc", "clang", "python-zig cc")
+"""Commands that are looked for, in this order; the last is that of the package ziglang of PyPI."""
 
 EXPORT_ANEW = "export the folder anew"
 """Remedy where files of a folder are missing, of another version, or do not belong together."""
@@ -169,11 +173,13 @@ def find_compiler(wanted: str | None = None) -> str:
 @lru_cache(maxsize=16)
 def _found(asked: str, path: str | None) -> str:
     """The command, looked for on a path of folders once in a process: every motion asks."""
-    for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
+    # What pip installs lies beside the interpreter, whose folder is on no path unless its environment is activated.
+    folders = os.pathsep.join([path or os.defpath, str(Path(sys.executable).parent)])
+    for candidate in [asked] if asked else COMPILERS:
         # A path may hold blanks: what is a program as it stands is no command.
-        whole = shutil.which(candidate, path=path)
+        whole = shutil.which(candidate, path=folders)
         words = [candidate] if whole else _words(candidate)
-        program = shutil.which(words[0], path=path)
+        program = shutil.which(words[0], path=folders)
         if program:
             return shlex.join([program, *words[1:]])
     problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"

@@ -67,7 +67,7 @@ def compiled_motion_stage(
         name: what the functions begin with, a C identifier.
         curvature: as in :func:`compiled_stage`: whether second derivatives are exact. Those of the equations of motion
             have several hundred times as many instructions as the equations: for models of a few unknowns.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang, python-zig.
         progress: as in :func:`compiled_stage`.
 
     Raises:

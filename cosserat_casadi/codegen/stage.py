@@ -58,7 +58,7 @@ def compiled_stage(
             exact ones: without them a solver may take it for infeasible.
         sections: abscissae X in [0, 1] of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted, for a tendon its tension and its length.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang, python-zig.
         progress: told the function or file under way, the number of finished ones, and of all; not called if all
             files are compiled.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sys
 from collections.abc import Iterator
@@ -17,7 +18,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Compiled, ExportError, Model, Scene, SceneError, build, discretise, export, load, solve
 from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.cache import cache_folder, file_name
-from cosserat_casadi.codegen.compiler import FLAGS
+from cosserat_casadi.codegen.compiler import FLAGS, find_compiler
 from cosserat_casadi.codegen.manifest import MANIFEST
 from tests.scenes import WEIGHT, push, scene
 
@@ -266,7 +267,7 @@ def refusal(folder: Path, compiler: str | None = None) -> tuple[str, str, str]:
 def test_no_compiler(strip: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CC")
-    remedy = "install gcc or clang, or name one in the environment variable CC"
+    remedy = "install gcc or clang, or pip install ziglang, or name one in the environment variable CC"
     assert refusal(strip) == ("compiler", "there is no C compiler on the path", remedy)
     assert refusal(strip, "mycc") == ("compiler", "mycc is not a program", remedy)
     monkeypatch.setenv("CC", "theircc")
@@ -278,6 +279,22 @@ def program(path: Path, text: str) -> str:
     path.write_text(text)
     path.chmod(0o755)
     return str(path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for the compiler")
+def test_a_compiler_that_pip_installs_is_found_beside_the_interpreter(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "path").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "path"))
+    monkeypatch.delenv("CC")
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    zig = program(tmp_path / "python-zig", "#!/bin/sh\n")
+    assert find_compiler() == f"{zig} cc"
+    # One on the path comes first.
+    clang = program(tmp_path / "path" / "clang", "#!/bin/sh\n")
+    monkeypatch.setenv("PATH", f"{tmp_path / 'path'}{os.pathsep}")
+    assert find_compiler() == clang
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for the compiler")
