@@ -71,17 +71,24 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         yield from _disk_contact(solution, layer)
         return
     length = solution.model.length(layer.rod, solution.inputs)
-    gaps = _gaps(solution, layer, DENSE)
+    looked_at = _looked_at(solution, layer)
+    gaps = _gaps(solution, layer, looked_at)
     width = layer.obstacle.width
     for part in runs(gaps < width):
-        start = _crossing(gaps - width, part.start - 1, part.start)
-        end = _crossing(gaps - width, part.stop - 1, part.stop)
+        start = _crossing(looked_at, gaps - width, part.start - 1, part.start)
+        end = _crossing(looked_at, gaps - width, part.stop - 1, part.stop)
         X, weights = _summed_at(solution, layer, start, end)
         per_length = pressure(layer, _gaps(solution, layer, X))
         along = normals(solution, layer.rod, layer.obstacle, X)
         force = length * ((weights * per_length) @ along)
         force += friction_between(solution.model, layer, solution.x, solution.inputs, (start, end))
         yield Contact(layer.obstacle.name, layer.rod, start, end, force, (), "smooth", width, float(gaps[part].min()))
+
+
+def _looked_at(solution: Solution, layer: ContactLayer) -> FloatArray:
+    """Abscissae at which gaps tell the stretches that are pressed, rising; those where the equations sum among them."""
+    sections = solution.model.discrete.closer_sections.get(layer.name or "")
+    return DENSE if sections is None else np.union1d(DENSE, known(sections.placed.X))
 
 
 def _summed_at(solution: Solution, layer: ContactLayer, start: float, end: float) -> tuple[FloatArray, FloatArray]:
@@ -131,11 +138,11 @@ def _gaps(solution: Solution, layer: ContactLayer, X: FloatArray) -> FloatArray:
     return relative * solution.model.discrete.rods[layer.rod].properties.length
 
 
-def _crossing(values: FloatArray, before: int, after: int) -> float:
-    """Abscissa between two neighbours of :data:`DENSE` at which values change sign; the end of the rod beyond it."""
+def _crossing(X: FloatArray, values: FloatArray, before: int, after: int) -> float:
+    """Abscissa between two neighbours of those looked at, at which values change sign; the last one beyond an end."""
     if before < 0:
-        return float(DENSE[0])
+        return float(X[0])
     if after >= len(values):
-        return float(DENSE[-1])
+        return float(X[-1])
     share = values[before] / (values[before] - values[after])
-    return float(DENSE[before] + share * (DENSE[after] - DENSE[before]))
+    return float(X[before] + share * (X[after] - X[before]))

@@ -24,6 +24,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
+from cosserat_casadi.motion.contact_checks import RUBS_IN_C
 from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.section_pairs import SECTIONS, TouchingPairs
 from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
@@ -333,8 +334,8 @@ def motion_stage(
         sections: stretches of a rod, at whose ends it may touch an obstacle without a width.
 
     Raises:
-        SceneError: a rod has no mass, the duration is not positive, or the method does not suit the constraints, or
-            exact contact.
+        SceneError: a rod has no mass, the duration is not positive, the method does not suit the constraints, or
+            exact contact, or that contact has friction.
     """
     exact = model.scene.touches_exactly
     chosen = method or radau(1 if exact else STAGES)
@@ -347,6 +348,9 @@ def motion_stage(
     if exact and not (chosen.stages == 1 and chosen.stiffly_accurate):
         what = f"{chosen.name} throws back what meets an obstacle without restitution"
         problems.append(Problem("method", what, "take radau(1), or give each obstacle a width, m"))
+    if model.scene.rubs_exactly:
+        remedy = "give each obstacle a width, m, for a contact that is smooth; or leave friction out"
+        problems.append(Problem("obstacles", RUBS_IN_C, remedy))
     if sections < 1:
         problems.append(Problem("sections", f"must be 1 or more, got {sections}", f"take {SECTIONS}"))
     refuse(problems)

@@ -31,6 +31,10 @@ CLOSER = 17
 """Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
 
 
+RUBS_IN_C = "friction of exact contact acts in steps of motions in C alone"
+"""The problem of other motions of scenes that rub on obstacles without a width."""
+
+
 def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem]:
     """Problems of a scene with exact contact in motion: settings and members that are refused beside it.
 
@@ -42,8 +46,7 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     if simulation is not None and model.scene.rubs_exactly:
-        what = "friction of exact contact acts in steps of motions in C alone"
-        yield Problem("obstacles", what, f"export with --dynamics, or {remedy}; or leave friction out")
+        yield Problem("obstacles", RUBS_IN_C, f"export with --dynamics, or {remedy}; or leave friction out")
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]

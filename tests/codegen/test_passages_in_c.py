@@ -301,11 +301,14 @@ def test_rods_that_an_input_lengthens_pass_no_rod_between_sections(tmp_path: Pat
 ABOVE, BEHIND = np.array([0.0, 0.0, -0.1]), np.array([0.0, 0.0, -0.25])
 """Pushes under which the tip is above the wire, and under which it would be below without it."""
 
+RUBBING = THIN + "friction = 0.1\n"
+"""A wire that presses nodes, as what rubs does: between them a rod sinks in, and its loads stall."""
+
 
 @pytest.fixture(scope="module")
 def barred(export_recipe: ExportRecipe) -> Exported:
     """A rod above a wire, thinner than the steps of the load are long."""
-    return export_recipe("barred", TextRecipe(PUSHED + ROD + PUSH + THIN), estimates=False)
+    return export_recipe("barred", TextRecipe(PUSHED + ROD + PUSH + RUBBING), estimates=False)
 
 
 def height(made: Exported, x: FloatArray, inputs: FloatArray) -> float:
@@ -319,6 +322,17 @@ def test_without_the_wire_the_rod_comes_to_its_other_side() -> None:
         found = solve(model, {"push.force": push}, estimate_error=False)
         assert found.converged
         assert (found.tip().position[2] < -0.1) == behind
+
+
+def test_a_wire_that_presses_between_nodes_holds_the_rod() -> None:
+    """Its stretch is shorter than sections are apart at which contacts are looked for: no contact was told."""
+    pressed = solve(TextRecipe(PUSHED + ROD + PUSH + THIN).model(), {"push.force": BEHIND}, estimate_error=False)
+    assert pressed.converged
+    (wire,) = pressed.contacts
+    assert wire.end - wire.start < 1e-3
+    assert_allclose(wire.force + pressed.base_wrench().force, -BEHIND, rtol=0, atol=1e-12)
+    # It lies on the wire, whose axis is at 0.9 and −0.1.
+    assert pressed.pose(wire.start).position[2] > -0.1
 
 
 def test_no_solve_leads_through_a_wire(barred: Exported) -> None:
@@ -374,7 +388,7 @@ def test_no_turn_leads_through_a_wire(barred: Exported) -> None:
 
 @pytest.mark.parametrize("lanes", mostly_slow([False, True], quick=[True]), ids=["one by one", "side by side"])
 def test_no_row_leads_through_a_wire(lanes: bool) -> None:
-    model = TextRecipe(PUSHED + ROD + PUSH + THIN).model()
+    model = TextRecipe(PUSHED + ROD + PUSH + RUBBING).model()
     library = row_library(model, lanes=lanes)
     assert library.in_lanes == lanes
     found = library.solve(np.array([ABOVE, BEHIND]))
