@@ -73,7 +73,7 @@ class StepContact:
         place: abscissa X of the section; 0 of a body.
         force: on it along the normal of the obstacle, mean of the last stretch of the step, N.
         friction: on it along the surface, at the end of the step, world axes, shape (3,), N.
-        slips: whether it slips at the end of the step; else it sticks, where the obstacle has friction.
+        slips: whether it slips at the end of the step, as all does without friction; else it sticks.
     """
 
     owner: str

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, scene_from_dict, simulate
+from cosserat_casadi import build, follow, modes_of, scene_from_dict, simulate, solve
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
+from cosserat_casadi.control import motion_stage
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
@@ -258,5 +259,31 @@ def compare_with_differences(
 def test_friction_of_exact_contact_is_refused_where_it_does_not_act() -> None:
     with pytest.raises(SceneError, match="acts in steps of motions in C alone"):
         simulate(build(scene_from_dict(block(0.3)), moving=True))
+    with pytest.raises(SceneError, match="acts in steps of motions in C alone"):
+        motion_stage(build(scene_from_dict(block(0.3)), moving=True), 1e-3)
     with pytest.raises(SceneError, match="is of a contact that is smooth"):
         scene_from_dict(block(0.3, slip_speed=1e-3))
+
+
+@pytest.mark.parametrize("fixed", [{"modes": 3, "nodes": 12}, pytest.param({}, marks=pytest.mark.slow)])
+def test_equilibria_modes_and_paths_say_that_they_leave_friction_out(fixed: dict[str, Any]) -> None:
+    left_out = "Friction of exact contact acts in steps of motions in C alone, and is left out."
+    for friction, says in ((0.3, True), (0.0, False)):
+        wanted = scene_from_dict(scene(floor(-0.02, friction=friction), accuracy={"tolerance": 1e-3, **fixed}))
+        resting = solve(wanted)
+        assert resting.contacts
+        path = follow(wanted, "weight.acceleration", [0.0, 0.0, -9.0])
+        for message in (resting.message, solve(build(wanted)).message, modes_of(wanted, count=1).message, path.message):
+            assert (left_out in message) == says
+            assert message.count("is left out") == says
+
+
+@pytest.mark.slow
+def test_what_presses_without_friction_slips(tmp_path: Path) -> None:
+    """A rod on a floor that does not rub, beside a ball that does."""
+    tables = scene(floor(-0.02), obstacles=[floor(-0.02), BALL | {"centre": [0.2, 0, -0.5], "friction": 0.3}])
+    made = Moving(tables, tmp_path)
+    memory = made.compiled.step_memory()
+    made.steps(1e-3, 200, memory)
+    contacts = made.compiled.step_contacts(memory)
+    assert contacts and all(contact.slips and not contact.friction.any() for contact in contacts)
