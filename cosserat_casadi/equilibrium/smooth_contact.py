@@ -86,7 +86,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
 
 
 def _looked_at(solution: Solution, layer: ContactLayer) -> FloatArray:
-    """Abscissae at which gaps tell the stretches that are pressed, rising; those where the equations sum among them."""
+    """Rising abscissae at which gaps are looked at, shape (k,); sections at which the equations sum are among them."""
     sections = solution.model.discrete.closer_sections.get(layer.name or "")
     return DENSE if sections is None else np.union1d(DENSE, known(sections.placed.X))
 
@@ -139,7 +139,7 @@ def _gaps(solution: Solution, layer: ContactLayer, X: FloatArray) -> FloatArray:
 
 
 def _crossing(X: FloatArray, values: FloatArray, before: int, after: int) -> float:
-    """Abscissa between two neighbours of those looked at, at which values change sign; the last one beyond an end."""
+    """Abscissa between two neighbours of X at which values change sign; the end of the rod beyond it."""
     if before < 0:
         return float(X[0])
     if after >= len(values):
