@@ -223,6 +223,33 @@ def test_rods_that_join_and_two_obstacles_at_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("friction", [None, 1e-9])
+def test_blows_at_once_on_rods_of_other_stiffness_keep_energy(friction: float | None, tmp_path: Path) -> None:
+    # Restitution gives back all that both balls take: velocities of both gaps turn round.
+    more = {"restitution": 1.0} | ({"friction": friction} if friction else {})
+    balls = [
+        BALL | {"name": own, "centre": [place, 0, -0.05], "rods": [own], **more}
+        for own, place in (("rod", 0.3), ("second", 0.5))
+    ]
+    undamped = {"damping": {"retardation_time": 1e-12}}
+    free = rod(base={"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}, **undamped)
+    stiff = {"stiffness": {"bending_y": 5.0}, **undamped}
+    second = rod(name="second", length=0.2, base={"rod": "rod", "at": 1.0}, **stiff)
+    tables = scene(BALL, accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-4})
+    made = Moving(tables | {"obstacles": balls, "rods": [free, second]}, tmp_path)
+    falls = np.sqrt(2 * 0.02 / 9.81)
+    memory, states = made.compiled.step_memory(), [made.compiled.contact_start()]
+    # The beams ring from the blow on: a step after it is short.
+    for dt in (falls - 1e-6, 2e-6):
+        step = made.compiled.step(states[-1], dt, made.model.pack(), memory=memory)
+        assert step.done
+        states.append(step.state)
+    falling = 0.2 * 0.6 * 9.81 * 0.02
+    assert_allclose(made.energies(states), made.energies(states[:1])[0], rtol=0, atol=1e-6 * falling)
+    assert np.abs(states[-1].v - states[-2].v).max() > 0.1
+
+
+@pytest.mark.slow
 def test_the_ball_of_a_body_bounces_on_a_floor_as_in_python(tmp_path: Path) -> None:
     head = {
         "bodies": [{"name": "head", "mass": 0.05, "radius": 0.02}],

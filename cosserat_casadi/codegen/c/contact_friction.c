@@ -22,10 +22,27 @@ static const real YIELDING = (real)1e-9;
 /* Cosine of the axis of the tangents to the normal from which on another one is taken. */
 static const real UPRIGHT = (real)0.9;
 
+/* Way in a stretch, over the length, up to which what slides at its start counts as at rest. */
+static const real STANDS = (real)1e-8;
+
+/* Where a stretch ends as something comes to rest or turns back: share of the time to that of a first guess, what is added
+   to a second one so that it is reached, and share of a part of a step that is not made shorter for it. */
+static const real MOST_OF_A_TURN = (real)0.9;
+static const real BEYOND_TURN = (real)1e-6;
+static const real LEAST_OF_A_TURN = (real)1e-4;
+
+/* The search for such an end: size of a stretch in which something turned, 0 before there is one; whether the size at hand
+   is such that it just does. */
+typedef struct {
+  real turned_after;
+  int is_aimed;
+} turn_search;
+
 enum {
   ROWS = 3,         /* of what touches: along the normal, and along both tangents */
   LAW_TURNS = 60,   /* iterations of the law */
   HALVINGS = 8,     /* of a step of these */
+  TURNS = 6,        /* looks for the end of a stretch at which something comes to rest */
   FAINTER = 8       /* halvings of the restitution of a blow that would give energy */
 };
 
@@ -379,6 +396,77 @@ static void note_friction(int k, const section_gap *gap, workspace *work) {
   }
 }
 
+/* ---- Turns ---- */
+
+/* Notes how what touches slides at the start of a stretch, after its blows. */
+static void note_starts(const real *x, const real *v, const real *inputs, const real *rates, workspace *work) {
+  instant *at = &work->at;
+  memcpy(at->state, x, N * sizeof *x);
+  memcpy(at->state + N, v, N * sizeof *v);
+  memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
+  memcpy(at->inputs + INPUTS, rates, INPUTS * sizeof *rates);
+  for (int k = 0; k < work->touch_count; k++) {
+    section_gap gap;
+    if (!rubs(work->touches + k)) continue;
+    follow_touch(work->touches + k, work->touches[k].place, at->state, at->inputs, &gap, work);
+    note_slide(k, &gap, at->state, at->inputs, work);
+    memcpy(work->start_slides[k], work->slides[k], sizeof work->start_slides[k]);
+  }
+}
+
+/* Shares of the speed at the start with which a section slides on in its direction at the stages, zero where it sticks. Zero
+   where it does not press, or does not slide at the start. */
+static int goes_on(int k, real size, real shares[STAGES], const workspace *work) {
+  const touch *own = work->touches + k;
+  const real *start = work->start_slides[k];
+  const real square = inner_of_two(start, start);
+  if (!own->presses || !rubs(own) || !(SQUARE_ROOT(square) * size > STANDS)) return 0;
+  for (int stage = 0; stage < STAGES; stage++) {
+    shares[stage] = own->slips[stage] ? inner_of_two(start, work->stage_slides[stage][k]) / square : 0;
+  }
+  return 1;
+}
+
+/* The share of a stretch, above one, after which the speed of the polynomial with these shares at the stages is zero; as much
+   as most where it is not by then. */
+static real stops_after(const real shares[STAGES], real most) {
+  /* Quotients of differences over 0, 1/3 and 1. */
+  const real first = (shares[0] - 1) / STAGE_NODES[0];
+  const real second = ((shares[1] - shares[0]) / (1 - STAGE_NODES[0]) - first);
+  const real slope = first - second * STAGE_NODES[0];
+  const real root = slope * slope - 4 * second;
+  /* Of both roots the first above zero. */
+  const real stops = root >= 0 && slope < SQUARE_ROOT(root) ? 2 / (SQUARE_ROOT(root) - slope) : most;
+  return stops > 1 ? (stops < most ? stops : most) : 1;
+}
+
+/* By how much the size of a stretch that was solved is to change so that it ends where a section comes to rest or turns
+   back, which is where the law changes: 1 where nothing does, or where it ends there. First it is made shorter until all
+   slides on, then it is as long as that motion lasts. */
+static real to_the_turn(const step_start *start, real whole, turn_search *search, workspace *work) {
+  int turned = 0;
+  real shorter = MOST_OF_A_TURN, stops = search->turned_after / start->size;
+  for (int k = 0; k < work->touch_count; k++) {
+    real shares[STAGES];
+    if (!goes_on(k, start->size, shares, work)) continue;
+    if (shares[0] > 0 && shares[1] > 0) {
+      if (search->turned_after > 0) stops = stops_after(shares, stops);
+      continue;
+    }
+    turned = 1;
+    const real lasts = shares[0] > 0 && shares[0] < 1 ? STAGE_NODES[0] / (1 - shares[0]) : STAGE_NODES[0];
+    if (MOST_OF_A_TURN * lasts < shorter) shorter = MOST_OF_A_TURN * lasts;
+  }
+  if (!turned) {
+    if (!(search->turned_after > 0)) return 1;
+    search->is_aimed = 1;
+    return stops * (1 + BEYOND_TURN);
+  }
+  if (search->is_aimed || start->size * shorter < LEAST_OF_A_TURN * whole) return 1;
+  search->turned_after = start->size;
+  return shorter;
+}
+
 /* ---- In blows ---- */
 
 /* Impulses of a blow: which of those that touch are struck is tried, from those without friction. */
@@ -429,18 +517,20 @@ static int settle_blow(const real *wanted, real still, workspace *work) {
   return 0;
 }
 
-/* Work of the impulses of a blow, over a unit of energy: half of that on the velocities before and after. */
-static real work_of_blow(workspace *work) {
+/* Whether the impulses of a blow give energy, more than rounding: their work is that on the mean velocity. */
+static int gives_energy(const workspace *work) {
   const int all = ROWS * work->touch_count;
-  real sum = 0;
+  real sum = 0, terms = 0;
   for (int i = 0; i < all; i++) {
     const facing *faces = FACING + work->touches[i / ROWS].facing;
     const real before = i % ROWS == 0 ? work->rates[i / ROWS] : work->slides[i / ROWS][i % ROWS - 1];
     real change = 0;
     for (int j = 0; j < all; j++) change += work->complex_answers[0][j * all + i] * work->blow[j];
-    sum += faces->force_unit * faces->length * work->blow[i] * (before + change / 2);
+    const real push = faces->force_unit * faces->length * work->blow[i];
+    sum += push * (before + change / 2);
+    terms += ABSOLUTE(push * before) + ABSOLUTE(push * change);
   }
-  return sum;
+  return sum > LAW_HOLDS * terms;
 }
 
 /* A blow with friction: Newton's law of impact along normals, Coulomb's along tangents, of velocities after it. With friction
@@ -457,16 +547,14 @@ static int strike_with_friction(instant *at, real still, const stage_factors *fa
   }
   for (int j = 0; j < all; j++) {
     for (int i = 0; i < all; i++) {
-      work->complex_answers[0][j * all + i] =
-          (dot(row_of(i / ROWS, i % ROWS, work), response_of(j / ROWS, j % ROWS, work)) +
-           dot(row_of(j / ROWS, j % ROWS, work), response_of(i / ROWS, i % ROWS, work))) / 2;
+      work->complex_answers[0][j * all + i] = dot(row_of(i / ROWS, i % ROWS, work), response_of(j / ROWS, j % ROWS, work));
     }
   }
   real share = 1;
   for (int fainter = 0; fainter <= FAINTER + 1; fainter++) {
     for (int k = 0; k < count; k++) work->wanted[k] = share * wanted_of(k, still, work) + (1 - share) * work->rates[k];
     if (!settle_blow(work->wanted, still, work)) return 0;
-    if (work_of_blow(work) <= 0 || share == 0) break;
+    if (!gives_energy(work) || share == 0) break;
     share = fainter < FAINTER ? share / 2 : 0;
   }
   for (int j = 0; j < all; j++) {

@@ -169,15 +169,12 @@ static void respond_to(const real *row, const stage_factors *factors, real *resp
   for (int i = 0; i < N; i++) response[i] = IS_SHAPE[i] ? work->stage_solution[i] : 0;
 }
 
-/* The same of all gaps, and by how much gaps open then. */
+/* The same of all gaps, and by how much gaps open then. Of rods with other units of energy one answers more than the other. */
 static void respond(const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
-  for (int k = 0; k < count; k++) respond_to(work->gradients[k], factors, work->responses[k], work);
   for (int j = 0; j < count; j++) {
-    for (int k = 0; k < count; k++) {
-      work->compliance[j * count + k] =
-          (dot(work->gradients[j], work->responses[k]) + dot(work->gradients[k], work->responses[j])) / 2;
-    }
+    respond_to(work->gradients[j], factors, work->responses[j], work);
+    for (int k = 0; k < count; k++) work->compliance[j * count + k] = dot(work->gradients[k], work->responses[j]);
   }
 }
 
@@ -474,20 +471,14 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
   if (holds) return 1;
   for (int j = 0; j < count; j++) {
     for (int k = 0; k < count; k++) {
-      const real share = work->answers[0][j * count + k];
-      const real share_imaginary = work->answers[1][j * count + k];
+      const real share = work->answers[0][k * count + j];
+      const real share_imaginary = work->answers[1][k * count + j];
       work->compliance[j * count + k] = FROM_EIGENVECTOR[1][0] * (whole * share - imaginary * share_imaginary) -
                                         FROM_EIGENVECTOR[1][1] * (whole * share_imaginary + imaginary * share);
     }
   }
   for (int j = 0; j < count; j++) {
     wanted[j] = work->touches[j].gap;
-    for (int k = 0; k < j; k++) {
-      const real mean = (work->compliance[j * count + k] + work->compliance[k * count + j]) / 2;
-      work->compliance[j * count + k] = work->compliance[k * count + j] = mean;
-    }
-  }
-  for (int j = 0; j < count; j++) {
     for (int k = 0; k < count; k++) wanted[j] -= work->compliance[k * count + j] * work->touches[k].force;
   }
   if (!least_pushes(work->compliance, wanted, count, GAP_OPEN / 10, work->pushes, work)) return -1;
@@ -758,6 +749,10 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
     start.inputs_rate = work->stretch_rates;
     if (cut > 0) guess_stages(0, 1, &work->end, unknowns);
     if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
+#ifdef CONTACT_RUBS
+    turn_search search = {0, 0};
+    note_starts(work->end.x, work->end.v, work->stretch_inputs, work->stretch_rates, work);
+#endif
     for (int tries = 0;; tries++) {
       const solver_motion_status status = solve_stretch(&start, options, unknowns, memory, work, info);
       if (status != SOLVER_MOTION_DONE && work->touch_count > 0 && tries < SETS) {
@@ -770,6 +765,9 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
       if (status != SOLVER_MOTION_DONE) return status;
       share = first_blow(&start, unknowns, work);
       if (!(share > 0) || tries == SETS) return SOLVER_MOTION_NOT_SOLVED;
+#ifdef CONTACT_RUBS
+      if (share == 1 && tries < TURNS) share = to_the_turn(&start, whole->size, &search, work);
+#endif
       if (share == 1) break;
       work->was_cut = 1;
       start.size *= share;
