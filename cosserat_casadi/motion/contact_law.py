@@ -182,7 +182,7 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
     """Forces f of constraints that open at rates q + W f: f ≥ 0, q + W f ≥ 0, one of both zero, shape (m,).
 
     Args:
-        compliance: W, symmetric and positive semidefinite, shape (m, m).
+        compliance: W, symmetric and positive semidefinite but for units of the forces, shape (m, m).
         rates: q, shape (m,).
         tolerance: rate below zero that counts as none.
 
@@ -193,7 +193,8 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
     forces = np.zeros(count)
     if not count:
         return forces
-    given = [np.ascontiguousarray(values, dtype=float) for values in (compliance, rates)]
+    # C reads matrices column after column.
+    given = [np.asfortranarray(values, dtype=float) for values in (compliance, rates)]
     room, integers = np.zeros(2 * count * (count + 1)), np.zeros(3 * count, dtype=np.intc)
     at, of_rates = (values.ctypes.data for values in given)
     results = [values.ctypes.data for values in (forces, room, integers)]

@@ -63,8 +63,8 @@ static void leave_active(int *active, int *active_count, int which) {
   *active_count -= 1;
 }
 
-/* Forces f >= 0 of constraints that open by q + W f >= 0, one of both zero; W is symmetric and positive semidefinite. Zero
-   where rounding keeps them from settling.
+/* Forces f >= 0 of constraints that open by q + W f >= 0, one of both zero; W, column after column, is symmetric and
+   positive semidefinite but for units of the forces. Zero where rounding keeps them from settling.
 
    A constraint that closes is made active, the fastest first, and leaves again where it would pull: the method of least
    squares with non-negative unknowns, which does not run in circles (C. L. Lawson, R. J. Hanson, Solving Least Squares
@@ -114,7 +114,7 @@ static int least_pushes(const real *compliance, const real *rates, int count, re
     for (int i = 0; i < active_count; i++) values[i] = -w[fastest * count + active[i]];
     if (!solve_active(w, count, active, active_count, values, work)) return 0;
     real left = w[fastest * count + fastest];
-    for (int i = 0; i < active_count; i++) left += w[fastest * count + active[i]] * values[i];
+    for (int i = 0; i < active_count; i++) left += w[active[i] * count + fastest] * values[i];
     if (left < DEPENDENT) {
       int falling = -1;
       real lasts = 0;
