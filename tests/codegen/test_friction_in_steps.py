@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.control import motion_stage
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_sections import facings
 from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
 
 G = 9.81
@@ -170,34 +171,37 @@ ACROSS = {"along": 0.2, "back": 0.5, "across": 0.35}
 
 @pytest.mark.slow
 def test_a_round_rod_slides_askew_or_rolls(tmp_path: Path) -> None:
-    radius, density, inertia = 0.002, 0.2, 2e-7
-    record = rod(
-        base=FREE,
-        strain="kirchhoff",
-        stiffness=dict.fromkeys(IN_SPACE, 0.5),
-        linear_density=density,
-        rotary_inertia=[1e-7, 1e-7, inertia],
-        radius=radius,
-    )
+    radius = 0.002
+    record = {
+        "name": "rod",
+        "length": LENGTH,
+        "strain": "kirchhoff",
+        "material": {"youngs_modulus": 2e15, "poisson_ratio": 0.3, "density": 8e3},
+        "section": {"shape": "circle", "radius": radius},
+        "base": FREE,
+    }
     floors = floor(-radius, friction=ACROSS)
     made = Moving(scene(floors, record, accuracy=SMALL, inputs=["weight.acceleration"]), tmp_path)
     dt, count = 1e-3, 20
     # A force across the rod moves the point that touches by the turn of the rod, too.
-    yields = np.array([1.0, 1.0 + density * radius**2 / inertia])
+    yields = np.array([1.0, 3.0])
     for pull, along in (([8.0, 8.0], "along"), ([-8.0, 6.0], "back"), ([0.0, 3.0], "along")):
         coefficients = np.array([ACROSS[along], ACROSS["across"]])
         memory = made.compiled.step_memory()
         states = run(made, made.compiled.contact_start(), memory, dt, np.tile([*pull, -G], (count, 1)))
-        gone = (made.tips(states)[-1] - made.tips(states)[0])[:2] * LENGTH
+        # The middle: friction below it presses on the front more, which turns the rod.
+        (facing,) = facings(made.model)
+        began, ended = (facing.nodes(states[k].x, made.model.pack()).mean(axis=0) for k in (0, -1))
+        gone = (ended - began)[:2]
         rubs = np.array(pull) - 2.0 * gone / (dt * count) ** 2
         slides = np.array(pull) - yields * rubs
         slips = pull[0] != 0.0
         assert all(contact.slips == slips for contact in made.compiled.step_contacts(memory))
         if slips:
             assert np.sign(slides[0]) == (1.0 if along == "along" else -1.0)
-            assert_allclose(rubs, G * coefficients * slides / np.linalg.norm(slides), rtol=1e-6, atol=0)
+            assert_allclose(rubs, G * coefficients * slides / np.linalg.norm(slides), rtol=1e-4, atol=0)
         else:
-            assert_allclose(slides, 0.0, rtol=0, atol=1e-6)
+            assert_allclose(slides, 0.0, rtol=0, atol=1e-5)
 
 
 @pytest.mark.slow
