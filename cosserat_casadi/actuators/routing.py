@@ -16,6 +16,7 @@ from cosserat_casadi.maths.numbers import (
     any_symbolic,
     as_matrix,
     as_vector,
+    is_same,
     is_symbolic,
     known,
     power_table,
@@ -39,7 +40,7 @@ def holes(actuator: Any) -> tuple[Scalar, ...] | None:
     if inside is None:
         return None
     start, end = actuator.span
-    return (start, *(at for at in inside if at not in (start, end)), end)
+    return (start, *(at for at in inside if not (is_same(at, start) or is_same(at, end))), end)
 
 
 def drawn_places(actuator: Any, samples: FloatArray) -> FloatArray:

@@ -26,6 +26,7 @@ from cosserat_casadi.maths.numbers import (
     any_symbolic,
     as_matrix,
     as_vector,
+    is_same,
     is_symbolic,
     known,
     legendre_table,
@@ -231,11 +232,7 @@ class Grid:
     def _end_number(self, abscissa: Scalar) -> int:
         """Place of an element end among all: an expression is found as that which the grid was given."""
         for number, place in enumerate(self.places):
-            if is_symbolic(place) or is_symbolic(abscissa):
-                same = is_symbolic(place) and is_symbolic(abscissa) and ca.is_equal(place, abscissa)
-            else:
-                same = place == abscissa
-            if same:
+            if is_same(place, abscissa):
                 return number
         raise ValueError(f"no element ends at {abscissa}")
 

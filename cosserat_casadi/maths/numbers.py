@@ -40,6 +40,13 @@ def is_symbolic(value: object) -> TypeIs[Matrix]:
     return isinstance(value, ca.MX)
 
 
+def is_same(one: Scalar, other: Scalar) -> bool:
+    """Whether two numbers are one: an expression is that which it is written as, and no number."""
+    if is_symbolic(one) or is_symbolic(other):
+        return is_symbolic(one) and is_symbolic(other) and bool(ca.is_equal(one, other))
+    return bool(one == other)
+
+
 def any_symbolic(values: Iterable[object]) -> bool:
     """Whether there is an expression among values, or in a sequence among them."""
     for value in values:

@@ -184,14 +184,22 @@ class DiscreteScene:
         """Poses of rods where nothing acts, by the scene's own numbers."""
         return UnloadedScene(self.scene, self.rods)
 
-    def moves_unloaded(self, rod: str) -> bool:
-        """Whether an expression of parameters places the unloaded rod, or one that carries it."""
+    def carrier_moves(self, rod: str) -> bool:
+        """Whether an expression of parameters moves what carries an unloaded rod: a section of another, or a body."""
+        base = self.records[rod].base
+        if rod in self.scene.jointed_bases and rod not in self.scene.base_joints:
+            # A body is where its joints have it, which are where rods are that may hold other bodies.
+            places = [entry for joint in self.scene.joints for entry in (joint.position, joint.quaternion)]
+            return any_symbolic(places) or any(self._moves_itself(other) for other in self.records)
+        if base.rod is None:
+            return False
+        return any_symbolic([base.at]) or self._moves_itself(base.rod) or self.carrier_moves(base.rod)
+
+    def _moves_itself(self, rod: str) -> bool:
+        """Whether an expression of parameters shapes an unloaded rod, or places it on what carries it."""
         record = self.records[rod]
-        if any_symbolic([record.length, record.intrinsic.curvature, record.intrinsic.tangent]):
-            return True
-        if any_symbolic([record.base.position, record.base.quaternion, record.base.at]):
-            return True
-        return record.base.rod is not None and self.moves_unloaded(record.base.rod)
+        shaping = [record.length, record.intrinsic.curvature, record.intrinsic.tangent]
+        return any_symbolic([*shaping, record.base.position, record.base.quaternion])
 
     @cached_property
     def loads(self) -> tuple[scenes.LoadRecord, ...]:

@@ -22,11 +22,12 @@ from cosserat_casadi.maths.numbers import (
     is_zero,
     known,
 )
-from cosserat_casadi.maths.pose import Pose
+from cosserat_casadi.maths.pose import NumericPose, Pose, written_pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.inputs import input_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.scene_rods import written_base_pose
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.strain import Ratio, per_reference_length
@@ -222,7 +223,7 @@ def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
 
 
 def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> UnloadedPoses:
-    """World poses of sections in the unloaded scene: expressions where a parameter moves elements of the rod.
+    """World poses of sections in the unloaded scene: expressions where a parameter moves the rod or its elements.
 
     Args:
         discrete: the scene.
@@ -230,28 +231,45 @@ def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray)
         interpolation: matrix from values at the M nodes to those at the k sections, shape (k, M).
 
     Raises:
-        SceneError: parameters move the unloaded rod.
+        SceneError: parameters move what carries the rod.
     """
-    if discrete.moves_unloaded(rod):
-        problem = "is bound to where the unloaded rod was, which parameters move"
-        raise SceneError(Problem(f"a load on {rod!r}", problem, "name no length, base or intrinsic strain of this rod"))
     discrete_rod = discrete.rods[rod]
-    # Where no parameter moves the unloaded rod, its base is where the scene's own numbers put it.
-    own = discrete.nominal if discrete.parameters.size else discrete
-    base = own.own_unloaded.base(rod)
+    base = _unloaded_base(discrete, rod)
     unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size), discrete_rod.properties.ratio)
     nodal_position = _constant(unloaded.position)
     directors = [_constant(director) for director in unloaded.directors]
     to_sections = interpolation.T
-    if any_symbolic([nodal_position, *directors]):
-        origin = ca.repmat(ca.DM(base.position), 1, to_sections.shape[1])
-        columns = [ca.DM(base.rotation) @ as_matrix(director) @ ca.DM(to_sections) for director in directors]
-        position = origin + ca.DM(base.rotation) @ as_matrix(nodal_position) @ ca.DM(to_sections)
+    if isinstance(base, Pose) or any_symbolic([nodal_position, *directors]):
+        origin = ca.repmat(as_matrix(base.position), 1, to_sections.shape[1])
+        rotation = as_matrix(base.rotation)
+        columns = [rotation @ as_matrix(director) @ ca.DM(to_sections) for director in directors]
+        position = origin + rotation @ as_matrix(nodal_position) @ ca.DM(to_sections)
         # Directors of a straight rod stay numbers where a parameter moves its nodes.
         return ca.MX(position), ca.MX(ca.vertcat(*columns))
     known_position = base.position[:, None] + base.rotation @ known(nodal_position) @ to_sections
     # Column a of the rotation matrix is director a.
     return known_position, np.concatenate([base.rotation @ (known(director) @ to_sections) for director in directors])
+
+
+def _unloaded_base(discrete: DiscreteScene, rod: str) -> NumericPose | Pose:
+    """World pose of the base of an unloaded rod: an expression where parameters move it.
+
+    Raises:
+        SceneError: parameters move what carries the rod.
+    """
+    if discrete.carrier_moves(rod):
+        problem = "is bound to where the unloaded rod was, whose carrier parameters move"
+        remedy = "name no length, base or intrinsic strain of what carries this rod"
+        raise SceneError(Problem(f"a load on {rod!r}", problem, remedy))
+    record = discrete.records[rod]
+    written = written_pose(*written_base_pose(record))
+    # What carries the rod is where the scene's own numbers put it.
+    unloaded = (discrete.nominal if discrete.parameters.size else discrete).own_unloaded
+    if isinstance(written, NumericPose):
+        return unloaded.base(rod)
+    if record.base.rod is None:
+        return written
+    return unloaded.section(record.base.rod, record.base.at).pose.then(written)
 
 
 def _constant(field: Matrix) -> Numbers:

@@ -154,8 +154,12 @@ def test_a_hole_moves_with_its_disk() -> None:
     disks = {"name": "d", "rod": "a", "at": [0.3, 0.65], "radius": 0.1, "mass": 0.1}
     tied = scene_from_dict({**tables, "disks": [disks], "parameters": [["d.at[0]", "c.holes[0]"]]})
     there = scene_from_dict({**tables, "actuators": [moved], "disks": [{**disks, "at": [0.4, 0.65]}]})
-    solution = solve(build(tied), parameters={"d.at[0]": 0.4})
+    model = build(tied)
+    solution = solve(model, parameters={"d.at[0]": 0.4})
     assert solution.converged
+    # With the place as an expression, as C has it.
+    left = model.residual(solution.x, model.pack(), model.parameters.pack({"d.at[0]": 0.4}))
+    assert_allclose(left.full(), 0.0, rtol=0, atol=1e-9)
     assert_allclose(solution.tip().position, solved(there).tip().position, rtol=0, atol=1e-12)
     with pytest.raises(SceneError, match="tie the two together"):
         build(scene_from_dict({**tables, "disks": [disks], "parameters": ["d.at[0]"]}))

@@ -834,22 +834,32 @@ def test_coefficients_of_loads_that_depend_on_poses() -> None:
         assert np.abs(model.parameter_jacobian(x, inputs, p).full()).max(axis=0).min() > 1e-3
 
 
-def test_what_is_bound_to_the_unloaded_rod_refuses_parameters_that_move_it() -> None:
+def test_what_is_bound_to_the_unloaded_rod_follows_parameters_that_move_it() -> None:
     with registered():
         bed = BedRecord(name="bed", kind="bed", rod="wire", strength=20.0)
-        moving = build(with_kind(bed, WIRE, "wire.intrinsic.curvature"))
-        with pytest.raises(SceneError, match="bound to where the unloaded rod was, which parameters move"):
-            _ = moving.residual
-        values = {"wire.intrinsic.curvature": [[0.0, 0.1], [0.9, 0.0], [0.2, 0.0]]}
+        moving = build(with_kind(bed, WIRE, "wire.intrinsic.curvature", "wire.length", "wire.base.position"))
+        curvature = [[0.0, 0.1], [0.9, 0.0], [0.2, 0.0]]
+        values = {"wire.intrinsic.curvature": curvature, "wire.length": 0.9, "wire.base.position": [0.1, 0.2, -0.1]}
         bound = moving.at(values)
-        rebuilt = build(moving.parameters.set_in(moving.scene, values))
         x, _, _, inputs, _ = point(bound)
-        assert_allclose(bound.residual(x, inputs).full(), rebuilt.residual(x, inputs).full(), rtol=1e-12, atol=1e-14)
-        # The unloaded rod lies in its bed, whatever its curvature.
-        assert np.abs(bound.residual(np.zeros(bound.size), inputs).full()).max() < 1e-13
+        p = moving.parameters.pack(values)
+        assert_allclose(moving.residual(x, inputs, p).full(), bound.residual(x, inputs).full(), rtol=1e-12, atol=1e-14)
+        # The unloaded rod lies in its bed, whatever its curvature, and wherever it is.
+        assert np.abs(moving.residual(np.zeros(bound.size), inputs, p).full()).max() < 1e-13
 
-        stiffer = build(with_kind(bed, WIRE, "wire.material.youngs_modulus"))
-        assert stiffer.residual(x, inputs, stiffer.parameters.pack()).shape == (stiffer.size, 1)
+
+def test_what_is_bound_to_an_unloaded_rod_refuses_parameters_that_move_its_carrier() -> None:
+    bed = {"name": "bed", "kind": "foundation", "rod": "arm", "stiffness": [20.0, 10.0, 0.0]}
+    arm = {**WIRE, "name": "arm", "base": {"rod": "wire", "at": 1.0}}
+    scene = {"schema": 1, "rods": [WIRE, arm], "loads": [bed], "inputs": []}
+    with pytest.raises(SceneError, match="where the unloaded rod was, whose carrier parameters move"):
+        _ = build(scene_from_dict({**scene, "parameters": ["wire.length"]})).residual
+    own = build(scene_from_dict({**scene, "parameters": ["arm.base.position"]}))
+    values = {"arm.base.position": [0.1, 0.0, 0.2]}
+    bound = own.at(values)
+    x = point(bound)[0]
+    wanted = bound.residual(x, bound.pack()).full()
+    assert_allclose(own.residual(x, own.pack(), own.parameters.pack(values)).full(), wanted, rtol=1e-12, atol=1e-13)
 
 
 def test_the_literal_system_takes_parameters() -> None:
