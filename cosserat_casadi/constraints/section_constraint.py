@@ -21,6 +21,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.calls import ONE_DIRECTION
 from cosserat_casadi.maths.numbers import Scalar, is_symbolic
 from cosserat_casadi.maths.pose import NumericPose, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
@@ -28,13 +29,6 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 KEPT_KERNELS = 128
 """Constraints whose kernels are kept for further models."""
-
-DIRECTIONS = {"max_num_dir": 1}
-"""Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
-
-CasADi differentiates kernels itself where rotations follow from the literal linear system. The C of a joint would be
-megabytes otherwise, which compilers take minutes for.
-"""
 
 
 @dataclass(frozen=True)
@@ -347,7 +341,7 @@ class _Kernels:
         target, target_symbols = self.constraint.target_symbols()
         moved = self.constraint.residual_of(_moved(poses, motions), target)
         results = [self.constraint.residual_of(poses, target), *_at_rest(moved, motions, motions)]
-        return ca.Function("constraint", [*poses.stacked, *target_symbols], ca.cse(results), DIRECTIONS)
+        return ca.Function("constraint", [*poses.stacked, *target_symbols], ca.cse(results), ONE_DIRECTION)
 
     @cached_property
     def wrench(self) -> ca.Function:
@@ -378,7 +372,7 @@ class _Kernels:
         moved = written(self.constraint, _moved(poses, motions), target, multipliers)
         variables = [multipliers, *motions] if with_multipliers else motions
         results = [written(self.constraint, poses, target, multipliers), *_at_rest(moved, variables, motions)]
-        return ca.Function(name, [*poses.stacked, *target_symbols, multipliers], ca.cse(results), DIRECTIONS)
+        return ca.Function(name, [*poses.stacked, *target_symbols, multipliers], ca.cse(results), ONE_DIRECTION)
 
 
 @lru_cache(maxsize=KEPT_KERNELS)

@@ -13,6 +13,13 @@ from cosserat_casadi.maths.typing import FloatArray
 MOST_MAPPED = 64
 """Maps of functions over many arguments that are kept: those of a few searches for modes."""
 
+ONE_DIRECTION = {"max_num_dir": 1}
+"""Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
+
+CasADi differentiates kernels itself where rotations follow from the literal linear system. The C of a joint would be
+megabytes otherwise, which compilers take minutes for.
+"""
+
 
 def called_functions(function: ca.Function, codes: Iterable[int] | None = None) -> dict[int, ca.Function]:
     """The function that each call of a scalar function is of, by the number of its instruction.

@@ -37,6 +37,7 @@ import casadi as ca
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import SMOOTHING, pair_kernel
 from cosserat_casadi.constraints.section_constraint import ConstraintPoses, PoseVariations
+from cosserat_casadi.maths.calls import ONE_DIRECTION
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
@@ -63,7 +64,7 @@ def _turn_rows() -> ca.Function:
     norm_row = (ca.sumsqr(quaternion) - 1) * quaternion
     rows = norm_row - turn_matrix(quaternion).T @ moment
     results = ca.cse([rows, ca.jacobian(rows, quaternion)])
-    return ca.Function("turn_rows", [quaternion, moment], results)
+    return ca.Function("turn_rows", [quaternion, moment], results, ONE_DIRECTION)
 
 
 TURN_ROWS = _turn_rows()
