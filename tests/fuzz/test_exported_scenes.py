@@ -23,7 +23,7 @@ OF_SIGN = ("length", "modulus", "radius", "width", "height", "stiffness", "densi
 """Ends of the names of numbers that have a sign: they move by a share of themselves."""
 
 NOT_KNOWN = 1.0
-"""What C tells as an error that its two looks do not find; Python looks longer."""
+"""What C tells as an error that its sweeps do not find; Python takes Newton's steps then, as docs/accuracy.md says."""
 
 STEP = 1e-6
 """Share of the numbers by which differences are taken."""
