@@ -111,20 +111,21 @@ class Listing:
         self.outputs: list[dict[int, int]] = [{} for _ in range(function.n_out())]
         self._apart = apart
         self._known: dict[Value, int] = {}
-        self._called = called_functions(function)
+        codes = [function.instruction_id(k) for k in range(function.n_instructions())]
+        self._called = called_functions(function, codes)
         # CasADi's variables are used again and again. A constant is a value where it is read.
         self._variables: dict[int, int | Constant] = {}
-        for k in range(function.n_instructions()):
-            self._add(k)
+        for k, code in enumerate(codes):
+            self._add(k, code)
 
-    def operands(self, number: int) -> list[int]:
+    def operands(self, number: int) -> Sequence[int]:
         """Numbers of the values that one is computed from."""
         value = self.values[number]
         if isinstance(value, Computed):
-            return list(value.operands)
+            return value.operands
         if isinstance(value, Called):
             return self.calls[value.call].operands
-        return []
+        return ()
 
     @property
     def has_fours(self) -> bool:
@@ -177,9 +178,8 @@ class Listing:
             entries[entry] = expressions[number]
         return entries
 
-    def _add(self, k: int) -> None:
-        """Append the value, or the values, of the k-th instruction."""
-        code = self.function.instruction_id(k)
+    def _add(self, k: int, code: int) -> None:
+        """Append the value, or the values, of the k-th instruction, which has this code."""
         inputs = self.function.instruction_input(k)
         outputs = self.function.instruction_output(k)
         if code == ca.OP_OUTPUT:
@@ -214,11 +214,12 @@ class Listing:
 
     def _number(self, value: Value) -> int:
         """The number of a value, which is computed once."""
-        if value in self._known and (isinstance(value, Read) or not self._apart):
-            return self._known[value]
-        self._known[value] = len(self.values)
+        known = self._known.get(value)
+        if known is not None and (not self._apart or isinstance(value, Read)):
+            return known
+        number = self._known[value] = len(self.values)
         self.values.append(value)
-        return self._known[value]
+        return number
 
 
 def _call_of_entries(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:

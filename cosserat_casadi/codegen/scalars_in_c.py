@@ -358,7 +358,7 @@ class _Writing:
     def _is_there(self, number: int) -> bool:
         return self._is_constant(number) or self._known_by(number) in self.done
 
-    def _needs(self, number: int) -> list[int]:
+    def _needs(self, number: int) -> Sequence[int]:
         value = self.listing.values[number]
         if not isinstance(value, Called):
             return self.listing.operands(number)
