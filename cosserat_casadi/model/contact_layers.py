@@ -163,14 +163,22 @@ def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) ->
     return ceil(min(max((_nodes_for(own, radius, widest) for own in at_nodes), default=0.0), MOST_LAYER_NODES))
 
 
-def closer_sections(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> EqualSections | None:
-    """The sections of a rod at which the layer of an obstacle is summed; None where that is at the nodes."""
+def closer_sections(obstacle: scenes.ObstacleRecord, rod: DiscreteRod, moved: bool) -> EqualSections | None:
+    """The sections of a rod at which the layer of an obstacle is summed; None where that is at the nodes.
+
+    Args:
+        obstacle: the obstacle.
+        rod: with the scene's own numbers.
+        moved: whether parameters move its elements: a short one may become long, and has as many sections as the
+            longest.
+    """
     lengths = rod.properties.length * np.diff(rod.grid.breaks)
     radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
     ratio = _sections_a_node(obstacle, radius, float(lengths.max()))
     if ratio == 1:
         return None
-    counts = np.ceil(ratio * rod.grid.intervals * lengths / lengths.max()).astype(int)
+    shares = np.ones(len(lengths)) if moved else lengths / lengths.max()
+    counts = np.ceil(ratio * rod.grid.intervals * shares).astype(int)
     return EqualSections(rod, tuple(counts.tolist()))
 
 

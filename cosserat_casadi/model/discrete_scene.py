@@ -215,9 +215,11 @@ class DiscreteScene:
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is None or layer.at is not None:
                 continue
-            sections = closer_sections(layer.obstacle, self.nominal.rods[layer.rod])
+            rod = self.rods[layer.rod]
+            moved = rod.grid.ends is not None
+            sections = closer_sections(layer.obstacle, self.nominal.rods[layer.rod], moved)
             if sections is not None:
-                found[str(layer.name)] = replace(sections, rod=self.rods[layer.rod])
+                found[str(layer.name)] = replace(sections, rod=rod)
         return found
 
     @property

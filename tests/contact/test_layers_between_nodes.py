@@ -65,6 +65,23 @@ def test_jacobian_is_the_derivative_and_forces_balance() -> None:
     assert_allclose(contact.force + found.base_wrench().force, [0.0, 0.0, 0.05], rtol=0, atol=1e-12)
 
 
+def test_a_short_element_that_a_parameter_makes_long_has_sections_enough() -> None:
+    """A bar presses an element that has a quarter of its length in the file, where eight sections would miss it."""
+    stone = '[[loads]]\nname = "stone"\nkind = "point_wrench"\nrod = "rod"\nat = 0.655\nforce = [0, 0, 0.01]\n'
+    changes = [*THIN, "bar.stiffness=9e5", "bar.from=[0.33, -0.2, -0.03]", "bar.to=[0.33, 0.2, -0.03]"]
+    scene = parse_scene('parameters = ["stone.at"]\n' + FREE + stone, changes)
+    moved = build(scene, discretise(scene, 2, 5)).at({"stone.at": 0.74})
+    assert moved.discrete.closer_sections["bar on rod"].counts == (30,) * 9
+    written = parse_scene(FREE + stone, [*changes, "stone.at=0.74"])
+    found, wanted = (solve(own, estimate_error=False) for own in (moved, build(written, discretise(written, 2, 5))))
+    assert found.converged and wanted.converged
+    (contact,) = found.contacts
+    assert 0.625 < contact.start < contact.end < 0.74
+    assert_allclose(contact.force + found.base_wrench().force, [0.0, 0.0, 0.04], rtol=0, atol=1e-12)
+    # Elements of the written scene end elsewhere, with two modes each; with eight sections it would be 3e-3.
+    assert_allclose(found.tip().position, wanted.tip().position, rtol=0, atol=5e-4)
+
+
 def test_the_deepest_section_tells_the_depth() -> None:
     """Between nodes 16 mm apart, as the gap of the contact has it on a fine raster."""
     scene = parse_scene(FREE, [*THIN, "bar.stiffness=3e4"])
