@@ -39,6 +39,9 @@ ON_GUARD = 1e-13
 ROUNDED = 1e-11
 """The same where another length of the step brings the guard no nearer: as much is left by Newton's method."""
 
+ON_TIME = 1e-9
+"""Share of the length of a step by which its end may miss a guard then: Newton's method leaves more of forces."""
+
 NEARER = 0.5
 """Share of the value at the length before from which on a guard is no nearer."""
 
@@ -311,6 +314,7 @@ class StepRun:
         time = cut.end.time
         stands = cut
         last: tuple[float, float] | None = None
+        rate = 0.0
         for _ in range(MOST_LENGTHS):
             self.size = time - cut.start.time
             solution = self.solve()
@@ -320,7 +324,8 @@ class StepRun:
             step = self.steps[-1]
             value = float(self.guards(step.end)[guard])
             is_nearer = last is None or abs(value) < NEARER * abs(last[1])
-            if abs(value) <= (ON_GUARD if is_nearer else ROUNDED):
+            rounded = max(ROUNDED, ON_TIME * step.size * abs(rate))
+            if abs(value) <= (ON_GUARD if is_nearer else rounded):
                 return
             self.steps.pop()
             if stands is cut and self._open(cut):
