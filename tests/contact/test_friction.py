@@ -201,8 +201,8 @@ def test_a_snake_crawls_as_fast_as_that_of_pyelastica() -> None:
 
 
 REFUSED = {
-    "friction without width": (
-        {"width": None, "stiffness": None, "slip_speed": None},
+    "a slip speed without width": (
+        {"width": None, "stiffness": None},
         "without width contact is exact",
     ),
     "a coefficient below zero": ({"friction": -0.1}, "friction"),

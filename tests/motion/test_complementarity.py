@@ -40,6 +40,22 @@ def test_pushes_are_those_of_the_one_choice_that_holds() -> None:
     assert {1, 2, 3} <= set(sizes)
 
 
+def test_units_of_forces_change_none_of_them() -> None:
+    """Contacts on rods of other stiffness have forces in other units: W keeps no symmetry, its columns are scaled."""
+    rng = np.random.default_rng(6)
+    sizes = []
+    for _ in range(100):
+        factor = rng.normal(size=(5, 5))
+        compliance = factor @ factor.T
+        units = 10.0 ** rng.uniform(-3, 3, size=5)
+        rates = rng.normal(size=5)
+        forces = least_pushes(compliance * units, rates, 0.0)
+        assert forces is not None
+        assert_allclose(forces * units, by_all_choices(compliance, rates), rtol=1e-6, atol=0)
+        sizes.append(int(np.sum(forces > 0.0)))
+    assert {1, 2, 3} <= set(sizes)
+
+
 @pytest.mark.parametrize("count", [12, 40])
 def test_more_constraints_than_there_are_motions_to_stop_settle_without_pulling(count: int) -> None:
     rng = np.random.default_rng(count)
