@@ -39,9 +39,6 @@ ON_GUARD = 1e-13
 ROUNDED = 1e-11
 """The same where another length of the step brings the guard no nearer: as much is left by Newton's method."""
 
-ON_TIME = 1e-9
-"""Share of the length of a step by which its end may miss a guard then: Newton's method leaves more of forces."""
-
 NEARER = 0.5
 """Share of the value at the length before from which on a guard is no nearer."""
 
@@ -314,7 +311,6 @@ class StepRun:
         time = cut.end.time
         stands = cut
         last: tuple[float, float] | None = None
-        rate = 0.0
         for _ in range(MOST_LENGTHS):
             self.size = time - cut.start.time
             solution = self.solve()
@@ -324,8 +320,7 @@ class StepRun:
             step = self.steps[-1]
             value = float(self.guards(step.end)[guard])
             is_nearer = last is None or abs(value) < NEARER * abs(last[1])
-            rounded = max(ROUNDED, ON_TIME * step.size * abs(rate))
-            if abs(value) <= (ON_GUARD if is_nearer else rounded):
+            if abs(value) <= (ON_GUARD if is_nearer else ROUNDED):
                 return
             self.steps.pop()
             if stands is cut and self._open(cut):
@@ -334,6 +329,9 @@ class StepRun:
                 earlier = time - NEARBY * step.size
                 last = earlier, float(self.guards(step.at(earlier))[guard])
             elif not is_nearer:
+                break
+            # A step as short as the rounding of time has no time before its end.
+            if time == last[0]:
                 break
             # The state at the end of a step does not change with its length as it does along the step.
             rate = (value - last[1]) / (time - last[0])
