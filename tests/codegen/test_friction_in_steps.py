@@ -195,12 +195,14 @@ def test_a_round_rod_slides_askew_or_rolls(tmp_path: Path) -> None:
         gone = (ended - began)[:2]
         rubs = np.array(pull) - 2.0 * gone / (dt * count) ** 2
         slides = np.array(pull) - yields * rubs
-        slips = pull[0] != 0.0
-        assert all(contact.slips == slips for contact in made.compiled.step_contacts(memory))
-        if slips:
+        slip = [contact.slips for contact in made.compiled.step_contacts(memory)]
+        if pull[0] != 0.0:
+            assert all(slip)
             assert np.sign(slides[0]) == (1.0 if along == "along" else -1.0)
             assert_allclose(rubs, G * coefficients * slides / np.linalg.norm(slides), rtol=1e-4, atol=0)
         else:
+            # How sections of a stiff rod share what holds it is not determined: one of them may be at its bound.
+            assert not all(slip)
             assert_allclose(slides, 0.0, rtol=0, atol=1e-5)
 
 

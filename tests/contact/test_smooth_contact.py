@@ -625,13 +625,16 @@ def test_no_step_of_a_path_passes_through_a_thin_wire() -> None:
 
 @pytest.mark.slow
 def test_no_step_from_a_solution_passes_through_a_thin_wire() -> None:
-    """At the lower wire the path stalls in front of it, and says so."""
-    model = build(parse_scene(ROD + PUSH + WIRE.replace("-0.1]", "-0.2]")))
-    near = solve(model, {"push.force": [0.0, 0.0, -0.05]})
-    assert near.converged
-    far = solve(model, {"push.force": [0.0, 0.0, -2.5]}, start=near)
-    assert far.outcome is Outcome.LOAD_STALLED
-    assert far.tip().position[2] > -0.3
+    """The lower wire holds the rod. One that rubs presses nodes alone: the path stalls in front of it, and says so."""
+    lower = ROD + PUSH + WIRE.replace("-0.1]", "-0.2]")
+    for wire, outcome in (("", Outcome.CONVERGED), ("friction = 0.1\n", Outcome.LOAD_STALLED)):
+        model = build(parse_scene(lower + wire))
+        near = solve(model, {"push.force": [0.0, 0.0, -0.05]})
+        assert near.converged
+        far = solve(model, {"push.force": [0.0, 0.0, -2.5]}, start=near)
+        assert far.outcome is outcome
+        assert far.tip().position[2] > -0.3
+        assert not far.converged or far.pose(0.9).position[2] > -0.2
 
 
 def test_parameters_that_change_at_once_take_no_rod_through_a_wire() -> None:
@@ -933,7 +936,8 @@ def test_a_wire_between_the_few_sections_that_are_looked_at_bars_the_way(beyond:
 def test_no_row_of_a_sweep_converges_behind_a_thin_wire() -> None:
     """The solver in C stalls before the wire; Python may settle the row."""
     few = ["accuracy.modes=2", "accuracy.nodes=6"]
-    scene = parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + THIN, few)
+    # One that rubs presses nodes alone: between them a rod sinks in.
+    scene = parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + THIN + "friction = 0.1\n", few)
     pushes = np.array([-0.1, -0.25])
     table = np.stack([0 * pushes, 0 * pushes, pushes], axis=1)
     ends = row_library(build(scene)).solve(table)[:, 0].astype(int)
