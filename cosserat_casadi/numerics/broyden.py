@@ -27,7 +27,7 @@ SparseFactors: TypeAlias = tuple[ca.DM, ca.DM, ca.DM, list[int], list[int]]
 THIN = 1e-13
 """Share of the largest diagonal entry of the triangular factor below which a sparse Jacobian counts as singular."""
 
-SINGULAR = 1e-12
+SINGULAR = 1e-11
 """Reciprocal of the condition beyond which a Jacobian counts as singular."""
 
 

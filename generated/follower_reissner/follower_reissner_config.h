@@ -48,7 +48,7 @@ static const follower_reissner_real SINGULAR = (follower_reissner_real)1e-7;
 #else
 static const follower_reissner_real TOLERANCE = (follower_reissner_real)1e-11;
 static const follower_reissner_real MIN_STEP = (follower_reissner_real)1e-07;
-static const follower_reissner_real SINGULAR = (follower_reissner_real)1e-12;
+static const follower_reissner_real SINGULAR = (follower_reissner_real)1e-11;
 #endif
 enum {
   MAX_ITERATIONS = 60,     /* of one Newton */

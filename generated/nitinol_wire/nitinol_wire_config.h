@@ -48,7 +48,7 @@ static const nitinol_wire_real SINGULAR = (nitinol_wire_real)1e-7;
 #else
 static const nitinol_wire_real TOLERANCE = (nitinol_wire_real)1e-11;
 static const nitinol_wire_real MIN_STEP = (nitinol_wire_real)1e-07;
-static const nitinol_wire_real SINGULAR = (nitinol_wire_real)1e-12;
+static const nitinol_wire_real SINGULAR = (nitinol_wire_real)1e-11;
 #endif
 enum {
   MAX_ITERATIONS = 60,     /* of one Newton */

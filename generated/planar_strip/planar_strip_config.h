@@ -48,7 +48,7 @@ static const planar_strip_real SINGULAR = (planar_strip_real)1e-7;
 #else
 static const planar_strip_real TOLERANCE = (planar_strip_real)1e-11;
 static const planar_strip_real MIN_STEP = (planar_strip_real)1e-07;
-static const planar_strip_real SINGULAR = (planar_strip_real)1e-12;
+static const planar_strip_real SINGULAR = (planar_strip_real)1e-11;
 #endif
 enum {
   MAX_ITERATIONS = 60,     /* of one Newton */

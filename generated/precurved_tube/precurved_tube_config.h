@@ -48,7 +48,7 @@ static const precurved_tube_real SINGULAR = (precurved_tube_real)1e-7;
 #else
 static const precurved_tube_real TOLERANCE = (precurved_tube_real)1e-11;
 static const precurved_tube_real MIN_STEP = (precurved_tube_real)1e-07;
-static const precurved_tube_real SINGULAR = (precurved_tube_real)1e-12;
+static const precurved_tube_real SINGULAR = (precurved_tube_real)1e-11;
 #endif
 enum {
   MAX_ITERATIONS = 60,     /* of one Newton */

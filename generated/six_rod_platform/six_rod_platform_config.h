@@ -53,7 +53,7 @@ static const six_rod_platform_real SINGULAR = (six_rod_platform_real)1e-7;
 #else
 static const six_rod_platform_real TOLERANCE = (six_rod_platform_real)1e-11;
 static const six_rod_platform_real MIN_STEP = (six_rod_platform_real)1e-07;
-static const six_rod_platform_real SINGULAR = (six_rod_platform_real)1e-12;
+static const six_rod_platform_real SINGULAR = (six_rod_platform_real)1e-11;
 #endif
 enum {
   MAX_ITERATIONS = 60,     /* of one Newton */

@@ -48,7 +48,7 @@ static const tendon_robot_real SINGULAR = (tendon_robot_real)1e-7;
 #else
 static const tendon_robot_real TOLERANCE = (tendon_robot_real)1e-11;
 static const tendon_robot_real MIN_STEP = (tendon_robot_real)1e-07;
-static const tendon_robot_real SINGULAR = (tendon_robot_real)1e-12;
+static const tendon_robot_real SINGULAR = (tendon_robot_real)1e-11;
 #endif
 enum {
   MAX_ITERATIONS = 60,     /* of one Newton */
