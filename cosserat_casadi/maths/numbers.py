@@ -228,11 +228,15 @@ def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray
     order = np.argsort(sizes)
     ascending = sizes[order]
     largest = ascending[-1:].max(initial=0.0)
-    begins = np.flatnonzero(np.diff(ascending, prepend=-1.0) > SAME * ascending)
+    before = np.concatenate([[-1.0], ascending[:-1]])
+    with np.errstate(invalid="ignore"):
+        # Not "above": what is no finite number is like no other, and stays as it is.
+        begins = np.flatnonzero(~(ascending - before <= SAME * before))
     counts = np.diff(begins, append=len(ascending))
     middle = ascending[begins + counts // 2]
     whole = np.round(middle)
-    middle = np.where(np.abs(middle - whole) <= SAME * middle, whole, middle)
+    with np.errstate(invalid="ignore"):
+        middle = np.where(np.abs(middle - whole) <= SAME * middle, whole, middle)
     sizes[order] = np.repeat(middle, counts)
     sizes[sizes < noise * largest] = 0.0
     # No zero is a negative one.

@@ -32,3 +32,11 @@ def test_a_quarter_turn_that_is_known_keeps_its_ones_alone() -> None:
     assert_array_equal(sparse_known(turn).full(), [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     symbol = ca.MX.sym("turn", 3, 3)
     assert sparse_known(symbol) is symbol
+
+
+def test_what_is_no_finite_number_is_neither_hidden_nor_spread() -> None:
+    entries = np.array([5.0, 5.0 * (1 + 1e-15), np.nan, np.inf, -np.inf, 2.0])
+    left = without_rounding(entries)
+    assert_allclose(left[[0, 1, 5]], [5.0, 5.0, 2.0], rtol=0, atol=0)
+    assert np.isnan(left[2])
+    assert_allclose(left[3:5], [np.inf, -np.inf], rtol=0, atol=0)
