@@ -451,7 +451,7 @@ class CompiledSteps:
 
 
 def _evaluate(call: RepeatedCall, state: Sequence[FloatArray], rows: FloatArray, _: float) -> None:
-    """Have CasADi's virtual machine write the residual, of the model's own unknowns alone."""
+    """Have CasADi's virtual machine write the residual, of the unknowns of the model without those of contacts."""
     for array, values in zip(call.arguments, state, strict=False):
         if array is not values:
             array[:] = values[: len(array)]

@@ -297,7 +297,7 @@ def _address(nodes: FloatArray) -> int:
 
 
 def _minimum(valley: ValleyRecord) -> Minimum:
-    """A section that C has found; rounding alone makes it no other one than an end of the rod."""
+    """The section of a record; rounding alone makes no other one of an end of the rod."""
     place = valley.place
     inside = AT_END < place < 1.0 - AT_END
     return Minimum(place if inside else float(round(place)), valley.value, inside)
