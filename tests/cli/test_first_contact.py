@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -42,6 +43,20 @@ def test_template_solves_as_it_stands(template: Template, tmp_path: Path) -> Non
     text = file.read_text()
     assert text.count("#") > 10
     assert "cosserat docs scene" in text
+
+
+OFFERED = re.compile(r"^# (?=\[\[\w+\]\]$|\w+ = )", re.MULTILINE)
+"""The mark before a line that a comment offers."""
+
+
+@pytest.mark.parametrize("template", [Template.WIRE, Template.TENDON_ROBOT])
+def test_lines_that_a_template_offers_are_accepted(template: Template, tmp_path: Path) -> None:
+    file = TEMPLATES / f"{template.value}.toml"
+    taken = tmp_path / "taken.toml"
+    text, count = OFFERED.subn("", file.read_text())
+    taken.write_text(text)
+    assert count > 0
+    assert read_scene(taken) != read_scene(file)
 
 
 @pytest.mark.slow
