@@ -3,7 +3,7 @@
 Exports examples with the arrangements of contacts that their load cases meet, compiles them, and moves a load by a
 hundredth of its size from turn to turn, to and fro. Times are processor times, the best of many.
 
-    python benchmarks/contact_in_c.py [--page]      # writes the table of docs/contact.md anew
+    python benchmarks/contact_in_c.py [--page]      # writes the table of docs/contact-in-c.md anew
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from cosserat_casadi.codegen.compiler import find_compiler
 
 ROOT = Path(__file__).resolve().parents[1]
 
-PAGE = ROOT / "docs" / "contact.md"
+PAGE = ROOT / "docs" / "contact-in-c.md"
 
 MARKS = ("<!-- contact in C -->", "<!-- end of contact in C -->")
 
@@ -164,7 +164,7 @@ def rows_of(case: Case) -> list[list[str]]:
 def main() -> None:
     """Print the table, or write it into the page."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--page", action="store_true", help="write the table of docs/contact.md anew")
+    parser.add_argument("--page", action="store_true", help="write the table of docs/contact-in-c.md anew")
     arguments = parser.parse_args()
     lines = [line for case in CASES for line in rows_of(case)]
     heads = ["example", "contact", "turn, µs", "derivatives, µs", "Python, ms", "kernels, MB"]

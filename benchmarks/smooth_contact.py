@@ -5,7 +5,7 @@ the length of the rod, with the rate, log₂ of its error over that of half the 
 answer tells of both, without the exact one; how far the resultant of the forces of contact is off, relative to it; the
 smallest gap in widths; and the processor time.
 
-    python benchmarks/smooth_contact.py [--page]      # writes the table of docs/contact.md anew
+    python benchmarks/smooth_contact.py [--page]      # writes the table of docs/smooth-contact.md anew
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from cosserat_casadi.accuracy.refine import solve_rods
 
 ROOT = Path(__file__).resolve().parents[1]
 
-PAGE = ROOT / "docs" / "contact.md"
+PAGE = ROOT / "docs" / "smooth-contact.md"
 
 MARKS = ("<!-- smooth contact -->", "<!-- end of smooth contact -->")
 
@@ -93,7 +93,7 @@ def rows_of(scene: str) -> list[Row]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--page", action="store_true", help="write the table into docs/contact.md")
+    parser.add_argument("--page", action="store_true", help="write the table into docs/smooth-contact.md")
     arguments = parser.parse_args()
     cells = []
     for scene in SCENES:

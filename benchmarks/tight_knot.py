@@ -5,7 +5,7 @@ digits. Ours is an equilibrium, and tells the error of its modes and that of the
 moves, damped, until it hardly does any more; it shears and stretches, which ours does not, and the table says by how
 much. A small push across keeps the knot from turning about the axis.
 
-    python benchmarks/tight_knot.py [--page]      # writes the table of docs/contact.md anew
+    python benchmarks/tight_knot.py [--page]      # writes the table of docs/smooth-contact.md anew
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cosserat_casadi.maths.typing import FloatArray
 
 FOLDER = Path(__file__).parent
 SHAPE = FOLDER / "reference" / "knot.csv"
-PAGE = FOLDER.parent / "docs" / "contact.md"
+PAGE = FOLDER.parent / "docs" / "smooth-contact.md"
 MARKS = ("<!-- tight knot -->", "<!-- end of tight knot -->")
 HEADINGS = ("", "tip, of the length", "curvature of the loop", "least gap, radii", "processor time, s")
 
@@ -136,7 +136,7 @@ def cells(what: str, nodes: FloatArray, seconds: float) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--page", action="store_true", help="write the table into docs/contact.md")
+    parser.add_argument("--page", action="store_true", help="write the table into docs/smooth-contact.md")
     arguments = parser.parse_args()
     scene = scene_from_dict(TABLES)
     begun = time.process_time()

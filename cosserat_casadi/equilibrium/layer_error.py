@@ -1,4 +1,4 @@
-"""How far an answer in smooth contact is from one whose contacts have no width (docs/contact.md, smooth contact).
+"""How far an answer in smooth contact is from one whose contacts have no width (docs/smooth-contact.md).
 
 Layers push by a law F(g/w) of the gap over the width. Thinner ones with the same law, the stiffness growing as 1/w, let
 a rod that is pressed alike have a gap that is less in proportion: to first order the answer moves in proportion to the

@@ -6,7 +6,7 @@ coefficient of restitution, none by default; they are as small as keeps all that
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
 comes to zero the section lifts off. Which of several contacts remain is a complementarity problem of velocities, then
 of accelerations. A rod that touches with a bend touches at the section where its gap is least, which slides along it;
-where the bend comes to zero it lies down, and is kept out at further sections. See docs/contact.md.
+where the bend comes to zero it lies down, and is kept out at further sections. See docs/contact-in-motion.md.
 """
 
 from __future__ import annotations
