@@ -17,11 +17,11 @@ from doc_tables import put, table
 from row_cost import drawn_inputs, robot, wire
 
 from cosserat_casadi import Model, build, export, read_scene
-from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.compiled_results import AnswerInfo
 from cosserat_casadi.codegen.load import load
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.compiling import compiler
 
 PAGE = Path("docs/c-interface.md")
 BEGIN, END = "<!-- batches: written by benchmarks/batch.py -->", "<!-- end of batches -->"

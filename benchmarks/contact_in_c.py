@@ -20,7 +20,7 @@ import numpy as np
 from doc_tables import put, table
 
 from cosserat_casadi import Model, build, discretise, export, read_scene, solve
-from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.compiling.compiler import find_compiler
 
 ROOT = Path(__file__).resolve().parents[1]
 

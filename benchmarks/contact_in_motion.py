@@ -18,7 +18,7 @@ import numpy as np
 from doc_tables import put, table
 
 from cosserat_casadi import Motion, build, read_scene, simulate
-from cosserat_casadi.codegen.cache import VARIABLE
+from cosserat_casadi.compiling.cache import VARIABLE
 
 ROOT = Path(__file__).parents[1]
 SCENE = ROOT / "examples" / "bouncing_rod.toml"

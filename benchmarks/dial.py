@@ -32,8 +32,8 @@ from cosserat_casadi import Solution, build, discretise, solve
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.timed_program import Program, Times
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.rod.discretisation import Discretisation

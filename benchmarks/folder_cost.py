@@ -20,7 +20,7 @@ from rows import append, read
 
 from cosserat_casadi import CosseratError, Solution, export, read_scene
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.codegen.compiler import FLAGS
+from cosserat_casadi.compiling.compiler import FLAGS
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "c-interface.md"

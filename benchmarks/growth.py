@@ -14,8 +14,8 @@ import numpy as np
 import typer
 
 from cosserat_casadi import Model, build, discretise, scene_from_dict
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.timed_program import Program, Times
+from cosserat_casadi.compiling.compiler import find_compiler
 
 DOCS = Path(__file__).parents[1] / "docs" / "accuracy.md"
 BEGIN, END = "<!-- growth: written by benchmarks/growth.py -->", "<!-- end of growth -->"

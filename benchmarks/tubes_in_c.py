@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from cosserat_casadi import export, parse_scene, read_scene
-from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.tube_solve import solve_tubes
 

@@ -79,7 +79,7 @@ for module in cosserat_casadi._NAMES:
 EXTRAS = ("dask", "distributed", "matplotlib", "pyarrow", "scipy")
 """Packages that no program needs which solves a scene."""
 
-BEYOND_A_SOLVE = "bench codegen control environments estimation identification motion page plots sweeps tubes view"
+BEYOND_A_SOLVE = "codegen compiling control environments estimation identification motion page plots sweeps tubes view"
 """Rooms that an equilibrium of rods needs nothing of."""
 
 UNUSED_BY_A_SOLVE = (*EXTRAS, *(f"cosserat_casadi.{room}" for room in BEYOND_A_SOLVE.split()))

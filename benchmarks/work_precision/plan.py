@@ -11,8 +11,8 @@ from rich.console import Console
 from rich.markup import escape
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.timed_program import FLAGS
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.tube_checks import refuse_tubes

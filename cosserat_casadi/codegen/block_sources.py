@@ -9,7 +9,7 @@ from typing import Any
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.blocks import Front
 from cosserat_casadi.codegen.parts import Parted
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.maths.typing import FloatArray
 
 Words = dict[str, Any]

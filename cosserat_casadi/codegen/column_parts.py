@@ -21,11 +21,11 @@ from cosserat_casadi.codegen.columns import (
     in_groups,
     on_path,
 )
-from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
 from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
 from cosserat_casadi.codegen.streams import Stream, alike, names_of_part, same_but_for_rounding, shared
+from cosserat_casadi.compiling.listing import UnknownOperationError
 from cosserat_casadi.model.build import Model
 
 COLUMNS, TURNS, CONSTANTS = len(GIVEN), len(GIVEN) + 1, len(GIVEN) + 2

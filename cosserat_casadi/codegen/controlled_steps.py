@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
 from cosserat_casadi.codegen.motion_sources import initialiser, method_words, pairs
-from cosserat_casadi.codegen.scalar_program import cases_in_c
-from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler
+from cosserat_casadi.compiling.scalar_program import cases_in_c
+from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import PushedResidual
 from cosserat_casadi.motion.contact_law import address_of, raise_what_was_raised

@@ -20,9 +20,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from cosserat_casadi.codegen.compiler import EXPORT_ANEW, compiled_texts, find_compiler
 from cosserat_casadi.codegen.library import device_files
 from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, read_manifest
+from cosserat_casadi.compiling.compiler import EXPORT_ANEW, compiled_texts, find_compiler
 from cosserat_casadi.errors import ExportError, Problem
 
 HOST, CUDA = "host", "cuda"

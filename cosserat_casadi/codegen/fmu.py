@@ -15,7 +15,6 @@ from pathlib import Path
 
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
 from cosserat_casadi.codegen.kernel_files import kernel_sources
@@ -25,7 +24,8 @@ from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.names import Names, model_names
-from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import Model

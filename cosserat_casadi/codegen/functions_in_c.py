@@ -17,7 +17,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import solver_function
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import (
     ARGUMENT_UNITS,

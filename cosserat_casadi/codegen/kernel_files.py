@@ -17,13 +17,13 @@ from pathlib import Path
 
 import casadi as ca
 
-from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel, printed_sources
 from cosserat_casadi.codegen.program_in_c import program_in_c
 from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
-from cosserat_casadi.codegen.texts import fill, resource
+from cosserat_casadi.compiling.listing import UnknownOperationError
+from cosserat_casadi.compiling.texts import fill, resource
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.maths.calls import chooses
 

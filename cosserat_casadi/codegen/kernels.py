@@ -21,7 +21,6 @@ from cosserat_casadi.codegen.columns import (
 )
 from cosserat_casadi.codegen.contact.moving import contact_functions
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, differentiable_functions, functions_in_c
-from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
@@ -30,6 +29,7 @@ from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
+from cosserat_casadi.compiling.listing import UnknownOperationError
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners

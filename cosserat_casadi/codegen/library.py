@@ -30,8 +30,8 @@ from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.passages import PASSAGE_FILES, passage_words, watches_passages
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import initialiser, pose_name, result_struct_words, vector_words
-from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
+from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
 from cosserat_casadi.maths.typing import FloatArray

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.codegen.compiled import Compiled
-from cosserat_casadi.codegen.compiler import find_compiler, shared_object
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
 from cosserat_casadi.codegen.manifest import (
     ARRANGEMENTS,
@@ -19,8 +18,9 @@ from cosserat_casadi.codegen.manifest import (
     is_sound,
     read_manifest,
 )
-from cosserat_casadi.codegen.texts import files_in_c
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubes
+from cosserat_casadi.compiling.compiler import find_compiler, shared_object
+from cosserat_casadi.compiling.texts import files_in_c
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.numerics.progress import StageProgress
 

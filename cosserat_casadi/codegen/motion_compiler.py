@@ -16,8 +16,6 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.cache import cache_folder, tallied, tally
-from cosserat_casadi.codegen.compiler import compiled_from, compiled_texts, find_compiler
 from cosserat_casadi.codegen.controlled_steps import (
     CompiledSteps,
     stem_of_steps,
@@ -25,8 +23,10 @@ from cosserat_casadi.codegen.controlled_steps import (
     steps_are_loaded,
     steps_library,
 )
-from cosserat_casadi.codegen.description import key_of
-from cosserat_casadi.codegen.scalar_program import ScalarProgram, scalar_program
+from cosserat_casadi.compiling.cache import cache_folder, tallied, tally
+from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler
+from cosserat_casadi.compiling.description import key_of
+from cosserat_casadi.compiling.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.files import sources_hash
 from cosserat_casadi.model.build import Model

@@ -19,8 +19,6 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
-from cosserat_casadi.codegen.cache import kept_texts
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import (
     adjoint_and_second,
@@ -31,6 +29,8 @@ from cosserat_casadi.codegen.stage import (
     written,
     written_in_c,
 )
+from cosserat_casadi.compiling.cache import kept_texts
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.function_table import PARAMETERS

@@ -7,10 +7,10 @@ import hashlib
 from functools import cache, lru_cache
 from typing import Any
 
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.controlled_steps import steps_library
-from cosserat_casadi.codegen.scalar_program import scalar_program
-from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.scalar_program import scalar_program
+from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.motion import contact_law

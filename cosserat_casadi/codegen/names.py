@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from cosserat_casadi.codegen.texts import files_in_c
+from cosserat_casadi.compiling.texts import files_in_c
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import FunctionSpec, Owner, table

@@ -6,7 +6,7 @@ from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.manifest import parameter_entries
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.structs import vector_words
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 

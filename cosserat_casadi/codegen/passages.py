@@ -11,7 +11,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size, with_parameters_behind_inputs
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from
 from cosserat_casadi.equilibrium.contact.passing_through import admitted_depth
 from cosserat_casadi.equilibrium.smooth_passage import ball_in, depth_allowed, length_of, quaternions_of

@@ -19,7 +19,6 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.columns import LANES
-from cosserat_casadi.codegen.listing import Constant, Listing, Read, UnknownOperationError
 from cosserat_casadi.codegen.numbered import SMALL, Numbers, Program, Step
 from cosserat_casadi.codegen.printed_kernels import Callee, ConstantTable, PrintedKernel
 from cosserat_casadi.codegen.products import Product, column_groups
@@ -35,6 +34,7 @@ from cosserat_casadi.codegen.statements import (
     in_parts,
 )
 from cosserat_casadi.codegen.steps import program_of
+from cosserat_casadi.compiling.listing import Constant, Listing, Read, UnknownOperationError
 
 LONGEST_BUNDLE = 3000
 """Instructions of small steps that are written together at the most."""

@@ -12,8 +12,6 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.cache import kept_texts
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.lanes import in_lanes, lanes_files
@@ -21,7 +19,9 @@ from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
-from cosserat_casadi.codegen.texts import files_in_c, render
+from cosserat_casadi.compiling.cache import kept_texts
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.texts import files_in_c, render
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model

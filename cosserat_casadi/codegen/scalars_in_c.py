@@ -15,14 +15,6 @@ from functools import cached_property, partial
 import casadi as ca
 
 from cosserat_casadi.codegen.columns import LANES, ColumnForm, in_groups
-from cosserat_casadi.codegen.listing import (
-    Called,
-    Computed,
-    Constant,
-    Listing,
-    Read,
-    UnknownOperationError,
-)
 from cosserat_casadi.codegen.printed_kernels import (
     CALL_OF_COLUMNS,
     COLUMNS,
@@ -44,6 +36,14 @@ from cosserat_casadi.codegen.statements import (
     computations,
     in_parts,
     number_in_c,
+)
+from cosserat_casadi.compiling.listing import (
+    Called,
+    Computed,
+    Constant,
+    Listing,
+    Read,
+    UnknownOperationError,
 )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.library import SECOND_VARIATION
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import ASIDE
 from cosserat_casadi.equilibrium.stability import DEPENDENT, ZERO, variations
 from cosserat_casadi.errors import ExportError, Problem

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, SUMS, Computed, Listing, UnknownOperationError
+from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, SUMS, Computed, Listing, UnknownOperationError
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""

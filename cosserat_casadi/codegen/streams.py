@@ -9,7 +9,7 @@ from math import isfinite
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.codegen.listing import Constant, Listing, Read, Value
+from cosserat_casadi.compiling.listing import Constant, Listing, Read, Value
 from cosserat_casadi.maths.typing import FloatArray
 
 Key = tuple[Hashable, ...]

@@ -13,11 +13,11 @@ from math import inf
 from pathlib import Path
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.compiler import compiler_words
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
 from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.names import Names, scene_names
+from cosserat_casadi.compiling.compiler import compiler_words
 from cosserat_casadi.model.build import Model
 
 NAME = "timed"

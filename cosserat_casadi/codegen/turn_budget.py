@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
-from cosserat_casadi.codegen.compiler import FLAGS, find_compiler
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.structs import initialiser
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.compiler import FLAGS, find_compiler
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 

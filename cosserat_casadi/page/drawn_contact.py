@@ -14,7 +14,7 @@ from cosserat_casadi.codegen.contact.sources import TRACK_ITERATIONS, TRACK_PART
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names, scene_names
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.maths.numbers import as_vector

@@ -13,7 +13,7 @@ from typing import Any
 
 from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.codegen.contact.checks import check_contact
-from cosserat_casadi.codegen.texts import fill
+from cosserat_casadi.compiling.texts import fill
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution

@@ -10,9 +10,9 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 
-from cosserat_casadi.codegen.compiler import LONGEST, Processes
 from cosserat_casadi.codegen.export import folder_files
-from cosserat_casadi.codegen.texts import fill
+from cosserat_casadi.compiling.compiler import LONGEST, Processes
+from cosserat_casadi.compiling.texts import fill
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.page.drawn_model import DrawnModel
 

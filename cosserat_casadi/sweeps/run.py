@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.contact.rows import contact_row_library
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.rows import ERRORS, JUDGED, NAME, POSE, STABILITY, RowLibrary, row_library, row_results
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.equilibrium.smooth_passage import has_barriers
 from cosserat_casadi.errors import ExportError, Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray

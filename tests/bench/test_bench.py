@@ -19,8 +19,8 @@ from work_precision.record import CSV, JSON
 
 from cosserat_casadi import Scene, SceneError
 from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_effects, print_motion_times
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.timed_program import Times
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.operation_cost import is_damped, price, without_damping
 from cosserat_casadi.model.operations import count

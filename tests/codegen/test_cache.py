@@ -15,8 +15,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, build, discretise, export, load
-from cosserat_casadi.codegen import cache, compiler
-from cosserat_casadi.codegen.cache import (
+from cosserat_casadi.compiling import cache, compiler
+from cosserat_casadi.compiling.cache import (
     ABANDONED,
     IN_USE,
     MOST_TALLIED,
@@ -28,7 +28,7 @@ from cosserat_casadi.codegen.cache import (
     tallied,
     tally,
 )
-from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.compiling.compiler import find_compiler
 from tests.families import mostly_slow
 from tests.scenes import push, scene
 
@@ -198,7 +198,7 @@ def test_a_damaged_library_is_compiled_anew(strip: Path, damage: str) -> None:
     code = f"""
 import sys
 from cosserat_casadi import load
-from cosserat_casadi.codegen import compiler
+from cosserat_casadi.compiling import compiler
 compiler.FLAGS = {compiler.FLAGS}
 print(load(sys.argv[1]).solve().converged)
 """

@@ -19,12 +19,13 @@ from numpy.testing import assert_array_equal
 
 import cosserat_casadi
 from cosserat_casadi import Model, build, discretise, scene_from_dict
-from cosserat_casadi.codegen import cache, description, rows
+from cosserat_casadi.codegen import rows
 from cosserat_casadi.codegen import stage as stage_module
-from cosserat_casadi.codegen.cache import kept_texts
-from cosserat_casadi.codegen.description import key_of
 from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.codegen.stage import compiled_stage
+from cosserat_casadi.compiling import cache, description
+from cosserat_casadi.compiling.cache import kept_texts
+from cosserat_casadi.compiling.description import key_of
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.files import sources_hash
 from cosserat_casadi.loads.load import Load

@@ -16,10 +16,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, ExportError, Model, Scene, SceneError, build, discretise, export, load, solve
-from cosserat_casadi.codegen import compiler
-from cosserat_casadi.codegen.cache import cache_folder, file_name
-from cosserat_casadi.codegen.compiler import FLAGS, find_compiler
 from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.compiling import compiler
+from cosserat_casadi.compiling.cache import cache_folder, file_name
+from cosserat_casadi.compiling.compiler import FLAGS, find_compiler
 from tests.scenes import WEIGHT, push, scene
 
 COMPILER = next((found for word in ("cc", "gcc", "clang") if (found := shutil.which(word))), None)

@@ -14,8 +14,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen import description, kernel_files, moving_contacts
-from cosserat_casadi.codegen.cache import tallied
+from cosserat_casadi.codegen import kernel_files, moving_contacts
 from cosserat_casadi.codegen.controlled_steps import (
     FEW_TRIES,
     CompiledSteps,
@@ -24,6 +23,8 @@ from cosserat_casadi.codegen.controlled_steps import (
     steps_library,
 )
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
+from cosserat_casadi.compiling import description
+from cosserat_casadi.compiling.cache import tallied
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion import contact_law

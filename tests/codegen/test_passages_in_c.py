@@ -27,7 +27,7 @@ from cosserat_casadi.codegen.passages import PASSAGE_FILES, passage_kernels, pas
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import row_library
 from cosserat_casadi.codegen.status import OUTCOMES, MotionStatus
-from cosserat_casadi.codegen.texts import fill, resource
+from cosserat_casadi.compiling.texts import fill, resource
 from cosserat_casadi.equilibrium.contact.passing_through import LookedAt, admitted_depth
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers, depth_allowed, places_along
 from cosserat_casadi.maths.rotation import quaternion_product

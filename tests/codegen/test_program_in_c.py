@@ -11,12 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, discretise, scene_from_dict
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.numbered import function_of
 from cosserat_casadi.codegen.products import Product, column_groups
 from cosserat_casadi.codegen.program_in_c import ConstantTables, program_in_c
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from tests.families import mostly_slow
 
 ROD = {

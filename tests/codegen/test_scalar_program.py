@@ -11,8 +11,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.codegen.controlled_steps import LANES, steps_library
-from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
-from cosserat_casadi.codegen.scalar_program import (
+from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
+from cosserat_casadi.compiling.scalar_program import (
     MINUS_PRODUCT,
     OF_TWO,
     PLUS_PRODUCT,

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.shared_values import FEWEST_SHARED, with_shared_kernels
 from cosserat_casadi.codegen.statements import LONGEST_OF_NUMBERS
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 
 LONG = FEWEST_SHARED
 

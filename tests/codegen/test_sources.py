@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.codegen.library import VERBATIM
-from cosserat_casadi.codegen.texts import resource
+from cosserat_casadi.compiling.texts import resource
 from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, gcc, run
 from tests.families import mostly_slow
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from cosserat_casadi.codegen import texts
+from cosserat_casadi.compiling import texts
 
 TEMPLATES = [file.name for file in (resources.files("cosserat_casadi.codegen") / "templates").iterdir()]
 

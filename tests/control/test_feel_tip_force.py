@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.load import load
+from cosserat_casadi.compiling.compiler import find_compiler
 from examples.feel_tip_force import (
     Plant,
     draw,

@@ -13,8 +13,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, Scene, Solution, build, scene_from_dict, solve
-from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
-from cosserat_casadi.codegen.texts import files_in_c
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.texts import files_in_c
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray

@@ -24,10 +24,10 @@ from cosserat_casadi import (
     solve,
 )
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
-from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubes
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.tubes.tube_functions import RESOLVED
 from cosserat_casadi.tubes.tube_solution import tip_error

@@ -15,7 +15,7 @@ from cosserat_casadi.cli.reports.format import print_written
 from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.cli.terminal import Console
-from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import NOT_KNOWN, locking_note, may_be_locked
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError, refuse

@@ -15,7 +15,7 @@ from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.model import print_choice, print_locking
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.cli.terminal import Console
-from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.equilibrium.locking import locking_note, locking_sentence
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.equilibrium.solve import solve

@@ -12,7 +12,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
 from cosserat_casadi.codegen.contact.rubbing import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray

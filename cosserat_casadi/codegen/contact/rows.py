@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.rows import (
     row_results,
     to_compile,
 )
-from cosserat_casadi.codegen.texts import render
+from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.maths.typing import FloatArray

@@ -19,7 +19,7 @@ from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 
-from cosserat_casadi.codegen.cache import (
+from cosserat_casadi.compiling.cache import (
     SCRATCH,
     VARIABLE,
     cache_folder,

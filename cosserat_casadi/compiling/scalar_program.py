@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
+from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
 from cosserat_casadi.maths.calls import called_functions
 from cosserat_casadi.maths.typing import FloatArray
 

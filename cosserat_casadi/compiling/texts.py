@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
+FILES = resources.files("cosserat_casadi") / "codegen"
+"""The folder of the templates, and of the files in C."""
+
 INCLUDED = re.compile(r"@\{include (\S+)\}\n")
 """A part of a template that is a template too."""
 
@@ -39,10 +42,10 @@ def fill(text: str, words: Mapping[str, Any]) -> str:
 
 def resource(folder: str, file: str, *, on_device: bool = False) -> str:
     """Text of a file of this package; without the qualifiers of functions for a GPU, unless it is for one."""
-    text = (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
+    text = (FILES / folder / file).read_text(encoding="utf-8")
     return text if on_device else DEVICE.sub("", text)
 
 
 def files_in_c() -> list[str]:
     """Names of the files of this package in C."""
-    return sorted(file.name for file in (resources.files("cosserat_casadi.codegen") / "c").iterdir())
+    return sorted(file.name for file in (FILES / "c").iterdir())

@@ -27,7 +27,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from cosserat_casadi.codegen.description import key_of
+from cosserat_casadi.compiling.description import key_of
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.files import sources_hash, write_atomically
 

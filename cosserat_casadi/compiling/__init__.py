@@ -1,0 +1,1 @@
+"""Texts in C on their way to machine code: sources read, functions listed, libraries compiled and kept."""
