@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.blocks import Front
 from cosserat_casadi.codegen.parts import Parted
+from cosserat_casadi.compiling.c_tables import numbers, table
 from cosserat_casadi.compiling.texts import render
-from cosserat_casadi.maths.typing import FloatArray
 
 Words = dict[str, Any]
 
@@ -129,33 +128,3 @@ def front_tables(fronts: Sequence[Front], stem: str = "") -> tuple[str, str]:
         counts = f"{len(front.members)}, {len(front.interface)}, {front.start}"
         rows.append(f"  {{{stem}MEMBERS_{i}, {touched}, {counts}}}")
     return tables, ",\n".join(rows)
-
-
-def table(name: str, values: Sequence[float]) -> str:
-    """A constant array; nothing where it would be empty."""
-    if not values:
-        return ""
-    kind = "int" if isinstance(values[0], int) else "real"
-    return f"static const {kind} {name}[] = {{{numbers(values)}}};\n"
-
-
-def numbers(values: Sequence[float]) -> str:
-    """Entries of a constant array."""
-    text = ", ".join(str(value) if isinstance(value, int) else f"(real){value!r}" for value in values)
-    return text if len(text) < 60 else "\n" + textwrap.fill(text, 116, initial_indent="  ", subsequent_indent="  ")
-
-
-def reals(name: str, values: FloatArray) -> str:
-    """Numbers as a constant array of floating-point numbers."""
-    return f"static const real {name}[] = {{{numbers([float(value) for value in values])}}};"
-
-
-def record(fields: Mapping[str, object]) -> str:
-    """A record by its members, as an initialiser."""
-    return "{" + ", ".join(f".{name} = {value}" for name, value in fields.items()) + "}"
-
-
-def record_table(kind: str, name: str, size: str, entries: Sequence[str]) -> str:
-    """Records as a constant array."""
-    lines = ",\n".join(f"    {entry}" for entry in entries)
-    return f"static const {kind} {name}[{size}] = {{\n{lines},\n}};"

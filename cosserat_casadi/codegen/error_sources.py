@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from cosserat_casadi.codegen.block_sources import Words, numbers
+from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.equilibrium import answer_error
 from cosserat_casadi.equilibrium.metrics import ROUNDING
 from cosserat_casadi.model.build import Model

@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.kernels import kernel, kernels
 from cosserat_casadi.codegen.library import LEAST_MISFIT, FolderContents, library_sources
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import loaded, to_compile
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.cache import kept_texts
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray

@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from cosserat_casadi.accuracy.verified import Verified
-from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
 from cosserat_casadi.codegen.kernel_files import kernel_sources
@@ -24,6 +23,7 @@ from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.names import Names, model_names
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem

@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
+from cosserat_casadi.codegen.block_sources import block_words, dense_words
 from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, FRICTION_FILES, contact_words
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
@@ -31,6 +31,7 @@ from cosserat_casadi.codegen.passages import PASSAGE_FILES, passage_words, watch
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import initialiser, pose_name, result_struct_words, vector_words
 from cosserat_casadi.codegen.turn_budget import ALWAYS, SETTLING_ITERATIONS, TurnBudget
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step

@@ -16,13 +16,6 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.controlled_steps import (
-    CompiledSteps,
-    stem_of_steps,
-    steps_are_at_hand,
-    steps_are_loaded,
-    steps_library,
-)
 from cosserat_casadi.compiling.cache import cache_folder, tallied, tally
 from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler
 from cosserat_casadi.compiling.description import key_of
@@ -35,6 +28,7 @@ from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.centred_coordinates import can_be_centred
+from cosserat_casadi.motion.compiled_steps import CompiledSteps
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import function_of_displacements
@@ -51,6 +45,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_jacobians,
     interpreted_residual,
 )
+from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
 from cosserat_casadi.motion.tip_paths import functions_of_paths
 from cosserat_casadi.motion.trajectory import Motion, StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES

@@ -7,24 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.block_sources import (
-    Words,
-    front_tables,
-    numbers,
-    part_functions,
-    part_tables,
-    table,
-)
+from cosserat_casadi.codegen.block_sources import Words, front_tables, part_functions, part_tables
 from cosserat_casadi.codegen.blocks import Elimination
 from cosserat_casadi.codegen.contact.moving import contact_reals, described_contact
 from cosserat_casadi.codegen.motion_parts import MATRICES, MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import motion_status_words
+from cosserat_casadi.compiling.c_tables import initialiser, method_words, numbers, pairs, table
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import CONSISTENT
 from cosserat_casadi.numerics import consistent_start, stage_newton, step_matrices
-from cosserat_casadi.numerics.collocation import Collocation, radau
+from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
 MOTION_FILES = ("motion.h", "elimination.c", "stage_newton.c", "step.c", "step_sensitivity.c", "motion.c")
@@ -125,20 +119,6 @@ def _limits() -> Words:
     }
 
 
-def method_words(method: Collocation, real: str = "solver_real") -> dict[str, str]:
-    """Nodes, tables and polynomials of a method as initialisers."""
-    arrays = {
-        "stage_nodes": method.nodes,
-        "stage_table": method.matrix,
-        "stage_table_squared": method.matrix_squared,
-        "stage_polynomials": method.polynomials,
-        "middle_values": method.values_at(0.5),
-        "middle_integrals": method.integrals_at(0.5),
-        "middle_double_integrals": method.double_integrals_at(0.5),
-    }
-    return {name: initialiser(values, real) for name, values in arrays.items()}
-
-
 def _method() -> dict[str, str]:
     """The method as initialisers, with its first eigenvalue."""
     method = radau(STAGES)
@@ -150,18 +130,6 @@ def _method() -> dict[str, str]:
         "to_eigenvector": initialiser(pairs(method.to_eigenvectors[0])),
         "from_eigenvector": initialiser(pairs(method.from_eigenvectors[:, 0])),
     }
-
-
-def pairs(values: Sequence[complex] | np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Real and imaginary parts side by side."""
-    return np.array([[complex(value).real, complex(value).imag] for value in values])
-
-
-def initialiser(values: np.ndarray[Any, Any], real: str = "solver_real") -> str:
-    """An array of real numbers as an initialiser in C."""
-    if values.ndim == 0:
-        return f"({real}){float(values)!r}"
-    return "{" + ", ".join(initialiser(value, real) for value in values) + "}"
 
 
 def _entry_tables(motion: MotionInC) -> str:

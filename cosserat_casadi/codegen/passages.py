@@ -8,9 +8,10 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
+from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size, with_parameters_behind_inputs
+from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from
 from cosserat_casadi.equilibrium.contact.passing_through import admitted_depth

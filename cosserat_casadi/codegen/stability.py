@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.library import SECOND_VARIATION
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.equilibrium.judge import ASIDE
 from cosserat_casadi.equilibrium.stability import DEPENDENT, ZERO, variations

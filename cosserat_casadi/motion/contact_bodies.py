@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_law import Held
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_gap import FAR, FLATTEST, Facing, SectionGap
-from cosserat_casadi.motion.contact_law import Held, StepContactsRecord, TouchRecord, called, function_record, gap_size
+from cosserat_casadi.motion.contact_gap import FLATTEST, Facing, SectionGap
+from cosserat_casadi.motion.contact_law import FAR, StepContactsRecord, TouchRecord, called, function_record, gap_size
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.moving_points import MovingPoints
 from cosserat_casadi.motion.repeated_call import RepeatedCall

@@ -18,32 +18,22 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface_at_once
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_law import (
+    AT_END,
     GAP_COUNTS,
     GAP_NUMBERS,
+    MOST_VALLEYS,
     FacingRecord,
-    Held,
     ValleyRecord,
     called,
     gap_size,
     surface_record,
 )
 from cosserat_casadi.motion.moving_points import MovingPoints
-
-FAR = 0.02
-"""Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
-
-LOOKS = 200
-"""Sections of an element at which gaps are looked at first."""
-
-MOST_VALLEYS = 64
-"""Sections of a rod that may touch an obstacle at once, at most."""
-
-AT_END = 1e-12
-"""Distance from an end, over the length, at which a place is that end."""
 
 FLATTEST = 1e-3
 """Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster.

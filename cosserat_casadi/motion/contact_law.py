@@ -3,42 +3,58 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
-from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.scalar_program import LANES, scalar_program
+from cosserat_casadi.compiling.shared_records import POINTER, Held, address_of, raise_what_was_raised
+from cosserat_casadi.compiling.texts import render, resource
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.steps_library import steps_library
+from cosserat_casadi.scene.accuracy import MOST_NODES
+
+NAME = "moving_contacts"
+"""Of the library in the cache."""
+
+INCLUDED = ("contact_gaps.c", "least_pushes.c")
+"""Files that exported steps have too."""
+
+LOOKS = 200
+"""Sections of an element at which gaps are looked at first."""
+
+MOST_VALLEYS = 64
+"""Sections of a rod that may touch an obstacle at once, at most."""
+
+FAR = 0.02
+"""Change of a place, over the length, from which on Newton's method is not believed to have stayed at one minimum."""
+
+AT_END = 1e-12
+"""Distance from an end, over the length, at which a place is that end."""
+
+MOST_PLACINGS = 20
+"""Newton iterations for the place where a gap is least."""
+
+BEYOND = 0.05
+"""How far beyond the ends of a rod and of its elements polynomials are followed, over the length."""
+
+OFF = 10.0
+"""Gap of a section, over the largest fall of the gap up to the next one, from which on the rod is off the obstacle."""
+
+NO_COMPILER = "a motion in exact contact is computed by C code, and {why}"
+REMEDY = "{remedy}; or give each obstacle a width, m: contact is smooth then"
 
 KERNEL_ARGUMENTS = 3
 """Arguments of a function that the law asks for, at most."""
 
-LANES = 4
-"""Lanes of a slot of a program."""
-
-PROVIDER = "cosserat_casadi.codegen.moving_contacts"
-"""The module that compiles the law; it stands above motions, and is loaded where one of them touches something."""
-
-POINTER = ctypes.c_void_p
 CALL = ctypes.CFUNCTYPE(ctypes.c_int)
-
-
-class CompiledLaw(NamedTuple):
-    """The law in C.
-
-    Attributes:
-        library: has its functions.
-        run: address of the function that runs programs of scalars.
-        program: program of a function of scalars; None where it has an instruction that no program has.
-    """
-
-    library: ctypes.CDLL
-    run: int
-    program: Callable[[ca.Function], Program | None]
 
 
 class KernelRecord(ctypes.Structure):
@@ -137,45 +153,53 @@ ARGUMENTS: dict[str, tuple[Any, Sequence[Any]]] = {
 }
 """Functions of the law: result, and arguments."""
 
-_RAISED: list[BaseException] = []
-"""Exceptions of functions of Python that C has called."""
-
 
 @lru_cache(maxsize=1)
-def compiled_law() -> CompiledLaw:
+def compiled_law() -> ctypes.CDLL:
     """The law, compiled once in a process; the cache keeps it for others.
 
     Raises:
         ExportError: there is no compiler, or it fails.
     """
-    law: CompiledLaw = import_module(PROVIDER).compiled_law()
+    texts = {file: resource("c", file) for file in (f"{NAME}.c", *INCLUDED)}
+    texts[f"{NAME}.h"] = render(f"{NAME}.h.in", _words())
+    try:
+        law = ctypes.CDLL(str(compiled_texts(NAME, texts, find_compiler(), INCLUDED)))
+        # Surfaces are programs, which the steps run.
+        steps_library()
+    except ExportError as error:
+        (problem,) = error.problems
+        why, remedy = problem.problem, problem.remedy
+        raise ExportError(Problem(problem.where, NO_COMPILER.format(why=why), REMEDY.format(remedy=remedy))) from None
     for name, (result, arguments) in ARGUMENTS.items():
-        function = getattr(law.library, name)
+        function = getattr(law, name)
         function.restype, function.argtypes = result, arguments
     records = (KernelRecord, PointsRecord, FacingRecord, TouchRecord, StepContactsRecord)
     for number, record in enumerate(records):
-        assert law.library.contact_records(number) == ctypes.sizeof(record), record.__name__
+        assert law.contact_records(number) == ctypes.sizeof(record), record.__name__
     return law
+
+
+def _words() -> dict[str, Any]:
+    return {
+        "kernel_arguments": KERNEL_ARGUMENTS,
+        "looks": LOOKS,
+        "most_nodes": MOST_NODES + 1,
+        "most_valleys": MOST_VALLEYS,
+        "base_unknowns": POSE_SIZE,
+        "most_placings": MOST_PLACINGS,
+        "far": FAR,
+        "beyond": BEYOND,
+        "off": OFF,
+        "at_end": AT_END,
+    }
 
 
 def called(name: str, *arguments: Any) -> Any:
     """The result of a function of the law."""
-    result = getattr(compiled_law().library, name)(*arguments)
+    result = getattr(compiled_law(), name)(*arguments)
     raise_what_was_raised()
     return result
-
-
-def raise_what_was_raised() -> None:
-    """Raise what Python raised where C called it."""
-    if _RAISED:
-        raise _RAISED.pop()
-
-
-def address_of(name: str) -> int:
-    """Where a function of the law is in memory."""
-    address = ctypes.cast(getattr(compiled_law().library, name), ctypes.c_void_p).value
-    assert address is not None, "a function has an address"
-    return address
 
 
 def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) -> FloatArray | None:
@@ -204,38 +228,7 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
 @lru_cache(maxsize=1)
 def gap_size() -> int:
     """Numbers that a gap takes in memory, with weights of as many nodes as an element may have."""
-    return int(compiled_law().library.contact_records(5)) // ctypes.sizeof(DOUBLE)
-
-
-class Held:
-    """A record that C reads, and the arrays and functions that it points at.
-
-    Args:
-        record: the record.
-
-    Attributes:
-        record: the record.
-        address: of it.
-    """
-
-    def __init__(self, record: Any) -> None:
-        self.record = record
-        self.address = ctypes.addressof(record)
-        self._kept: list[Any] = []
-
-    def share(self, name: str, array: np.ndarray[Any, Any]) -> None:
-        """Have a member of the record point at an array."""
-        self._kept.append(array)
-        setattr(self.record, name, array.ctypes.data)
-
-    def point(self, name: str, held: Held) -> None:
-        """Have a member of the record point at another record."""
-        self._kept.append(held)
-        setattr(self.record, name, held.address)
-
-    def keep(self, held: Any) -> None:
-        """Keep what the record has the address of."""
-        self._kept.append(held)
+    return int(compiled_law().contact_records(5)) // ctypes.sizeof(DOUBLE)
 
 
 def function_record(call: RepeatedCall) -> Held:
@@ -249,15 +242,14 @@ def function_record(call: RepeatedCall) -> Held:
             held.share(name, array)
         held.share("integers", call.code.integers)
         held.share("scratch", call.code.scratch)
-    _have_evaluated(held, call)
+    held.call_back("evaluate", CALL, call.evaluate)
     held.keep(call)
     return held
 
 
 def surface_record(function: ca.Function) -> Held:
     """A small function of a point as the law calls it: as a program, or by CasADi's virtual machine."""
-    law = compiled_law()
-    program = law.program(function)
+    program = scalar_program(function)
     if program is None:
         return function_record(RepeatedCall(function))
     held = Held(KernelRecord())
@@ -266,7 +258,8 @@ def surface_record(function: ca.Function) -> Held:
     _give_memory(held, [np.zeros(function.nnz_in())], np.zeros(function.nnz_out()))
     held.share("program", np.ascontiguousarray(lines))
     held.share("slots", np.repeat(slots, LANES))
-    record.lines, record.size, record.run = len(lines), function.nnz_out(), law.run
+    record.lines, record.size = len(lines), function.nnz_out()
+    record.run = address_of(steps_library().program_run)
     return held
 
 
@@ -277,17 +270,3 @@ def _give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray
         record.arguments[number] = array.ctypes.data
         record.counts[number] = len(array)
     held.share("result", result)
-
-
-def _have_evaluated(held: Held, call: RepeatedCall) -> None:
-    def evaluate() -> int:
-        try:
-            call.evaluate()
-        except BaseException as raised:
-            _RAISED.append(raised)
-            return 1
-        return 0
-
-    wrapped = CALL(evaluate)
-    held.keep(wrapped)
-    held.record.evaluate = wrapped

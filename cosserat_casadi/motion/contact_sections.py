@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import chebyshev as polynomial
 
+from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
@@ -22,8 +23,8 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.contact_gap import LOOKS, Facing
-from cosserat_casadi.motion.contact_law import Held, called
+from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_law import LOOKS, called
 from cosserat_casadi.motion.lying_sections import laid_sections
 from cosserat_casadi.motion.moving_points import MovingPoints, centre_of, nodes_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries

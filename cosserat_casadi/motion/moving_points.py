@@ -12,12 +12,13 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.motion.contact_law import Held, PointsRecord, called, function_record
+from cosserat_casadi.motion.contact_law import PointsRecord, called, function_record
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
 
 

@@ -16,11 +16,9 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.compiling.scalar_program import ScalarProgram
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
-
-Program = tuple[npt.NDArray[np.intc], FloatArray, int]
-"""Lines of numbers, initial values of slots, and the number of arguments among them."""
 
 MOST_LOADED = 256
 """Functions of shared objects that a process keeps loaded."""
@@ -62,8 +60,7 @@ class RepeatedCall:
         results: matrices that the results are written to.
         evaluate: reads the one and writes the other.
         code: the function in machine code; None where CasADi's virtual machine runs it.
-        program: lines of numbers for a loop in C, initial values of its slots, and the number of arguments among them;
-            None where none was written.
+        program: of the function, for a loop in C; None where none was written.
         program_after: gives the program, or None, when a motion has taken so many iterations without one; None where
             none is to be written.
 
@@ -87,8 +84,8 @@ class RepeatedCall:
             buffer.set_res(number, result.ravel(order="K").data)
         # The evaluation reads and writes the buffer's memory: it has to live as long.
         self._buffer = buffer
-        self.program: Program | None = None
-        self.program_after: Callable[[int], Program | None] | None = None
+        self.program: ScalarProgram | None = None
+        self.program_after: Callable[[int], ScalarProgram | None] | None = None
         self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
     @property

@@ -14,20 +14,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen import kernel_files, moving_contacts
-from cosserat_casadi.codegen.controlled_steps import (
-    FEW_TRIES,
-    CompiledSteps,
-    stem_of_steps,
-    steps_are_loaded,
-    steps_library,
-)
+from cosserat_casadi.codegen import kernel_files
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
 from cosserat_casadi.compiling import description
 from cosserat_casadi.compiling.cache import tallied
+from cosserat_casadi.compiling.scalar_program import ScalarProgram
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion import contact_law
+from cosserat_casadi.motion.compiled_steps import FEW_TRIES, CompiledSteps
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
@@ -36,9 +31,10 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight, integrated
 from cosserat_casadi.motion.kernel_residual import KernelResidual
-from cosserat_casadi.motion.repeated_call import Program, RepeatedCall
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import functions_of_limits, moving_inputs, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted, interpreted_jacobians, interpreted_residual
+from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_loaded, steps_library
 from cosserat_casadi.motion.tip_paths import functions_of_paths, paths
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics import time_steps
@@ -377,7 +373,7 @@ def test_a_program_is_written_within_a_motion_that_takes_long_and_changes_no_dig
     start = started(model, model.scene.simulation, None)
     taken = list[int]()
 
-    def later(iterations: int) -> Program | None:
+    def later(iterations: int) -> ScalarProgram | None:
         taken.append(iterations)
         return program
 
@@ -479,8 +475,7 @@ def test_without_a_compiler_the_virtual_machine_runs(monkeypatch: pytest.MonkeyP
 
 def test_without_a_compiler_a_motion_in_exact_contact_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "no-such-compiler")
-    for module in (contact_law, moving_contacts):
-        monkeypatch.setattr(module, "compiled_law", module.compiled_law.__wrapped__)
+    monkeypatch.setattr(contact_law, "compiled_law", contact_law.compiled_law.__wrapped__)
     floor = {"name": "floor", "kind": "plane", "point": [0, 0, -5], "normal": [0, 0, 1]}
     scene = scene_from_dict({**arm(start="unloaded"), "obstacles": [floor]})
     with pytest.raises(ExportError, match=r"by C code, and no-such-compiler .*; or give each obstacle a width"):

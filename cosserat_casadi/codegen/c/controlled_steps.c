@@ -54,7 +54,7 @@ typedef enum {
   INTERRUPTED
 } steps_outcome;
 
-/* What Python shares: cosserat_casadi/codegen/controlled_steps.py has the same record. Matrices are stored column after
+/* What Python shares: cosserat_casadi/motion/steps_library.py has the same record. Matrices are stored column after
    column. */
 typedef struct {
   int unknowns;

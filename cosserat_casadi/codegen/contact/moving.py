@@ -9,16 +9,18 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.codegen.block_sources import Words, numbers, reals, record, record_table
+from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.contact.rubbing import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.compiling.texts import render
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_bodies import BodyFacing
-from cosserat_casadi.motion.contact_gap import MOST_VALLEYS, Facing
+from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_law import MOST_VALLEYS
 from cosserat_casadi.motion.contact_sections import RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 

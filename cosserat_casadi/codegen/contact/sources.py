@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.accuracy.verified import Verified
-from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import (
     RICHER_WORDS,
@@ -42,6 +41,7 @@ from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.parameter_sources import contact_parameter_words
 from cosserat_casadi.codegen.stability import limits_of_stability
 from cosserat_casadi.codegen.status import CONTACT_OUTCOMES, status_words
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.equilibrium.contact import (
     contact_alternatives,
     contact_equations,

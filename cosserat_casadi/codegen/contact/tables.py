@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from cosserat_casadi.codegen.block_sources import numbers, reals, record, record_table
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, touches_bodies, words_of
+from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.stability import variations

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.codegen.block_sources import dense_words, numbers
+from cosserat_casadi.codegen.block_sources import dense_words
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.library import (
     ONE_BY_ONE,
@@ -33,6 +33,7 @@ from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import TUBE_OUTCOMES, status_words
 from cosserat_casadi.codegen.tubes.kernels import TubeKernels
 from cosserat_casadi.codegen.turn_budget import ALWAYS
+from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.continuation import ContinuationSettings

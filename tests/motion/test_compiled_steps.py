@@ -11,11 +11,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import MotionOutcome, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen.controlled_steps import MOST_TRIES, CompiledSteps
 from cosserat_casadi.codegen.motion_compiler import MotionCompiler
 from cosserat_casadi.compiling.scalar_program import scalar_program
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.centred_coordinates import can_be_centred
+from cosserat_casadi.motion.compiled_steps import MOST_TRIES, CompiledSteps
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
