@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import Model, build, scene_from_dict
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.contact_gap import Facing
 from tests.scenes import STIFFNESS
 
 Tables = dict[str, Any]
@@ -290,3 +291,8 @@ def consistent_state(model: Model, seed: int = 0) -> State:
         v[differential] -= np.linalg.pinv(rows) @ left
         assert np.abs(model.residual(x, state.inputs).full().ravel()[held]).max() < 1e-13
     return State(x, v, state.a, state.inputs, state.inputs_rate, state.inputs_acceleration)
+
+
+def gaps_along(facing: Facing, nodes: FloatArray, count: int = 200) -> FloatArray:
+    """Gaps of a rod and an obstacle at sections evenly spread over it, over the length, shape (count + 1,)."""
+    return np.array([facing.at(nodes, X).value for X in np.linspace(0.0, 1.0, count + 1).tolist()])

@@ -26,9 +26,8 @@ from cosserat_casadi.motion.contact_law import (
     AT_END,
     GAP_COUNTS,
     GAP_NUMBERS,
-    MOST_VALLEYS,
+    LOOKS,
     FacingRecord,
-    ValleyRecord,
     called,
     gap_size,
     surface_record,
@@ -196,9 +195,11 @@ class Facing(ABC):
 
     def minima(self, nodes: FloatArray, below: float) -> list[Minimum]:
         """Sections whose gaps are the least about them, and not above a bound over the length, base to tip."""
-        found = (ValleyRecord * MOST_VALLEYS)()
-        count = called("gap_valleys", self.in_law.address, _address(nodes), below, ctypes.addressof(found))
-        return [_minimum(valley) for valley in found[:count]]
+        # A section that is looked at has one valley at most.
+        places, gaps = np.zeros((2, LOOKS * (len(self.ends) - 1) + 1))
+        room = places.ctypes.data, gaps.ctypes.data
+        count = called("gap_valleys", self.in_law.address, _address(nodes), below, *room)
+        return [_minimum(place, gap) for place, gap in zip(places[:count].tolist(), gaps[:count].tolist(), strict=True)]
 
     def laid_gaps(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the sections at which it is held where it lies, over the length, shape (k,)."""
@@ -221,11 +222,12 @@ class Facing(ABC):
         return self._lowest(nodes, (), (), all_ends=True)
 
     def _lowest(self, nodes: FloatArray, but: Sequence[float], ends: Sequence[float], *, all_ends: bool) -> Minimum:
-        found = ValleyRecord()
+        place, gap = ctypes.c_double(), ctypes.c_double()
         places, left_out = ((ctypes.c_double * len(numbers))(*numbers) for numbers in (but, ends))
-        lists = (places, len(but), left_out, len(ends))
-        called("lowest_gap", self.in_law.address, _address(nodes), all_ends, *lists, ctypes.byref(found))
-        return _minimum(found)
+        lists = (places, (ctypes.c_int * len(but))(), len(but), left_out, len(ends))
+        found = ctypes.byref(place), ctypes.byref(gap)
+        called("lowest_gap", self.in_law.address, _address(nodes), all_ends, *lists, *found)
+        return _minimum(place.value, gap.value)
 
     def gradient(self, x: FloatArray, inputs: FloatArray, gap: SectionGap) -> FloatArray:
         """Derivative of a gap with the unknowns, shape (n,)."""
@@ -286,8 +288,7 @@ def _address(nodes: FloatArray) -> int:
     return nodes.ctypes.data
 
 
-def _minimum(valley: ValleyRecord) -> Minimum:
-    """The section of a record; rounding alone makes no other one of an end of the rod."""
-    place = valley.place
+def _minimum(place: float, gap: float) -> Minimum:
+    """A section with its gap; rounding alone makes no other one of an end of the rod."""
     inside = AT_END < place < 1.0 - AT_END
-    return Minimum(place if inside else float(round(place)), valley.value, inside)
+    return Minimum(place if inside else float(round(place)), gap, inside)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev as polynomial
@@ -24,7 +23,7 @@ from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_bodies import BodyFacing
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_law import LOOKS, called
+from cosserat_casadi.motion.contact_law import LOOKS
 from cosserat_casadi.motion.lying_sections import laid_sections
 from cosserat_casadi.motion.moving_points import MovingPoints, centre_of, nodes_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
@@ -46,18 +45,6 @@ class RodFacing(Facing):
         return float(self.model.discrete.rods[self.owner].properties.length)
 
     @cached_property
-    def looked_at(self) -> FloatArray:
-        """Abscissae at which gaps are looked at first, shape (k,)."""
-        parts = [np.linspace(start, end, LOOKS + 1)[:-1] for start, end in pairwise(self.ends)]
-        return np.concatenate([*parts, [self.ends[-1]]])
-
-    def gaps(self, nodes: FloatArray) -> FloatArray:
-        """Gaps at the sections looked at, over the length, shape (k,)."""
-        gaps = np.zeros(len(self.looked_at))
-        called("looked_gaps", self.in_law.address, nodes.ctypes.data, gaps.ctypes.data)
-        return gaps
-
-    @cached_property
     def laid_at(self) -> FloatArray:
         """Abscissae of these sections, base to tip, shape (k,)."""
         return laid_sections(self.model, self.owner, self.watched_ends)
@@ -69,8 +56,8 @@ class RodFacing(Facing):
         record.watches_base, record.watches_tip = self.watched_ends
         held.share("ends", np.array(self.ends))
         held.share("to_coefficients", np.ascontiguousarray(self.to_coefficients))
-        held.share("looks", np.ascontiguousarray(self.looks(LOOKS)))
-        held.share("gaps_along", np.zeros(len(self.looked_at)))
+        held.share("looks", np.ascontiguousarray(self.looks))
+        held.share("gaps_along", np.zeros(LOOKS * record.elements + 1))
 
     @cached_property
     def _grid(self) -> Grid:
@@ -92,9 +79,10 @@ class RodFacing(Facing):
         points = 2.0 * np.asarray(chebyshev.nodes(self._grid.intervals)) - 1.0
         return np.asarray(np.linalg.inv(polynomial.chebvander(points, self._grid.intervals)))
 
-    def looks(self, count: int) -> FloatArray:
-        """Weights of the nodes of an element at so many sections evenly spread over it, and its end, count + 1 rows."""
-        local = 2.0 * np.linspace(0.0, 1.0, count + 1) - 1.0
+    @property
+    def looks(self) -> FloatArray:
+        """Weights of the nodes of an element at LOOKS sections spread evenly over it, and at its end."""
+        local = 2.0 * np.linspace(0.0, 1.0, LOOKS + 1) - 1.0
         return np.asarray(polynomial.chebvander(local, self.nodes_of_element - 1) @ self.to_coefficients)
 
     @cached_property

@@ -14,6 +14,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion import exact_contact
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, GuardKind
+from cosserat_casadi.motion.contact_law import LOOKS
 from cosserat_casadi.motion.contact_sections import RodFacing, facings
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
@@ -22,6 +23,7 @@ from cosserat_casadi.motion.simulate import Simulator, motion_of, moving_inputs,
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
 from tests.families import mostly_slow
+from tests.moving_scenes import gaps_along
 
 LENGTH = 0.4
 DENSITY = 0.2
@@ -481,7 +483,7 @@ def test_the_lowest_valley_between_sections_that_are_looked_at_is_not_missed_bes
         sunk = nodes(tilt, valley.gap)
         valley, tip = facing.minima(sunk, 1e-5)
         # Of the sections that are looked at, the tip is the lowest.
-        assert facing.gaps(sunk).argmin() == len(facing.looked_at) - 1
+        assert gaps_along(facing, sunk, LOOKS).argmin() == LOOKS
         assert_allclose(tip.gap - valley.gap, wanted, rtol=0, atol=1e-10)
         lowest = facing.lowest(sunk, ())
         assert_allclose(lowest, min(valley.gap, tip.gap), rtol=0, atol=1e-12)

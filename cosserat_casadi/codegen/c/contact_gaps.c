@@ -201,11 +201,6 @@ static real place_of_look(const facing *own, int i) {
   return own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)(i - e * LOOKS) / LOOKS;
 }
 
-static valley valley_at(const section_gap *gap) {
-  const valley found = {gap->place, gap->value, gap->slope, gap->bend};
-  return found;
-}
-
 /* The least gap next to a section that is looked at first; that section where none is. */
 static void look_lowest_by(const facing *own, int look, section_gap *lowest, workspace *work) {
   const real place = place_of_look(own, look);
@@ -213,20 +208,24 @@ static void look_lowest_by(const facing *own, int look, section_gap *lowest, wor
   if (!(ABSOLUTE(lowest->place - place) <= SAME_PLACE) || !(lowest->bend > 0)) look_at(own, place, lowest, work);
 }
 
-/* Sections whose gaps are the least about them, and not above a bound; returns their number. Ends that are not watched are
-   none, but where all are asked for. */
-static int valleys_of(const facing *own, const real *nodes, real below, int all, valley *found, workspace *work) {
-  real *gaps = work->gaps_along;
-  section_gap lowest;
-  int count = 0;
+/* Looks along a rod, or at a body, whose valleys are asked for from now on. */
+static void look_along(const facing *own, const real *nodes, workspace *work) {
   fit_nodes(own, nodes, work);
+  if (!own->is_body) gaps_along(own, nodes, work->gaps_along, work);
+}
+
+/* The next section, from one of those that are looked at first on, whose gap is the least about it and not above a bound.
+   Returns the section to go on from, zero where there is no more. Ends that are not watched are none, but where all are asked
+   for. A section that is looked at has one valley at most. */
+static int next_valley(const facing *own, int look, real below, int all, section_gap *found, workspace *work) {
+  const real *gaps = work->gaps_along;
+  const int last = own->elements * LOOKS;
   if (own->is_body) {
-    look_at(own, 0, &lowest, work);
-    *found = valley_at(&lowest);
+    if (look > 0) return 0;
+    look_at(own, 0, found, work);
     return found->value <= below;
   }
-  const int last = gaps_along(own, nodes, gaps, work) - 1;
-  for (int i = 0; i <= last && count < MOST_VALLEYS; i++) {
+  for (int i = look; i <= last; i++) {
     const real fall = i > 0 ? gaps[i - 1] - gaps[i] : 1;
     const real rise = i < last ? gaps[i + 1] - gaps[i] : 1;
     /* Of equal ones the first and the last. */
@@ -237,8 +236,8 @@ static int valleys_of(const facing *own, const real *nodes, real below, int all,
     if (i > 0 && fall > deeper) deeper = fall;
     if (i < last && rise > deeper) deeper = rise;
     if (!is_valley || !is_watched || gaps[i] > below + deeper) continue;
-    look_lowest_by(own, i, &lowest, work);
-    if (!(lowest.value > below)) found[count++] = valley_at(&lowest);
+    look_lowest_by(own, i, found, work);
+    if (!(found->value > below)) return i + 1;
   }
-  return count;
+  return 0;
 }

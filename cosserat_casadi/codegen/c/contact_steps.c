@@ -74,24 +74,21 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
   for (int number = 0; number < FACINGS; number++) {
     const facing *own = FACING + number;
     POINTS[own->points].positions(x, inputs, work->nodes, work);
-    const int count = valleys_of(own, work->nodes, TOUCHING, 0, work->valleys, work);
-    int lies = 0;
-    for (int k = 0; k < count && !own->is_body; k++) {
-      lies |= work->valleys[k].bend <= FLATTEST && ABSOLUTE(work->valleys[k].slope) <= SMOOTH;
+    const int first = work->touch_count, had_too_many = work->too_many;
+    int lies = 0, look = 0;
+    real before = -1; /* place of the valley before: they come base to tip */
+    section_gap lowest;
+    look_along(own, work->nodes, work);
+    while ((look = next_valley(own, look, TOUCHING, 0, &lowest, work)) > 0) {
+      lies |= !own->is_body && lowest.bend <= FLATTEST && ABSOLUTE(lowest.slope) <= SMOOTH;
+      /* Less than what counts as one along a stretch: what touches at its start is never overlooked in it. */
+      if (lowest.place - before > SAME_PLACE / 2) add_touch(number, !own->is_body, lowest.place, work);
+      before = lowest.place;
     }
-    if (own->is_body) {
-      if (count > 0) add_touch(number, 0, 0, work);
-    } else if (count > 0 && (lies || (lay_before(number, work) && add_laid(number, 0, work) > 1))) {
+    if (lies || (before >= 0 && lay_before(number, work) && add_laid(number, 0, work) > 1)) {
+      work->touch_count = first;
+      work->too_many = had_too_many;
       add_laid(number, 1, work);
-    } else {
-      for (int k = 0; k < count; k++) {
-        int is_new = 1;
-        for (int i = 0; i < k; i++) {
-          /* Less than what counts as one along a stretch: what touches at its start is never overlooked in it. */
-          is_new &= ABSOLUTE(work->valleys[i].place - work->valleys[k].place) > SAME_PLACE / 2;
-        }
-        if (is_new) add_touch(number, 1, work->valleys[k].place, work);
-      }
     }
   }
   return !work->too_many;
@@ -597,10 +594,11 @@ static real lowest_other(const instant *at, workspace *work) {
       }
       continue;
     }
-    const int count = valleys_of(own, work->nodes, lowest, 0, work->valleys, work);
-    for (int k = 0; k < count; k++) {
-      if (is_touch(number, work->valleys[k].place, work)) continue;
-      if (!(work->valleys[k].value > lowest)) lowest = work->valleys[k].value;
+    int look = 0;
+    section_gap gap;
+    look_along(own, work->nodes, work);
+    while ((look = next_valley(own, look, lowest, 0, &gap, work)) > 0) {
+      if (!is_touch(number, gap.place, work)) lowest = gap.value;
     }
   }
   return lowest;

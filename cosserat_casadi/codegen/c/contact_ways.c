@@ -3,11 +3,13 @@
 
 /* Whether anything is deeper inside an obstacle than a bound, or where that is no number. */
 static int is_inside(const real *x, const real *inputs, real depth, workspace *work) {
+  section_gap lowest;
   for (int k = 0; k < FACINGS; k++) {
     const facing *own = FACING + k;
     POINTS[own->points].positions(x, inputs, work->nodes, work);
     if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return 1;
-    if (valleys_of(own, work->nodes, -depth, 1, work->valleys, work) > 0) return 1;
+    look_along(own, work->nodes, work);
+    if (next_valley(own, 0, -depth, 1, &lowest, work)) return 1;
   }
   return 0;
 }
@@ -30,6 +32,7 @@ static real way_of_points(const facing *own, const real *x, const real *inputs, 
 /* Whether the straight way of all points from one shape to another leads into an obstacle, or through a thin one, or where
    that is no number. */
 static int leads_inside(const real *x, const real *inputs, const real *next, const real *next_inputs, workspace *work) {
+  section_gap lowest;
   for (int number = 0; number < FACINGS; number++) {
     const facing *own = FACING + number;
     const real longest = way_of_points(own, x, inputs, next, next_inputs, work);
@@ -40,7 +43,8 @@ static int leads_inside(const real *x, const real *inputs, const real *next, con
       for (int i = 0; i < 3 * POINTS[own->points].count; i++) {
         work->between[i] = (1 - share) * work->nodes[i] + share * work->weights[i];
       }
-      if (valleys_of(own, work->between, -TOUCHING, 1, work->valleys, work) > 0) return 1;
+      look_along(own, work->between, work);
+      if (next_valley(own, 0, -TOUCHING, 1, &lowest, work)) return 1;
     }
   }
   return 0;

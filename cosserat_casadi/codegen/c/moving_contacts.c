@@ -76,13 +76,6 @@ typedef struct {
   real height; /* gap that it keeps */
 } touch;
 
-typedef struct {
-  real place;
-  real value;
-  real slope;
-  real bend;
-} valley;
-
 /* Room of a pair, or of constraints of which some push. */
 typedef struct {
   real *coefficients;
@@ -238,16 +231,18 @@ void laid_gaps(const facing *own, const real *nodes, real *gaps) {
   }
 }
 
-/* Gaps at the sections that are looked at first. */
-void looked_gaps(const facing *own, const real *nodes, real *gaps) {
+/* Places of the sections whose gaps are the least about them, and not above a bound, base to tip, and these gaps; returns
+   their number. There is room for as many as are looked at. */
+int gap_valleys(const facing *own, const real *nodes, real below, real *places, real *gaps) {
   workspace room = room_of(own);
-  gaps_along(own, nodes, gaps, &room);
-}
-
-/* Sections whose gaps are the least about them, and not above a bound, base to tip; returns their number. */
-int gap_valleys(const facing *own, const real *nodes, real below, valley *found) {
-  workspace room = room_of(own);
-  return valleys_of(own, nodes, below, 0, found, &room);
+  section_gap lowest;
+  int look = 0, count = 0;
+  look_along(own, nodes, &room);
+  while ((look = next_valley(own, look, below, 0, &lowest, &room)) > 0) {
+    places[count] = lowest.place;
+    gaps[count++] = lowest.value;
+  }
+  return count;
 }
 
 /* How much lower than a section that is looked at the minimum next to it may be. */
@@ -275,25 +270,23 @@ static int is_lowest(const facing *own, const real *gaps, int count, int look, i
   return 1;
 }
 
-/* The least gap but for those in the valleys of some places, and at some ends; infinite where there is none. Ends that are
-   not watched are none, but where all are asked for. */
-void lowest_gap(const facing *own, const real *nodes, int all, const real *but, int but_count, const real *ends,
-                int end_count, valley *lowest) {
+/* The place of the least gap, and the gap, but for those in the valleys of some places, whose sections are written, and at
+   some ends; infinite where there is none. Ends that are not watched are none, but where all are asked for. */
+void lowest_gap(const facing *own, const real *nodes, int all, const real *but, int *left_out, int but_count,
+                const real *ends, int end_count, real *place, real *lowest) {
   workspace room = room_of(own);
   real *gaps = own->gaps_along;
-  int left_out[MOST_LEFT_OUT];
   section_gap gap;
-  lowest->place = 0;
-  lowest->value = INFINITY;
-  fit_nodes(own, nodes, &room);
+  *place = 0;
+  *lowest = INFINITY;
+  look_along(own, nodes, &room);
   if (own->is_body) {
     if (but_count > 0) return;
     look_at(own, 0, &gap, &room);
-    *lowest = valley_at(&gap);
+    *lowest = gap.value;
     return;
   }
-  const int count = gaps_along(own, nodes, gaps, &room);
-  if (but_count > MOST_LEFT_OUT) but_count = MOST_LEFT_OUT;
+  const int count = own->elements * LOOKS + 1;
   for (int k = 0; k < but_count; k++) left_out[k] = downhill(own, gaps, count, but[k]);
   real least = INFINITY;
   for (int i = 0; i < count; i++) {
@@ -307,7 +300,9 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
     gap.value = gaps[i];
     /* Far from zero no one asks how much lower it is beside a section. */
     if (all || !(gaps[i] > OFF * deeper)) look_lowest_by(own, i, &gap, &room);
-    if (gap.value < lowest->value) *lowest = valley_at(&gap);
+    if (!(gap.value < *lowest)) continue;
+    *lowest = gap.value;
+    *place = gap.place;
   }
 }
 

@@ -20,7 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_bodies import BodyFacing
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_law import MOST_VALLEYS
+from cosserat_casadi.motion.contact_law import LOOKS
 from cosserat_casadi.motion.contact_sections import RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 
@@ -30,8 +30,8 @@ CONTACT_FILES = ("contact_gaps.c", "contact_ways.c", "least_pushes.c", "contact_
 FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
 """Files that it includes where something rubs."""
 
-LOOKS = 64
-"""Sections of an element at which gaps are looked at first: steps of one length see no more than that."""
+MOST_TOUCHES = 64
+"""Sections that may touch at once, at most; of more a step says that it was not solved."""
 
 FEWEST_TOUCHES = 8
 """Sections of a rod that slide on an obstacle, at most."""
@@ -132,7 +132,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
         rows = 6 * touches
         friction = touches * (26 * size + 20 * inputs + 42) + 3 * rows**2 + 20 * rows
         friction += (6 + size) * (1 + size + inputs) + 3 * words["most_points"]
-    records = of_touch * touches * (3 + words["most_step_parts"]) + 4 * touches
+    records = of_touch * touches * (3 + words["most_step_parts"])
     vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 12 * words["most_points"]
     return int(friction + records + vectors + 9 * touches**2 + 22 * touches + words["most_looks"] + 8 * inputs)
 
@@ -149,7 +149,7 @@ def described_contact(model: Model) -> dict[str, Any]:
 
 def _most_touches(faces: Sequence[Facing]) -> int:
     """Sections that may touch at once: of a rod those at which it lies, if they are more than slide."""
-    return min(MOST_VALLEYS, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
+    return min(MOST_TOUCHES, sum(1 if own.of_body else max(FEWEST_TOUCHES, len(own.laid_at)) for own in faces))
 
 
 def start_shape(model: Model) -> FloatArray:
@@ -215,7 +215,7 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
 def _rod_tables(facing: RodFacing, number: int) -> Iterator[str]:
     yield reals(f"FACING_ENDS_{number}", np.array(facing.ends))
     yield reals(f"TO_COEFFICIENTS_{number}", facing.to_coefficients.ravel())
-    yield reals(f"LOOKS_{number}", facing.looks(LOOKS).ravel())
+    yield reals(f"LOOKS_{number}", facing.looks.ravel())
     yield reals(f"LAID_{number}", facing.laid_at)
 
 
