@@ -101,6 +101,7 @@ ROLES = {
     "passages.c": "whether a step leads through something thin",
     "contact_gaps.c": "gaps to obstacles that are touched exactly",
     "contact_ways.c": "ways that lead into such obstacles",
+    "square_systems.c": "linear systems of any size",
     "least_pushes.c": "which of several contacts push",
     "contact_steps.c": "forces and blows of exact contact in a step",
     "contact_sensitivity.c": "their part in its derivatives",

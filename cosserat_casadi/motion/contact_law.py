@@ -24,7 +24,7 @@ from cosserat_casadi.scene.accuracy import MOST_NODES
 NAME = "moving_contacts"
 """Of the library in the cache."""
 
-INCLUDED = ("contact_gaps.c", "least_pushes.c")
+INCLUDED = ("contact_gaps.c", "square_systems.c", "least_pushes.c")
 """Files that exported steps have too."""
 
 LOOKS = 100

@@ -164,7 +164,7 @@ static contact_status derivatives(const real *inputs, const contact_state *state
     for (int i = 0; i < n; i++) z_rate[i] = 0;
     call_rate(at->rate, state->z, inputs, z_rate, inputs_rate, work->residual, work);
     for (int i = 0; i < n; i++) z_rate[i] = -work->residual[i];
-    back_substitute(work->jacobian, work->pivots, z_rate, n);
+    solve_square(n, work->jacobian, work->pivots, z_rate);
     if (!all_finite(z_rate, n)) return CONTACT_SINGULAR;
     for (int k = 0; d_contacts_d_inputs && k < at->touches; k++) {
       contact_rates(at, z_rate, k, d_contacts_d_inputs + (k * INPUTS + j) * CONTACT_RATES);

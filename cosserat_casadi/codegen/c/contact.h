@@ -2,9 +2,9 @@
    equations.
 
    The library's own source includes, in this order: its configuration, its kernels, this header, its tables, then
-   contact_newton.c, contact_shape.c, contact_faults.c, contact_settle.c and contact.c, which includes contact_error.c
-   where errors are estimated. All is one translation unit, so that
-   nothing but the functions of the library's header is visible to a linker.
+   square_systems.c, contact_newton.c, contact_shape.c, contact_faults.c, contact_settle.c and contact.c, which includes
+   contact_error.c where errors are estimated. All is one translation unit, so that nothing but the functions of the
+   library's header is visible to a linker.
 
    An arrangement says who touches what, at points or along lines. Its unknowns are z = (x, f, p): the unknowns of the rods,
    the forces of the contacts, and the abscissae of contact that are not at a tip. */
@@ -19,6 +19,7 @@
 #include <string.h>
 
 typedef contact_real real;
+#define ABSOLUTE fabs
 typedef contact_workspace workspace;
 typedef contact_candidate candidate;
 typedef contact_touch touch;

@@ -240,9 +240,9 @@ static int settle_law(int count, const int *members, workspace *work) {
     if (!isfinite(missed)) return 0;
     if (excess <= 0) return 1;
     matrix_of_law(count, members, work->law_matrix, work);
-    if (!factorise_small(order, work->law_matrix, work->law_pivots)) return 0;
+    if (!factorise_square(order, work->law_matrix, 0, work->law_pivots)) return 0;
     for (int i = 0; i < order; i++) steps[i] = -work->law_misses[i];
-    solve_small(order, work->law_matrix, work->law_pivots, steps);
+    solve_square(order, work->law_matrix, work->law_pivots, steps);
     real share = 1;
     for (int i = 0; i < order; i++) work->law_forces[i] += steps[i];
     const real before = missed;

@@ -30,69 +30,20 @@ static real residual_at(const arrangement *at, const real *z, const real *inputs
   return norm_of(residual, at->size);
 }
 
-static int pivot_row(const real *column, int k, int n) {
-  int best = k;
-  for (int i = k + 1; i < n; i++) {
-    if (fabs(column[i]) > fabs(column[best])) best = i;
-  }
-  return best;
-}
-
-/* Gaussian elimination with partial pivoting, in place, column after column: G. H. Golub, C. F. Van Loan, Matrix
-   Computations, 4th edition, algorithm 3.4.1. The diagonal holds inverse pivots. Returns zero where one is at rounding
-   beside the largest entry of its column. */
-static int factorise(real *a, int *pivots, real *largest, int n) {
-  for (int j = 0; j < n; j++) {
-    largest[j] = 0;
-    for (int i = 0; i < n; i++) largest[j] = larger(largest[j], fabs(a[j * n + i]));
-  }
-  for (int k = 0; k < n; k++) {
-    real *column = a + k * n;
-    const int p = pivot_row(column, k, n);
-    pivots[k] = p;
-    if (!(fabs(column[p]) > SINGULAR * largest[k])) return 0;
-    if (p != k) {
-      for (int j = 0; j < n; j++) {
-        const real kept = a[j * n + k];
-        a[j * n + k] = a[j * n + p];
-        a[j * n + p] = kept;
-      }
-    }
-    column[k] = 1 / column[k];
-    for (int i = k + 1; i < n; i++) column[i] *= column[k];
-    for (int j = k + 1; j < n; j++) {
-      real *target = a + j * n;
-      const real factor = target[k];
-      if (factor == 0) continue;
-      for (int i = k + 1; i < n; i++) target[i] -= column[i] * factor;
-    }
-  }
-  return 1;
-}
-
-/* Solves with the factors, in place. */
-static void back_substitute(const real *a, const int *pivots, real *b, int n) {
-  for (int k = 0; k < n; k++) {
-    const real kept = b[pivots[k]];
-    b[pivots[k]] = b[k];
-    b[k] = kept;
-  }
-  for (int k = 0; k < n; k++) {
-    for (int i = k + 1; i < n; i++) b[i] -= a[k * n + i] * b[k];
-  }
-  for (int k = n - 1; k >= 0; k--) {
-    b[k] *= a[k * n + k];
-    for (int i = 0; i < k; i++) b[i] -= a[k * n + i] * b[k];
-  }
-}
-
-/* Factorises the Jacobian at z in the workspace; zero where it is singular or not finite. */
+/* Factorises the Jacobian at z in the workspace; zero where it is not finite, or where a pivot is at rounding beside the
+   largest entry of its column. */
 static int linearise(const arrangement *at, const real *z, const real *inputs, workspace *work) {
   work->jacobian_of = -1;
   work->updates = 0;
   call(at->jacobian, z, inputs, work->jacobian, 0, work);
   if (!all_finite(work->jacobian, at->size * at->size)) return 0;
-  if (!factorise(work->jacobian, work->pivots, work->largest, at->size)) return 0;
+  for (int j = 0; j < at->size; j++) {
+    const real *column = work->jacobian + j * at->size;
+    real largest = 0;
+    for (int i = 0; i < at->size; i++) largest = larger(largest, fabs(column[i]));
+    work->least_pivots[j] = SINGULAR * largest;
+  }
+  if (!factorise_square(at->size, work->jacobian, work->least_pivots, work->pivots)) return 0;
   work->jacobian_of = (int)(at - ARRANGEMENT);
   return 1;
 }
@@ -103,7 +54,7 @@ static int linearise(const arrangement *at, const real *z, const real *inputs, w
 static void quasi_newton_step(const arrangement *at, const real *residual, real *step, workspace *work) {
   const int n = at->size;
   for (int i = 0; i < n; i++) step[i] = -residual[i];
-  back_substitute(work->jacobian, work->pivots, step, n);
+  solve_square(n, work->jacobian, work->pivots, step);
   for (int j = 0; j + 1 < work->updates; j++) {
     const real share = dot(work->steps[j], step, n) / work->squares[j];
     for (int i = 0; i < n; i++) step[i] += work->steps[j + 1][i] * share;

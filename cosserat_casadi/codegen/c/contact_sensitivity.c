@@ -65,7 +65,7 @@ static int border_stages(const stage_factors *factors, workspace *work) {
       work->border[j * order + i] = gap_of_stages(i / count, i % count, work->stage_responses[j], work);
     }
   }
-  return factorise_small(order, work->border, work->border_pivots);
+  return factorise_square(order, work->border, 0, work->border_pivots);
 }
 
 /* Columns whose gaps change as they are to, from those of no change of the forces. */
@@ -78,7 +78,7 @@ static void close_stage_columns(real *columns, workspace *work) {
     for (int i = 0; i < order; i++) {
       values[i] = work->gap_changes[lane][i] - gap_of_stages(i / count, i % count, own, work);
     }
-    solve_small(order, work->border, work->border_pivots, values);
+    solve_square(order, work->border, work->border_pivots, values);
     for (int j = 0; j < order; j++) {
       for (int i = 0; i < STAGED; i++) own[i] += values[j] * work->stage_responses[j][i];
     }

@@ -31,6 +31,7 @@ enum {
 
 typedef solver_touch touch;
 
+#include "square_systems.c"
 #include "least_pushes.c"
 
 /* ---- What touches ---- */
@@ -388,7 +389,7 @@ static int factorise_border(workspace *work) {
     }
   }
   for (int i = 0; i < pressing; i++) work->border_members[i] = work->active[i];
-  return factorise_small(order, work->border, work->border_pivots);
+  return factorise_square(order, work->border, 0, work->border_pivots);
 }
 
 /* What the corrections of a step need of its contacts, for the factorised matrix at hand. Zero where gaps depend on each
@@ -418,7 +419,7 @@ static void close_gaps(real *solution, workspace *work) {
     values[pressing + m] =
         TO_EIGENVECTOR[0][1] * first + TO_EIGENVECTOR[1][1] * second - dot(work->gradients[k], solution + N);
   }
-  solve_small(2 * pressing, work->border, work->border_pivots, values);
+  solve_square(2 * pressing, work->border, work->border_pivots, values);
   for (int m = 0; m < pressing; m++) {
     const int k = work->border_members[m];
     const real whole = values[m];

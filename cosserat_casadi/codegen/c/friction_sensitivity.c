@@ -175,7 +175,7 @@ static int border_stages(const stage_factors *factors, workspace *work) {
       }
     }
   }
-  return factorise_small(order, matrix, work->law_pivots);
+  return factorise_square(order, matrix, 0, work->law_pivots);
 }
 
 /* Columns whose gaps and slides change as they are to, from those of no change of the forces. */
@@ -192,7 +192,7 @@ static void close_stage_columns(real *columns, workspace *work) {
       for (int row = 0; row < ROWS; row++) values[ROWS * q + row] = work->row_changes[lane][ROWS * q + row] - rows[row];
       obey_law(by_slide, values + ROWS * q);
     }
-    solve_small(order, work->law_matrix, work->law_pivots, values);
+    solve_square(order, work->law_matrix, work->law_pivots, values);
     for (int j = 0; j < order; j++) {
       for (int i = 0; i < STAGED; i++) own[i] += values[j] * work->border_responses[j][i];
     }

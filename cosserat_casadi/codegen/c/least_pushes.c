@@ -8,53 +8,14 @@ static const real DEPENDENT = (real)1e-9;
 /* Fall of an active force, for a unit of a dependent one in their scales, below which it is rounding. */
 static const real FALLS = (real)1e-4;
 
-/* ---- Small linear systems ---- */
-
-/* Factorises in place by Gauss's method with partial pivoting, column after column. Zero where it is singular. */
-static int factorise_small(int count, real *a, int *pivots) {
-  for (int k = 0; k < count; k++) {
-    int best = k;
-    for (int i = k + 1; i < count; i++) best = ABSOLUTE(a[k * count + i]) > ABSOLUTE(a[k * count + best]) ? i : best;
-    pivots[k] = best;
-    if (!(ABSOLUTE(a[k * count + best]) > 0)) return 0;
-    for (int j = 0; j < count && best != k; j++) {
-      const real kept = a[j * count + k];
-      a[j * count + k] = a[j * count + best];
-      a[j * count + best] = kept;
-    }
-    for (int i = k + 1; i < count; i++) a[k * count + i] /= a[k * count + k];
-    for (int j = k + 1; j < count; j++) {
-      for (int i = k + 1; i < count; i++) a[j * count + i] -= a[k * count + i] * a[j * count + k];
-    }
-  }
-  return 1;
-}
-
-static void solve_small(int count, const real *a, const int *pivots, real *b) {
-  for (int k = 0; k < count; k++) {
-    const real kept = b[k];
-    b[k] = b[pivots[k]];
-    b[pivots[k]] = kept;
-  }
-  for (int k = 0; k < count; k++) {
-    for (int i = k + 1; i < count; i++) b[i] -= a[k * count + i] * b[k];
-  }
-  for (int k = count - 1; k >= 0; k--) {
-    b[k] /= a[k * count + k];
-    for (int i = 0; i < k; i++) b[i] -= a[k * count + i] * b[k];
-  }
-}
-
-/* ---- Which of several push ---- */
-
 /* Solves with the rows and columns of W of some constraints, for values of theirs, in place. */
 static int solve_active(const real *w, int count, const int *active, int active_count, real *values, workspace *work) {
   real *a = work->small_matrix;
   for (int j = 0; j < active_count; j++) {
     for (int i = 0; i < active_count; i++) a[j * active_count + i] = w[active[j] * count + active[i]];
   }
-  if (!factorise_small(active_count, a, work->small_pivots)) return 0;
-  solve_small(active_count, a, work->small_pivots, values);
+  if (!factorise_square(active_count, a, 0, work->small_pivots)) return 0;
+  solve_square(active_count, a, work->small_pivots, values);
   return all_finite(values, active_count);
 }
 

@@ -142,6 +142,7 @@ static real distance_at(const facing *own, const real *point, workspace *work) {
 }
 
 #include "contact_gaps.c"
+#include "square_systems.c"
 #include "least_pushes.c"
 
 /* ---- Gaps of a pair, at positions of its points ---- */

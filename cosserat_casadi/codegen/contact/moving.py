@@ -24,7 +24,14 @@ from cosserat_casadi.motion.contact_law import LOOKS
 from cosserat_casadi.motion.contact_sections import RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 
-CONTACT_FILES = ("contact_gaps.c", "contact_ways.c", "least_pushes.c", "contact_steps.c", "contact_sensitivity.c")
+CONTACT_FILES = (
+    "contact_gaps.c",
+    "contact_ways.c",
+    "square_systems.c",
+    "least_pushes.c",
+    "contact_steps.c",
+    "contact_sensitivity.c",
+)
 """Files of the folder ``c`` that a library with steps in exact contact includes."""
 
 FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")

@@ -60,6 +60,7 @@ from cosserat_casadi.scene.writing import scene_text
 
 VERBATIM = (
     "contact.h",
+    "square_systems.c",
     "contact_newton.c",
     "interpolation.c",
     "contact_shape.c",
