@@ -459,51 +459,18 @@ def integrated(
     Raises:
         SceneError: the start contradicts the constraints.
     """
-    inputs = pieces[0].at(pieces[0].start).value
-    chosen = kernels or interpreted(model)
+    kernels = kernels or interpreted(model)
     flight = flight or free_flight(model, p)
-    switched = partial(
-        _switched, model, pieces, x, v, method, settings, after_step, p, chosen, resume, flight, stops, begun
-    )
-    if not model.scene.touches_exactly:
-        pairs = OneSided(model)
-        first = pairs.first_phases(x, inputs)
-        if resume is not None and not isinstance(resume.phases, ContactPhase):
-            first = resume.phases
-        return switched(pairs, first)
-    switching = SidedContacts(model, chosen.libraries)
-    if resume is not None and isinstance(resume.phases, ContactPhase):
-        follower = Follower(switching.contacts.facings, resume.phases.touches)
-        follower.places = list(resume.places)
-        phases = replace(resume.phases, follower=follower)
-    elif phases is not None:
-        phases = switching.with_pairs(phases, x, inputs)
-    return switched(switching, switching.first_phases(x, inputs) if phases is None else phases)
-
-
-def _switched(
-    model: Model,
-    pieces: Sequence[Piece],
-    x: FloatArray,
-    v: FloatArray,
-    method: Collocation,
-    settings: StepSettings,
-    after_step: AfterStep | None,
-    p: FloatArray | None,
-    kernels: StepKernels,
-    resume: Resume | None,
-    flight: FreeFlight,
-    stops: Stops | None,
-    begun: Restart[Any] | None,
-    switching: Switching[Phases],
-    phases: Phases,
-) -> History:
-    """The motion, whose equations are switched; arguments are those of :func:`integrated`, and what switches them."""
+    switching, phases_now = _switching(model, kernels, x, pieces[0], phases, resume)
     keeper = flight.keeper
     acting = time_between_events(model, pieces[-1].end) if model.scene.touches_exactly else pieces[-1].end
     legs: list[Leg] = []
     at = flight.to_steps(Instant(pieces[0].start, x, v, np.zeros(model.size)))
     asked = settings
+
+    def history(stopped: int | None = None) -> History:
+        return History(model, tuple(legs), method, asked, flight, stopped)
+
     guard: int | None = None
     memory: CarriedStep | None = None
     if resume is not None:
@@ -515,7 +482,7 @@ def _switched(
             continue
         jumped = None if stops is None or not legs else stops.jumped(legs[-1].piece, piece, flight.to_model(at))
         if jumped is not None:
-            return History(model, tuple(legs), method, asked, flight, jumped)
+            return history(jumped)
         if resume is not None and not legs:
             settings = replace(settings, first=min(resume.first, piece.end - piece.start))
         plain = equations_of(model, piece, p, kernels)
@@ -524,33 +491,28 @@ def _switched(
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
             interval = DIFFERENTIATED * piece.smooth
             if memory is not None and at.time > piece.start:
-                restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phases)
+                restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phases_now)
             elif begun is not None and not legs and resume is None:
                 restart = begun
             else:
                 memory = None
-                restart = switching.restarted(plain, piece, flight.to_model(at), phases, guard, interval)
+                restart = switching.restarted(plain, piece, flight.to_model(at), phases_now, guard, interval)
                 restart = flight.restart_of_steps(restart)
-            phases = restart.phases
+            phases_now = restart.phases
             if not legs and resume is None and begun is None:
-                touches = isinstance(phases, ContactPhase) and len(phases.touches) > 0
-                shortest = {}
-                if flight.coordinates is None:
-                    shortest = sags_by_cable(model, at.x, piece.at(at.time).value, p)
-                moving = _inputs_that_move(model, piece, at.time)
-                grow = [name for name in _lengths_of_free_rods(model) if name in moving]
-                _check_start(restart.start, pieces[-1].end, touches=touches, sags=shortest, moving=moving, grow=grow)
-            equations, guards = switching.arranged(plain, piece, phases)
+                sags = sags_by_cable(model, at.x, piece.at(at.time).value, p) if flight.coordinates is None else {}
+                _check_start(model, piece, restart, sags, pieces[-1].end)
+            equations, guards = switching.arranged(plain, piece, phases_now)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
             free = keeper is not None and equations.size == model.size
             settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
-            settling = switching.settling(plain, piece, phases)
+            settling = switching.settling(plain, piece, phases_now)
             if settling is not None:
                 settled = flight.settled_in_steps(settling)
             if restart.stalled is not None:
                 legs.append(Leg(piece, restart, stalled_at(begin), plain))
-                return History(model, tuple(legs), method, asked, flight)
+                return history()
             begin_in_model = flight.to_model(begin)
             ends = None if stops is None else stops.guards(piece, begin_in_model)
             guards, changes = _joined(guards, ends, begin_in_model)
@@ -575,13 +537,13 @@ def _switched(
             legs.append(Leg(piece, restart, integration, plain))
             if integration.guard is not None and integration.guard >= changes:
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=StepOutcome.COMPLETED))
-                return History(model, tuple(legs), method, asked, flight, integration.guard - changes)
+                return history(integration.guard - changes)
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
-                return History(model, tuple(legs), method, asked, flight)
+                return history()
             if _chatters(legs, pieces[-1].end):
                 ended = StepOutcome.STALLED if model.scene.touches_exactly else StepOutcome.STEP_TOO_SMALL
                 legs[-1] = replace(legs[-1], integration=replace(integration, outcome=ended))
-                return History(model, tuple(legs), method, asked, flight)
+                return history()
             at = integration.end
             guard = integration.guard
             first = integration.next_size
@@ -593,7 +555,31 @@ def _switched(
         settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
-    return History(model, tuple(legs), method, asked, flight)
+    return history()
+
+
+def _switching(
+    model: Model,
+    kernels: StepKernels,
+    x: FloatArray,
+    piece: Piece,
+    phases: ContactPhase | None,
+    resume: Resume | None,
+) -> tuple[Switching[Any], Any]:
+    """The switches of the equations of a motion, and their state at the start; arguments as of :func:`integrated`."""
+    inputs = piece.at(piece.start).value
+    resumed = None if resume is None else resume.phases
+    if not model.scene.touches_exactly:
+        pairs = OneSided(model)
+        return pairs, pairs.first_phases(x, inputs) if resumed is None or isinstance(resumed, ContactPhase) else resumed
+    switching = SidedContacts(model, kernels.libraries)
+    if resume is not None and isinstance(resumed, ContactPhase):
+        follower = Follower(switching.contacts.facings, resumed.touches)
+        follower.places = list(resume.places)
+        return switching, replace(resumed, follower=follower)
+    if phases is None:
+        return switching, switching.first_phases(x, inputs)
+    return switching, switching.with_pairs(phases, x, inputs)
 
 
 def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tuple[Guards | None, int]:
@@ -642,27 +628,24 @@ def _lengths_of_free_rods(model: Model) -> list[str]:
 
 
 def _check_start(
-    start: ConsistentStart,
-    duration: float,
-    *,
-    touches: bool,
-    sags: Mapping[str, float],
-    moving: Sequence[str],
-    grow: Sequence[str],
+    model: Model, piece: Piece, restart: Restart[object], sags: Mapping[str, float], duration: float
 ) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
 
     Args:
-        start: of the motion.
-        duration: of the motion, s.
-        touches: whether rods touch where it starts.
+        model: the model.
+        piece: of its inputs, the first.
+        restart: the start.
         sags: how much longer cables are than their ways, over the lengths of their rods, by cable.
-        moving: names of inputs with a speed where it starts.
-        grow: names of inputs among them that are lengths of free rods.
+        duration: of the motion, s.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.
     """
+    start = restart.start
+    touches = isinstance(restart.phases, ContactPhase) and len(restart.phases.touches) > 0
+    moving = _inputs_that_move(model, piece, start.instant.time)
+    grow = [name for name in _lengths_of_free_rods(model) if name in moving]
     problems = []
     short = {name: sag for name, sag in sags.items() if sag < -CONSISTENT}
     if start.position_error > CONSISTENT and touches:

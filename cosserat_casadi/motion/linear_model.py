@@ -38,45 +38,18 @@ UNHELD = 1e-7
 
 
 @dataclass(frozen=True)
-class DescriptorModel:
-    """E ẋ = A x + B u, y = C x + D u in the unknowns of the scene, their rates, multipliers and tensions.
-
-    Attributes:
-        E: shape (n, n), singular where there are constraints or coordinates without mass.
-        A: shape (n, n).
-        B: shape (n, inputs).
-        C: shape (outputs, n).
-        D: shape (outputs, inputs).
-        states: names of the entries of x.
-        inputs: names of the entries of u; a name that ends in .rate or .acceleration is a derivative of another input.
-        outputs: names of the entries of y.
-    """
-
-    E: FloatArray
-    A: FloatArray
-    B: FloatArray
-    C: FloatArray
-    D: FloatArray
-    states: tuple[str, ...]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-
-
-@dataclass(frozen=True, repr=False)
-class LinearModel(Shown):
-    """ẋ = A x + B u, y = C x + D u in modal coordinates.
+class StateSpace:
+    """y = C x + D u, of states whose rates follow from A x + B u.
 
     Attributes:
         A: shape (n, n).
         B: shape (n, inputs).
         C: shape (outputs, n), units of the outputs.
         D: shape (outputs, inputs).
-        states: names of the entries of x: modal coordinates, their rates, then what relaxes.
+        states: names of the entries of x.
         inputs: names of the entries of u, deviations from the equilibrium in SI units; a name that ends in .rate or
             .acceleration is a derivative of another input.
         outputs: names of the entries of y, deviations from the equilibrium.
-        modes: number of modal coordinates, those of lowest frequency first.
-        descriptor: the same in the unknowns of the scene.
     """
 
     A: FloatArray
@@ -86,6 +59,28 @@ class LinearModel(Shown):
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class DescriptorModel(StateSpace):
+    """E ẋ = A x + B u in the unknowns of the scene, their rates, multipliers and tensions.
+
+    Attributes:
+        E: shape (n, n), singular where there are constraints or coordinates without mass.
+    """
+
+    E: FloatArray
+
+
+@dataclass(frozen=True, repr=False)
+class LinearModel(Shown, StateSpace):
+    """ẋ = A x + B u in modal coordinates, their rates, then what relaxes.
+
+    Attributes:
+        modes: number of modal coordinates, those of lowest frequency first.
+        descriptor: the same in the unknowns of the scene.
+    """
+
     modes: int
     descriptor: DescriptorModel
 
@@ -388,7 +383,7 @@ def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
     names = np.array(_unknown_names(equations.model))
     states = [*names[moving], *(f"{name}.rate" for name in names[moving]), *names[algebraic]]
     states += [f"contact {number}" for number in range(1, len(contacts.held) + 1)]
-    return DescriptorModel(E, A, B, C, D, tuple(states), equations.input_names, watched.names)
+    return DescriptorModel(A, B, C, D, tuple(states), equations.input_names, watched.names, E)
 
 
 def _unknown_names(model: Model) -> list[str]:
