@@ -18,6 +18,7 @@ from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.rod.placed_sections import EqualSections
 
 GAUSS_POINTS = 24
 """Points at which the force along a stretch is summed."""
@@ -71,13 +72,15 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         yield from _disk_contact(solution, layer)
         return
     length = solution.model.length(layer.rod, solution.inputs)
-    looked_at = _looked_at(solution, layer)
+    # Sections at which the equations sum the layer, where these are not the nodes.
+    sections = solution.model.discrete.closer_sections.get(layer.name)
+    looked_at = DENSE if sections is None else np.union1d(DENSE, known(sections.placed.X))
     gaps = _gaps(solution, layer, looked_at)
     width = layer.obstacle.width
     for part in runs(gaps < width):
         start = _crossing(looked_at, gaps - width, part.start - 1, part.start)
         end = _crossing(looked_at, gaps - width, part.stop - 1, part.stop)
-        X, weights = _summed_at(solution, layer, start, end)
+        X, weights = _summed_at(sections, start, end)
         per_length = pressure(layer, _gaps(solution, layer, X))
         along = normals(solution, layer.rod, layer.obstacle, X)
         force = length * ((weights * per_length) @ along)
@@ -85,18 +88,11 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
         yield Contact(layer.obstacle.name, layer.rod, start, end, force, (), "smooth", width, float(gaps[part].min()))
 
 
-def _looked_at(solution: Solution, layer: ContactLayer) -> FloatArray:
-    """Rising abscissae at which gaps are looked at, shape (k,); sections at which the equations sum are among them."""
-    sections = solution.model.discrete.closer_sections.get(layer.name or "")
-    return DENSE if sections is None else np.union1d(DENSE, known(sections.placed.X))
-
-
-def _summed_at(solution: Solution, layer: ContactLayer, start: float, end: float) -> tuple[FloatArray, FloatArray]:
+def _summed_at(sections: EqualSections | None, start: float, end: float) -> tuple[FloatArray, FloatArray]:
     """Abscissae at which the force along a stretch is summed, and their weights, shape (k,) each.
 
     Where the equations sum it between nodes, it is their sum: it holds the rod in balance.
     """
-    sections = solution.model.discrete.closer_sections.get(layer.name or "")
     if sections is not None:
         X = known(sections.placed.X)
         inside = (start <= X) & (end >= X)

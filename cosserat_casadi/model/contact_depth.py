@@ -49,7 +49,7 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
     if layer.body is None:
         assert layer.rod is not None, "a layer is in front of a rod or a body"
         rod = system.discrete.rods[layer.rod]
-        closer = system.discrete.closer_sections.get(layer.name or "")
+        closer = system.discrete.closer_sections.get(layer.name)
         X = rod.grid.nodes_at(np.arange(rod.grid.size)) if closer is None else closer.placed.X
         radii = as_matrix(section_radii(rod.properties, X)).T
     point = ca.SX.sym("point", 3)

@@ -208,10 +208,10 @@ class DiscreteScene:
         return (*self.scene.loads, *(layer.widened(self.layers) for layer in layers))
 
     @cached_property
-    def closer_sections(self) -> dict[str, EqualSections]:
+    def closer_sections(self) -> dict[str | None, EqualSections]:
         """Sections at which layers are summed that come and go between the nodes of a rod, by the name of the load."""
         # Of the scene's own numbers: parameters and other widths change no number of sections.
-        found = {}
+        found: dict[str | None, EqualSections] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is None or layer.at is not None:
                 continue
@@ -219,7 +219,7 @@ class DiscreteScene:
             moved = rod.grid.ends is not None
             sections = closer_sections(layer.obstacle, self.nominal.rods[layer.rod], moved)
             if sections is not None:
-                found[str(layer.name)] = replace(sections, rod=rod)
+                found[layer.name] = replace(sections, rod=rod)
         return found
 
     @property

@@ -210,7 +210,7 @@ def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
     discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
     member = EFFECTS[load.kind]
-    closer = discrete.closer_sections.get(load.name or "")
+    closer = discrete.closer_sections.get(load.name)
     at = member.abscissa(load)
     if closer is not None:
         X, interpolation = closer.placed.X, closer.placed.to_sections
