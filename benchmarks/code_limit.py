@@ -22,9 +22,9 @@ from cosserat_casadi import build, discretise, scene_from_dict
 from cosserat_casadi.accuracy.cost import spread_on, terms_of, time_in_columns, time_in_loops
 from cosserat_casadi.codegen import kernels
 from cosserat_casadi.codegen.columns import in_columns, on_path
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
 from cosserat_casadi.codegen.timed_program import Program, Times
 from cosserat_casadi.compiling.compiler import find_compiler
+from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
 from cosserat_casadi.model.build import Model
 
 ROOT = Path(__file__).parents[1]

@@ -34,9 +34,9 @@ from cosserat_casadi.accuracy.cost import (
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.kernels import dense
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
 from cosserat_casadi.codegen.timed_program import Program, Times
 from cosserat_casadi.compiling.compiler import find_compiler
+from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation
 

@@ -17,8 +17,8 @@ import casadi as ca
 from growth import FOLLOWER, PUSH, WEIGHT, model_of
 from rich.progress import track
 
-from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.kernels import dense, scalar
+from cosserat_casadi.compiling.printed_files import external_sources
 
 MODELS = (
     ("kirchhoff", [PUSH], 4, 9),

@@ -19,10 +19,10 @@ from loops import compiled
 from rich.progress import track
 
 from cosserat_casadi import Model, build, discretise, read_scene, scene_from_dict
-from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.parts import Parted
+from cosserat_casadi.compiling.printed_files import external_sources
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 MATERIAL = {"youngs_modulus": 60e9, "poisson_ratio": 0.33, "density": 6450.0}

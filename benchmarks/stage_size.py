@@ -10,9 +10,9 @@ from doc_tables import table
 
 from cosserat_casadi import Model, read_scene
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.stage import stage_functions
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.printed_files import external_sources
 
 SCENE = "examples/two_section_robot.toml"
 TOLERANCES = (1e-3, 1e-6)

@@ -24,10 +24,10 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar
+from cosserat_casadi.compiling.printed_files import external_sources
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.calls import chooses

@@ -11,8 +11,8 @@ from cosserat_casadi.codegen.column_parts import parted_by_columns
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import Parted, parted, parted_by_rows
-from cosserat_casadi.codegen.printed_kernels import Kernel
-from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
+from cosserat_casadi.compiling.printed_kernels import Kernel
+from cosserat_casadi.compiling.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.model.build import Model
 
 

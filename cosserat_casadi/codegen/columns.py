@@ -19,8 +19,9 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.accuracy.cost import TOGETHER
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
+from cosserat_casadi.compiling.column_form import ColumnForm
+from cosserat_casadi.compiling.listing import LANES
 from cosserat_casadi.maths.calls import in_scalars
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
@@ -28,9 +29,6 @@ from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec, expre
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
-
-LANES = TOGETHER
-"""Columns that are computed together."""
 
 SHARED_AT_MOST = 2
 """Instructions of a function before common terms are looked for, over those of its shared form: no function has more.
@@ -40,48 +38,6 @@ SHARED_AT_MOST = 2
 
 GIVEN = ["x", "inputs", "load_factor"]
 """Arguments of the equations on the path of loads."""
-
-
-@dataclass(frozen=True)
-class ColumnForm:
-    """A Jacobian, or some entries of one, by the columns of one rod.
-
-    Attributes:
-        function: (arguments, …, columns, turns) ↦ (results, …, column). The column follows from the turns,
-            and the results from the matrix of all columns, one row of it after the other.
-        turns: constant turns of all columns, shape (entries, stride), with zeros behind the last one.
-        rows: rows of the matrix of columns.
-        turns_behind: None, or number of constants behind which the turns stand in the argument before the columns,
-            as :func:`in_groups` orders them; they may then differ from call to call.
-    """
-
-    function: ca.Function
-    turns: FloatArray
-    rows: int
-    turns_behind: int | None = None
-
-    @property
-    def stride(self) -> int:
-        """Columns of that matrix, a multiple of LANES."""
-        return int(self.turns.shape[1])
-
-    @property
-    def columns_argument(self) -> int:
-        """Number of the argument with the matrix of columns."""
-        number: int = self.function.n_in() - 2
-        return number
-
-    @property
-    def turns_argument(self) -> int:
-        """Number of the argument with the turns of one column."""
-        number: int = self.function.n_in() - 1
-        return number
-
-
-def in_groups(turns: FloatArray) -> FloatArray:
-    """The turns of LANES columns after those of the LANES before, one entry of the group after the other."""
-    entries, stride = turns.shape
-    return turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2).ravel()
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,7 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS, STRAIGHT, STRAIGHT_BESIDE_INTERVALS, STRAIGHT_IN_SHARES
 from cosserat_casadi.codegen import error_sources
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.columns import (
-    SHARED_AT_MOST,
-    ColumnForm,
-    WrittenJacobian,
-    in_columns,
-    on_path,
-    pose_in_columns,
-)
+from cosserat_casadi.codegen.columns import SHARED_AT_MOST, WrittenJacobian, in_columns, on_path, pose_in_columns
 from cosserat_casadi.codegen.contact.moving import contact_functions
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, differentiable_functions, functions_in_c
 from cosserat_casadi.codegen.motion_parts import MotionInC
@@ -26,10 +19,11 @@ from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
-from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
+from cosserat_casadi.compiling.column_form import ColumnForm
 from cosserat_casadi.compiling.listing import UnknownOperationError
+from cosserat_casadi.compiling.printed_kernels import Kernel, PrintedKernel
+from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners

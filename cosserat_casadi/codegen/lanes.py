@@ -13,16 +13,15 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.blocks import blocks
-from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
-from cosserat_casadi.codegen.printed_kernels import printed_sources
-from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
-from cosserat_casadi.codegen.statements import LANES_OF_ROWS
-from cosserat_casadi.compiling.listing import UnknownOperationError
+from cosserat_casadi.compiling.listing import LANES, UnknownOperationError
+from cosserat_casadi.compiling.printed_kernels import printed_sources
+from cosserat_casadi.compiling.scalars_in_c import scalars_in_c
+from cosserat_casadi.compiling.statements import LANES_OF_ROWS
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.model.build import Model
 

@@ -17,8 +17,8 @@ from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.input_values import listed_values
 from cosserat_casadi.codegen.names import Names, library_names
-from cosserat_casadi.codegen.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.compiling.compiler import EXPORT_ANEW
+from cosserat_casadi.compiling.printed_kernels import Kernel, PrintedKernel
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model

@@ -312,7 +312,7 @@ def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | N
     if kept is not None or not write:
         return kept
     # The printer of C is needed here alone, and takes its time to be loaded.
-    from cosserat_casadi.codegen.kernel_files import external_sources
+    from cosserat_casadi.compiling.printed_files import external_sources
 
     _, functions = WRITTEN[name]
     texts = external_sources(functions(model), name, "long long int")

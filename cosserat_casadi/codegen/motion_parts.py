@@ -18,8 +18,8 @@ from cosserat_casadi.codegen.contact.moving import contact_pattern
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted, parted_by_rows, placed
-from cosserat_casadi.codegen.printed_kernels import Kernel
-from cosserat_casadi.codegen.scalars_in_c import with_calls_in_fours
+from cosserat_casadi.compiling.printed_kernels import Kernel
+from cosserat_casadi.compiling.scalars_in_c import with_calls_in_fours
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT, STRAIGHT_IN_SHARES
-from cosserat_casadi.codegen.numbered import Program, function_of
-from cosserat_casadi.codegen.printed_kernels import Kernel
 from cosserat_casadi.codegen.programs import PartialProgram, foreseen, partial_program, shared_program
-from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Stream, alike, names_of_part, scalars, shared, stacked
+from cosserat_casadi.compiling.numbered import Program, function_of
+from cosserat_casadi.compiling.printed_kernels import Kernel
+from cosserat_casadi.compiling.steps import UnknownInstructionError, program_of
 from cosserat_casadi.maths.calls import chooses, in_scalars
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]

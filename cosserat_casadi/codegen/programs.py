@@ -15,9 +15,9 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.numbered import Argument, Numbers, Origins, Program, Step, Value, column
-from cosserat_casadi.codegen.steps import entrywise
 from cosserat_casadi.codegen.streams import Stream, names_of_part, same_but_for_rounding, shared
+from cosserat_casadi.compiling.numbered import Argument, Numbers, Origins, Program, Step, Value, column
+from cosserat_casadi.compiling.steps import entrywise
 
 CONSTANT = -1
 """Local number of every constant that is not zero."""

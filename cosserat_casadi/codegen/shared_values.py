@@ -14,9 +14,9 @@ from itertools import accumulate, pairwise
 
 import casadi as ca
 
-from cosserat_casadi.codegen.printed_kernels import PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import ColumnedFunction, columns_in_fours, scalars_in_c, shared_in_c
 from cosserat_casadi.compiling.listing import Called, Computed, Listing, Read
+from cosserat_casadi.compiling.printed_kernels import PrintedKernel
+from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, columns_in_fours, scalars_in_c, shared_in_c
 
 FEWEST_SHARED = 100
 """Number of shared values from which on they become a kernel; of fewer a call saves little code."""

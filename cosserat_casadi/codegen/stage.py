@@ -16,10 +16,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
-from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.names import identifier, library_names
 from cosserat_casadi.compiling.cache import kept_texts
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.printed_files import external_sources
 from cosserat_casadi.equilibrium.contact.relaxed_contact import RelaxedContact
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.calls import chooses, in_scalars

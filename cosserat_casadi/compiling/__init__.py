@@ -1,1 +1,1 @@
-"""Texts in C on their way to machine code: sources read, functions listed, libraries compiled and kept."""
+"""A function of CasADi as C, and C as machine code: printers, sources, compilers and their cache."""

@@ -9,6 +9,9 @@ import casadi as ca
 
 from cosserat_casadi.maths.calls import called_functions
 
+LANES = 4
+"""Numbers that are computed together: columns, intervals, states."""
+
 BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 """Operations that four lanes have, as C writes them."""
 

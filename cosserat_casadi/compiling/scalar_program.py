@@ -18,9 +18,6 @@ from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, REWRIT
 from cosserat_casadi.maths.calls import called_functions
 from cosserat_casadi.maths.typing import FloatArray
 
-LANES = 4
-"""Lanes of a slot of a program in C: states that it is run for at once."""
-
 Lines = npt.NDArray[np.intc]
 """One line for each instruction: its operation by CasADi's number, slots of the result and of its operands."""
 

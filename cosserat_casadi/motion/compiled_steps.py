@@ -13,7 +13,8 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.compiling.scalar_program import LANES, ScalarProgram
+from cosserat_casadi.compiling.listing import LANES
+from cosserat_casadi.compiling.scalar_program import ScalarProgram
 from cosserat_casadi.compiling.shared_records import Held, address_of, raise_what_was_raised
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import PushedResidual

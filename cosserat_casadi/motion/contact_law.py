@@ -11,7 +11,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
-from cosserat_casadi.compiling.scalar_program import LANES, scalar_program
+from cosserat_casadi.compiling.listing import LANES
+from cosserat_casadi.compiling.scalar_program import scalar_program
 from cosserat_casadi.compiling.shared_records import POINTER, Held, address_of, raise_what_was_raised
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem

@@ -25,7 +25,7 @@ from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.kernels import dense
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours
+from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray

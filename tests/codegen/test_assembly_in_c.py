@@ -13,7 +13,7 @@ from cosserat_casadi import Compiled, Discretisation, Model, build, export, load
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.blocks import INTERFACE
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.printed_kernels import PrintedKernel
+from cosserat_casadi.compiling.printed_kernels import PrintedKernel
 from tests.codegen.libraries import QUICK, Recipe, compile_quickly
 from tests.conftest import ROOT
 from tests.scenes import push, rod, scene

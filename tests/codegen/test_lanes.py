@@ -19,11 +19,11 @@ from cosserat_casadi import Compiled, Model, Outcome, Scene, build, export, load
 from cosserat_casadi.codegen import lanes, rows
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
-from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
-from cosserat_casadi.codegen.statements import LANES_OF_ROWS
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.compiling import compiler
 from cosserat_casadi.compiling.listing import UnknownOperationError
+from cosserat_casadi.compiling.scalars_in_c import scalars_in_c
+from cosserat_casadi.compiling.statements import LANES_OF_ROWS
 from cosserat_casadi.compiling.texts import resource
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, HARNESS, LOAD, WRISTS

@@ -14,9 +14,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen import kernel_files
 from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
-from cosserat_casadi.compiling import description
+from cosserat_casadi.compiling import description, printed_files
 from cosserat_casadi.compiling.cache import tallied
 from cosserat_casadi.compiling.scalar_program import ScalarProgram
 from cosserat_casadi.maths.calls import evaluated
@@ -437,7 +436,7 @@ def nothing_written(*arguments: Any) -> dict[str, str]:
 
 def test_a_later_motion_of_the_same_rods_takes_them_from_the_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     MotionCompiler(always=True).kernels(moving(arm()))
-    monkeypatch.setattr(kernel_files, "external_sources", nothing_written)
+    monkeypatch.setattr(printed_files, "external_sources", nothing_written)
     other = arm(duration=0.5, tolerance=1e-2)
     other["title"] = "another motion"
     other["motions"][0]["values"] = [1.0, 3.0]

@@ -8,8 +8,8 @@ import re
 import casadi as ca
 import pytest
 
-from cosserat_casadi.codegen.statements import ATOM, LONGEST_LINE, SINGLE, Block, Statement, computations, in_parts
 from cosserat_casadi.compiling.listing import BINARY, Constant, Listing, Read
+from cosserat_casadi.compiling.statements import ATOM, LONGEST_LINE, SINGLE, Block, Statement, computations, in_parts
 
 SYMBOLS = 4
 VALUES = [0.1, 0.7, -1.3, 3.1]

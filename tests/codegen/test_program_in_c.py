@@ -11,12 +11,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, discretise, scene_from_dict
-from cosserat_casadi.codegen.kernel_files import external_sources
-from cosserat_casadi.codegen.numbered import function_of
-from cosserat_casadi.codegen.products import Product, column_groups
-from cosserat_casadi.codegen.program_in_c import ConstantTables, program_in_c
-from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.numbered import function_of
+from cosserat_casadi.compiling.printed_files import external_sources
+from cosserat_casadi.compiling.products import Product, column_groups
+from cosserat_casadi.compiling.program_in_c import ConstantTables, program_in_c
+from cosserat_casadi.compiling.steps import UnknownInstructionError, program_of
 from tests.families import mostly_slow
 
 ROD = {
@@ -209,7 +209,7 @@ def test_a_loop_over_entries_that_are_all_alike() -> None:
 
 def test_small_steps_in_several_bundles(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     """A bundle keeps the numbers that later ones read."""
-    monkeypatch.setattr("cosserat_casadi.codegen.program_in_c.LONGEST_BUNDLE", 20)
+    monkeypatch.setattr("cosserat_casadi.compiling.program_in_c.LONGEST_BUNDLE", 20)
     function = model.path_rate
     assert_same(in_c(function, "rate_in_bundles")[1], function, 1e-13)
 

@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.codegen.programs import partial_program
-from cosserat_casadi.codegen.steps import program_of
+from cosserat_casadi.compiling.steps import program_of
 from tests.families import mostly_slow
 from tests.scenes import rod, scene
 

@@ -10,15 +10,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
-from cosserat_casadi.compiling.scalar_program import (
-    LANES,
-    MINUS_PRODUCT,
-    OF_TWO,
-    PLUS_PRODUCT,
-    PRODUCT_MINUS,
-    scalar_program,
-)
+from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, LANES, REWRITTEN
+from cosserat_casadi.compiling.scalar_program import MINUS_PRODUCT, OF_TWO, PLUS_PRODUCT, PRODUCT_MINUS, scalar_program
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.steps_library import steps_library
 from tests.codegen.test_load import needs_compiler

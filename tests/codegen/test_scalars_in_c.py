@@ -14,14 +14,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Discretisation, Model, build, export, load, scene_from_dict
 from cosserat_casadi.codegen import kernel_files, kernels
-from cosserat_casadi.codegen import scalars_in_c as printer
-from cosserat_casadi.codegen.columns import LANES, in_columns, on_path, pose_in_columns
+from cosserat_casadi.codegen.columns import in_columns, on_path, pose_in_columns
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.codegen.plain import pointer
-from cosserat_casadi.codegen.printed_kernels import PrintedKernel
-from cosserat_casadi.codegen.scalars_in_c import columns_in_fours, scalars_in_c, with_calls_in_fours
-from cosserat_casadi.compiling.listing import Listing, UnknownOperationError
+from cosserat_casadi.compiling import scalars_in_c as printer
+from cosserat_casadi.compiling.listing import LANES, Listing, UnknownOperationError
+from cosserat_casadi.compiling.printed_kernels import PrintedKernel
+from cosserat_casadi.compiling.scalars_in_c import columns_in_fours, scalars_in_c, with_calls_in_fours
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.operations import operations

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.codegen.kernel_files import external_sources
-from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.shared_values import FEWEST_SHARED, with_shared_kernels
-from cosserat_casadi.codegen.statements import LONGEST_OF_NUMBERS
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
+from cosserat_casadi.compiling.printed_files import external_sources
+from cosserat_casadi.compiling.scalars_in_c import scalars_in_c
+from cosserat_casadi.compiling.statements import LONGEST_OF_NUMBERS
 
 LONG = FEWEST_SHARED
 
@@ -125,7 +125,7 @@ def test_kernels_read_further_arguments_that_all_their_functions_have() -> None:
 
 @pytest.mark.parametrize("longest", [LONGEST_OF_NUMBERS, 40])
 def test_kernels_in_one_piece_and_in_several_that_pass_values_on(longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.codegen.scalars_in_c.LONGEST_OF_NUMBERS", longest)
+    monkeypatch.setattr("cosserat_casadi.compiling.scalars_in_c.LONGEST_OF_NUMBERS", longest)
     plain = functions_that_share_two_calls()
     texts = external_sources(with_shared_kernels(plain, "shared"), "shared", "long long int")
     assert ("shared_0_part_1" in texts["shared.c"]) is (longest < LONG)

@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import ExportError, Model, build, discretise
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen import stage as stage_module
-from cosserat_casadi.codegen.kernel_files import external_sources
 from cosserat_casadi.codegen.stage import compiled_stage, stage_functions, written
+from cosserat_casadi.compiling.printed_files import external_sources
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.codegen.test_load import cached, needs_compiler
 from tests.families import mostly_slow

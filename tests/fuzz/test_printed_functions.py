@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from cosserat_casadi.codegen import scalars_in_c as printer
 from cosserat_casadi.codegen import shared_values
 from cosserat_casadi.codegen.kernel_files import kernel_sources
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.plain import pointer
-from cosserat_casadi.codegen.scalars_in_c import scalars_in_c
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
+from cosserat_casadi.compiling import scalars_in_c as printer
+from cosserat_casadi.compiling.scalars_in_c import scalars_in_c
 from tests.codegen.libraries import C99, gcc
 from tests.families import mostly_slow
 

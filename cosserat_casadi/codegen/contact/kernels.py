@@ -14,7 +14,7 @@ from cosserat_casadi.codegen.columns import WrittenJacobian
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.kernels import by_columns, kernel, with_derivatives
 from cosserat_casadi.codegen.passages import distance_kernel
-from cosserat_casadi.codegen.printed_kernels import Kernel
+from cosserat_casadi.compiling.printed_kernels import Kernel
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Written
 from cosserat_casadi.equilibrium.contact.contact_state import Touch
 from cosserat_casadi.equilibrium.contact.gaps import body_pairs, obstacle_of, pairs

@@ -18,12 +18,12 @@ from functools import partial
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.codegen.columns import LANES
-from cosserat_casadi.codegen.numbered import SMALL, Numbers, Program, Step
-from cosserat_casadi.codegen.printed_kernels import Callee, ConstantTable, PrintedKernel
-from cosserat_casadi.codegen.products import Product, column_groups
-from cosserat_casadi.codegen.scalars_in_c import callee, scalars_in_c
-from cosserat_casadi.codegen.statements import (
+from cosserat_casadi.compiling.listing import LANES, Constant, Listing, Read, UnknownOperationError
+from cosserat_casadi.compiling.numbered import SMALL, Numbers, Program, Step
+from cosserat_casadi.compiling.printed_kernels import Callee, ConstantTable, PrintedKernel
+from cosserat_casadi.compiling.products import Product, column_groups
+from cosserat_casadi.compiling.scalars_in_c import callee, scalars_in_c
+from cosserat_casadi.compiling.statements import (
     FEWEST,
     FOURS,
     LONGEST_OF_NUMBERS,
@@ -33,8 +33,7 @@ from cosserat_casadi.codegen.statements import (
     computations,
     in_parts,
 )
-from cosserat_casadi.codegen.steps import program_of
-from cosserat_casadi.compiling.listing import Constant, Listing, Read, UnknownOperationError
+from cosserat_casadi.compiling.steps import program_of
 
 LONGEST_BUNDLE = 3000
 """Instructions of small steps that are written together at the most."""

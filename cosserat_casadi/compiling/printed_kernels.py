@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 import casadi as ca
 
-from cosserat_casadi.codegen.products import Product, product_routines
+from cosserat_casadi.compiling.products import Product, product_routines
 from cosserat_casadi.compiling.texts import fill, resource
 
 PROTOTYPE = """{qualified} {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);

@@ -14,8 +14,17 @@ from functools import cached_property, partial
 
 import casadi as ca
 
-from cosserat_casadi.codegen.columns import LANES, ColumnForm, in_groups
-from cosserat_casadi.codegen.printed_kernels import (
+from cosserat_casadi.compiling.column_form import ColumnForm, in_groups
+from cosserat_casadi.compiling.listing import (
+    LANES,
+    Called,
+    Computed,
+    Constant,
+    Listing,
+    Read,
+    UnknownOperationError,
+)
+from cosserat_casadi.compiling.printed_kernels import (
     CALL_OF_COLUMNS,
     COLUMNS,
     PART_OF_COLUMNS,
@@ -24,7 +33,7 @@ from cosserat_casadi.codegen.printed_kernels import (
     Kernel,
     PrintedKernel,
 )
-from cosserat_casadi.codegen.statements import (
+from cosserat_casadi.compiling.statements import (
     ATOM,
     FOURS,
     LONGEST,
@@ -36,14 +45,6 @@ from cosserat_casadi.codegen.statements import (
     computations,
     in_parts,
     number_in_c,
-)
-from cosserat_casadi.compiling.listing import (
-    Called,
-    Computed,
-    Constant,
-    Listing,
-    Read,
-    UnknownOperationError,
 )
 
 

@@ -19,7 +19,7 @@ from itertools import pairwise
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.codegen.numbered import SMALL, Argument, Numbers, Origins, Program, Step, Value, column
+from cosserat_casadi.compiling.numbered import SMALL, Argument, Numbers, Origins, Program, Step, Value, column
 
 DENSE_RATE = 8.0
 """Products a nanosecond that are added to long dense columns."""
