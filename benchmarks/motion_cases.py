@@ -27,9 +27,9 @@ sys.path.insert(0, str(ROOT))
 
 from cosserat_casadi import Motion, Scene, build, read_scene, scene_from_dict, simulate, solve  # noqa: E402
 from cosserat_casadi.accuracy.levels import SPARE_NODES  # noqa: E402
-from cosserat_casadi.codegen.motion_compiler import MotionCompiler  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
 from cosserat_casadi.model.discretise import discretise, nodes_for  # noqa: E402
+from cosserat_casadi.motion.motion_compiler import MotionCompiler  # noqa: E402
 from cosserat_casadi.motion.simulate import Simulator, started  # noqa: E402
 from cosserat_casadi.motion.tip_paths import WATCHED, Paths, path_distance  # noqa: E402
 from cosserat_casadi.motion.trajectory import MotionProgress  # noqa: E402

@@ -25,8 +25,8 @@ from motion_rivals import INTERVAL, LENGTH, LIMITS, REPEATS, TIMES, Paths, Rival
 from rich.progress import Progress
 
 from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate
-from cosserat_casadi.codegen.motion_compiler import MotionCompiler
 from cosserat_casadi.compiling.cache import VARIABLE
+from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion

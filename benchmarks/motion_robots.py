@@ -26,9 +26,9 @@ from motion_rivals import Paths, Rival, Run, prepared
 from rich.progress import Progress
 
 from cosserat_casadi import Motion, scene_from_dict, simulate
-from cosserat_casadi.codegen.motion_compiler import MotionCompiler
 from cosserat_casadi.compiling.cache import VARIABLE
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.pose_series import section_poses
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.plots.figure import figure_class, write_figure

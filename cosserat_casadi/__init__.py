@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from cosserat_casadi.codegen.compiled import Compiled as Compiled
     from cosserat_casadi.codegen.export import export as export
     from cosserat_casadi.codegen.load import load as load
-    from cosserat_casadi.codegen.motion_compiler import simulate as simulate
     from cosserat_casadi.control.inverse_accuracy import inverse as inverse
     from cosserat_casadi.control.inverse_result import Inverse as Inverse
     from cosserat_casadi.equilibrium.solution import Solution as Solution
@@ -38,6 +37,7 @@ if TYPE_CHECKING:
     from cosserat_casadi.model.discretise import discretise as discretise
     from cosserat_casadi.motion.linear_model import LinearModel as LinearModel
     from cosserat_casadi.motion.linear_model import linearise as linearise
+    from cosserat_casadi.motion.motion_refinement import simulate as simulate
     from cosserat_casadi.motion.trajectory import Motion as Motion
     from cosserat_casadi.motion.trajectory import MotionOutcome as MotionOutcome
     from cosserat_casadi.motion.vibration_modes import Modes as Modes
@@ -74,7 +74,6 @@ _NAMES = {
     "codegen.compiled": ("Compiled",),
     "codegen.export": ("export",),
     "codegen.load": ("load",),
-    "codegen.motion_compiler": ("simulate",),
     "control.inverse_accuracy": ("inverse",),
     "control.inverse_result": ("Inverse",),
     "equilibrium.solution": ("Solution",),
@@ -84,6 +83,7 @@ _NAMES = {
     "model.build": ("Model",),
     "model.discretise": ("discretise",),
     "motion.linear_model": ("LinearModel", "linearise"),
+    "motion.motion_refinement": ("simulate",),
     "motion.trajectory": ("Motion", "MotionOutcome"),
     "motion.vibration_modes": ("Modes", "modes_of"),
     "numerics.outcome": ("Outcome",),

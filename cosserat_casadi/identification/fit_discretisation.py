@@ -99,7 +99,7 @@ def with_discretisation(
     if np.any(moves):
         moved = _moving_scene(baked, draft, cases[int(np.flatnonzero(moves)[0])])
         of_motion = _after("discretisation for motions", report)
-        motion = simulate(moved, progress=lambda at: of_motion(f"{at.stage}, t = {at.time:.4g} s"))
+        motion = simulate(moved, progress=lambda at: of_motion(f"{at.stage}, t = {at.time:.4g} s"), compiled=False)
         chosen += motion.model.discretisation.values()
         if not motion.converged:
             warnings.append(f"The discretisation for motions: {motion.message}")

@@ -27,6 +27,7 @@ from cosserat_casadi.motion.felt_modes import (
 )
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.moving_model import moving_model
@@ -43,7 +44,6 @@ from cosserat_casadi.motion.simulate import (
     moving_inputs,
     tolerance_of,
 )
-from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
@@ -81,7 +81,7 @@ def go_on(
     checkpoint: Checkpoint,
     simulation: Simulation | None,
     tell: Tell | None,
-    source: KernelSource | None,
+    source: MotionCompiler | None,
     events: Sequence[MotionEvent] = (),
 ) -> Motion:
     """The motion of a scene from a checkpoint to its duration.

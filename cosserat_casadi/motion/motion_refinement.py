@@ -10,9 +10,11 @@ docs/theory.md, section 11.
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -37,8 +39,10 @@ from cosserat_casadi.motion.felt_modes import (
 from cosserat_casadi.motion.going_on import StartOfMotion, checkpoint_of, go_on
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
+from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.simulate import (
     FAR_APART,
     SLOPE,
@@ -61,7 +65,6 @@ from cosserat_casadi.motion.simulate import (
     tolerance_of,
 )
 from cosserat_casadi.motion.simulate import simulate as simulate_model
-from cosserat_casadi.motion.step_kernels import KernelSource
 from cosserat_casadi.motion.sudden_loads import is_sudden
 from cosserat_casadi.motion.tip_paths import Paths, path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
@@ -220,7 +223,7 @@ class _Search:
     simulation: Simulation
     start: Solution | None
     tell: Tell | None
-    source: KernelSource | None
+    source: MotionCompiler | None
     events: Sequence[MotionEvent]
     tolerance: float
     ladder: tuple[int, ...]
@@ -360,23 +363,61 @@ def simulate(
     start: StartOfMotion = None,
     simulation: Simulation | None = None,
     progress: Tell | None = None,
-    source: KernelSource | None = None,
+    compiled: bool | None = None,
+    output: str | os.PathLike[str] | None = None,
+    part: float | None = None,
     events: Sequence[MotionEvent] = (),
 ) -> Motion:
-    """Motion of a scene, or of a model on its modes and nodes, as the public ``simulate`` describes it.
+    """Motion of a scene, or of a model on its modes and nodes.
+
+    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
+    or nodes they are used as they are, and their error is estimated; where it fixes the step, likewise. Of a model only
+    the error of the time steps is controlled, and told.
 
     Args:
-        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions.
-        start: an equilibrium of the scene to start from at rest, or a motion to go on with; None for the start of the
-            simulation.
-        simulation: duration, frames, tolerance; None for those of the scene.
+        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
+            ``build(scene.with_motion_inputs(), …, moving=True)``.
+        start: an equilibrium of the scene to start from at rest; or a motion, or its file (JSON, NPZ), which goes on to
+            the duration with the digits of one motion, where ``compiled`` is the same. By default what the simulation
+            asks for.
+        simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
-        source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
-        events: of the user.
+        compiled: whether the equations run as machine code. By default they do where the cache has them, or where
+            compiling them is foreseen to pay; with ``True`` they are compiled in any case, for motions to come, and
+            with ``False`` never; gaps of exact contact are computed in machine code in any case.
+        output: file, JSON or NPZ, of a long motion in parts: ``out.npz`` stands for ``out-0001.npz``, ``out-0002.npz``…
+        part: length of a part, s: each is written when it is done, and the last one is returned. By default the
+            motion is one, and is not written.
+        events: functions of poses and inputs whose zeros are told in ``motion.events``, or stop the motion.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
+        ExportError: there is no compiler, or it fails, and ``compiled`` is true or something touches exactly.
     """
+    source = None if compiled is False else MotionCompiler(always=compiled is True)
+
+    def simulated(start: StartOfMotion, simulation: Simulation | None, progress: Tell | None) -> Motion:
+        return _simulated(subject, start, simulation, progress, source, events)
+
+    if part is None:
+        return simulated(start, simulation, progress)
+    refuse_tubes(subject)
+    scene = subject.scene if isinstance(subject, Model) else subject
+    whole = simulation or scene.simulation
+    if whole is None:
+        return simulated(start, simulation, progress)
+    return simulate_in_parts(simulated, whole, Path(output or ""), part, start, progress)
+
+
+def _simulated(
+    subject: Scene | Model,
+    start: StartOfMotion,
+    simulation: Simulation | None,
+    progress: Tell | None,
+    source: MotionCompiler | None,
+    events: Sequence[MotionEvent],
+) -> Motion:
+    """A motion that is not written in parts; arguments as of :func:`simulate`, and what chooses the kernels."""
     checkpoint = checkpoint_of(start)
     if checkpoint is not None:
         return go_on(subject, checkpoint, simulation, progress, source, events)

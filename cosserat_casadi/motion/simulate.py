@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
@@ -30,14 +29,15 @@ from cosserat_casadi.motion.event_restart import LAID_DOWN, Restart
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
+from cosserat_casadi.motion.motion_compiler import MARGINS, MotionCompiler
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import ALONG, Start, equilibrium_start, given_start, unloaded_start
 from cosserat_casadi.motion.moving_inputs import MovingInputs
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.pose_series import poses_of
-from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, external, renamed
-from cosserat_casadi.motion.step_kernels import KernelSource, interpreted
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, external
+from cosserat_casadi.motion.step_kernels import interpreted
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_states
 from cosserat_casadi.motion.trajectory import (
@@ -142,9 +142,6 @@ steps became ever shorter.
 """
 
 
-MARGINS = "motion_margins"
-"""Name of the margins of strains in C."""
-
 STEPS_ALONE = "Its error is that of the time steps on the modes of the model; of a scene it is that of the modes too."
 """Sentence of a motion of a model."""
 
@@ -203,7 +200,7 @@ class Simulator:
     start: Start
     stage: str = "simulating"
     tell: Tell | None = None
-    source: KernelSource | None = None
+    source: MotionCompiler | None = None
     begun: Checkpoint | None = None
     events: Sequence[MotionEvent] = ()
 
@@ -497,7 +494,7 @@ def simulate(
     start: Solution | None = None,
     simulation: Simulation | None = None,
     progress: Tell | None = None,
-    source: KernelSource | None = None,
+    source: MotionCompiler | None = None,
     events: Sequence[MotionEvent] = (),
 ) -> Motion:
     """Motion of a model on its own modes and nodes: only the error of the time steps is controlled, and told.
@@ -552,7 +549,7 @@ def started(
     simulation: Simulation,
     solution: Solution | None,
     near: Solution | None = None,
-    source: KernelSource | None = None,
+    source: MotionCompiler | None = None,
 ) -> Start:
     """How the motion of a model begins.
 
@@ -595,7 +592,7 @@ def told_beyond(history: History, duration: float, library: str | None = None) -
     Args:
         history: the motion.
         duration: its end, s.
-        library: shared object that has :func:`functions_of_limits`; None without one.
+        library: shared object that has the margins of strains; None without one.
     """
     times, x, inputs = watched_states(history, duration)
     limited = history.model.strain_margins is not None and library is not None
@@ -604,11 +601,6 @@ def told_beyond(history: History, duration: float, library: str | None = None) -
         return None
     outcome = MotionOutcome[beyond.word]
     return outcome, f"{outcome.value} {beyond.whose}, from t = {times[beyond.state]:.6g} s on."
-
-
-def functions_of_limits(model: Model) -> list[ca.Function]:
-    """The margins to states that no rod can be in, as :attr:`Model.strain_margins` has them; none without limits."""
-    return [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
 
 
 def judged(

@@ -1,13 +1,12 @@
 """Inverse dynamics and its derivatives as the steps of a motion call them, over and over.
 
-CasADi's virtual machine runs them, or machine code that a layer above compiles and hands in.
+CasADi's virtual machine runs them, or machine code that motion_compiler.py has compiled.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import casadi as ca
 
@@ -15,7 +14,6 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall
-from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.time_steps import Stepper, StepperAfter
 
 MATRICES = 3
@@ -49,19 +47,6 @@ class StepKernels:
     def libraries(self) -> Libraries:
         """The shared objects that have the residual, the derivatives, and all that is written beside them."""
         return Libraries(self.library, None if self.derivatives is None else self.derivatives.library)
-
-
-class KernelSource(Protocol):
-    """Chooses the kernels for the motions of one simulation."""
-
-    def kernels(self, model: Model) -> StepKernels:
-        """The kernels for the next motion of a model."""
-
-    def library(self, model: Model) -> str | None:
-        """The shared object with the residual and all that is written beside it; None where it is not at hand."""
-
-    def learn(self, statistics: StepStatistics) -> None:
-        """Take note of the work of a motion: the next one may take as much."""
 
 
 def interpreted_residual(model: Model) -> RepeatedCall:

@@ -144,7 +144,7 @@ class ViewSession(RobotSession):
         Raises:
             SceneError: nothing that may move has mass.
         """
-        motion: Motion = simulate(self.first.model.scene)
+        motion: Motion = simulate(self.first.model.scene, compiled=False)
         if not len(motion.times):
             return {"text": motion.message, "times": [], "frames": ""}
         first, last = float(motion.times[0]), float(motion.times[-1])

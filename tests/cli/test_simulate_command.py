@@ -69,7 +69,7 @@ def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """Runs the command with a stand-in for the simulation; returns the exit code."""
 
     def run_with(*arguments: str, simulate: Simulate = swing) -> int:
-        module = types.ModuleType("cosserat_casadi.codegen.motion_compiler")
+        module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
         module.simulate = simulate  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, module.__name__, module)
         return run(lambda **options: app(["simulate", *arguments], **options))
@@ -294,7 +294,7 @@ def simulate(scene, *, start, progress, compiled, **_):
     except KeyboardInterrupt:
         return replace(motion, outcome=outcome, message=outcome.value)
 
-module = types.ModuleType("cosserat_casadi.codegen.motion_compiler")
+module = types.ModuleType("cosserat_casadi.motion.motion_refinement")
 module.simulate = simulate
 sys.modules[module.__name__] = module
 main()

@@ -11,11 +11,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import MotionOutcome, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen.motion_compiler import MotionCompiler
 from cosserat_casadi.compiling.scalar_program import scalar_program
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.centred_coordinates import can_be_centred
 from cosserat_casadi.motion.compiled_steps import MOST_TRIES, CompiledSteps
+from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
@@ -26,7 +26,7 @@ from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepS
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.time_steps import Stepper, integrate
 from tests.codegen.test_load import needs_compiler
-from tests.codegen.test_motion_compiler import arm, moving
+from tests.motion.test_motion_compiler import arm, moving
 from tests.numerics.moving import DUFFING, PENDULUM, Top, TurningPair, duffing_force, explicit, pendulum_state
 
 pytestmark = needs_compiler

@@ -142,7 +142,7 @@ def _simulate_with_progress(
 ) -> Motion:
     """Simulate a scene and show how far the simulation is."""
     # Imported here, because the integrator is needed by this command alone.
-    from cosserat_casadi.codegen.motion_compiler import simulate
+    from cosserat_casadi.motion.motion_refinement import simulate
 
     with motion_display() as show_motion:
         return simulate(

@@ -1,4 +1,4 @@
-"""Simulate with the equations of motion in machine code, where that pays.
+"""The equations of motion in machine code, where that pays.
 
 A motion calls inverse dynamics and its derivatives thousands of times. In C they take a twentieth to a fifth of the
 time of CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on
@@ -8,7 +8,6 @@ the same modes, takes them from the cache, whatever moves them and to whatever t
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
@@ -25,19 +24,13 @@ from cosserat_casadi.files import sources_hash
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import kept_with
-from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.motion import motion_refinement
 from cosserat_casadi.motion.centred_coordinates import can_be_centred
 from cosserat_casadi.motion.compiled_steps import CompiledSteps
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import function_of_displacements
-from cosserat_casadi.motion.going_on import StartOfMotion
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
-from cosserat_casadi.motion.motion_event import MotionEvent
-from cosserat_casadi.motion.parts import simulate_in_parts
-from cosserat_casadi.motion.repeated_call import RepeatedCall, external
-from cosserat_casadi.motion.simulate import Tell, functions_of_limits
+from cosserat_casadi.motion.repeated_call import RepeatedCall, external, renamed
 from cosserat_casadi.motion.step_kernels import (
     MATRICES,
     StepKernels,
@@ -47,15 +40,16 @@ from cosserat_casadi.motion.step_kernels import (
 )
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
 from cosserat_casadi.motion.tip_paths import functions_of_paths
-from cosserat_casadi.motion.trajectory import Motion, StepStatistics
+from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
-from cosserat_casadi.scene import Scene
-from cosserat_casadi.scene.simulation import Simulation
 
 RESIDUAL = "motion_residual"
 JACOBIANS = "motion_jacobians"
 """Names of the functions in C, and of their files in the cache."""
+
+MARGINS = "motion_margins"
+"""Name of the margins of strains in C."""
 
 PROGRAM = "motion_program"
 """Inverse dynamics as a program of scalars, three stages at once."""
@@ -348,6 +342,11 @@ def _equations(model: Model) -> list[Any]:
     return levels
 
 
+def functions_of_limits(model: Model) -> list[ca.Function]:
+    """The margins to states that no rod can be in, as :attr:`Model.strain_margins` has them; none without limits."""
+    return [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
+
+
 def _residual(model: Model) -> list[ca.Function]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
@@ -370,57 +369,3 @@ def _jacobians(model: Model) -> list[ca.Function]:
 
 WRITTEN = {RESIDUAL: (1, _residual), JACOBIANS: (MATRICES, _jacobians)}
 """Number of results of each function, and the functions that are written with it, itself first."""
-
-
-def simulate(
-    subject: Scene | Model,
-    *,
-    start: StartOfMotion = None,
-    simulation: Simulation | None = None,
-    progress: Tell | None = None,
-    compiled: bool | None = None,
-    output: str | os.PathLike[str] | None = None,
-    part: float | None = None,
-    events: Sequence[MotionEvent] = (),
-) -> Motion:
-    """Motion of a scene, or of a model on its modes and nodes.
-
-    A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
-    or nodes they are used as they are, and their error is estimated; where it fixes the step, likewise. Of a model only
-    the error of the time steps is controlled, and told.
-
-    Args:
-        subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
-            ``build(scene.with_motion_inputs(), …, moving=True)``.
-        start: an equilibrium of the scene to start from at rest; or a motion, or its file (JSON, NPZ), which goes on to
-            the duration with the digits of one motion, where ``compiled`` is the same. By default what the simulation
-            asks for.
-        simulation: duration, frames, tolerance; by default the scene's.
-        progress: told of every step.
-        compiled: whether the equations run as machine code. By default they do where the cache has them, or where
-            compiling them is foreseen to pay; with ``True`` they are compiled in any case, for motions to come, and
-            with ``False`` never; gaps of exact contact are computed in machine code in any case.
-        output: file, JSON or NPZ, of a long motion in parts: ``out.npz`` stands for ``out-0001.npz``, ``out-0002.npz``…
-        part: length of a part, s: each is written when it is done, and the last one is returned. By default the
-            motion is one, and is not written.
-        events: functions of poses and inputs whose zeros are told in ``motion.events``, or stop the motion.
-
-    Raises:
-        SceneError: the scene says nothing of a simulation, or cannot be simulated so.
-        ExportError: there is no compiler, or it fails, and ``compiled`` is true or something touches exactly.
-    """
-    source = None if compiled is False else MotionCompiler(always=compiled is True)
-
-    def simulated(start: StartOfMotion, simulation: Simulation | None, progress: Tell | None) -> Motion:
-        return motion_refinement.simulate(
-            subject, start=start, simulation=simulation, progress=progress, source=source, events=events
-        )
-
-    if part is None:
-        return simulated(start, simulation, progress)
-    refuse_tubes(subject)
-    scene = subject.scene if isinstance(subject, Model) else subject
-    whole = simulation or scene.simulation
-    if whole is None:
-        return simulated(start, simulation, progress)
-    return simulate_in_parts(simulated, whole, Path(output or ""), part, start, progress)

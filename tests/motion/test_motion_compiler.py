@@ -14,7 +14,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cosserat_casadi
 from cosserat_casadi import ExportError, Model, build, read_scene, scene_from_dict, simulate
-from cosserat_casadi.codegen.motion_compiler import JACOBIANS, RESIDUAL, TO_COMPILE_STEPS, MotionCompiler
 from cosserat_casadi.compiling import description, printed_files
 from cosserat_casadi.compiling.cache import tallied
 from cosserat_casadi.compiling.scalar_program import ScalarProgram
@@ -30,8 +29,15 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight, integrated
 from cosserat_casadi.motion.kernel_residual import KernelResidual
+from cosserat_casadi.motion.motion_compiler import (
+    JACOBIANS,
+    RESIDUAL,
+    TO_COMPILE_STEPS,
+    MotionCompiler,
+    functions_of_limits,
+)
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.motion.simulate import functions_of_limits, moving_inputs, started
+from cosserat_casadi.motion.simulate import moving_inputs, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted, interpreted_jacobians, interpreted_residual
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_loaded, steps_library
 from cosserat_casadi.motion.tip_paths import functions_of_paths, paths
