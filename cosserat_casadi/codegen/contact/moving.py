@@ -18,10 +18,9 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_bodies import BodyFacing
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS
-from cosserat_casadi.motion.contact_sections import RodFacing, facings, touching_points
+from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 
 CONTACT_FILES = (
