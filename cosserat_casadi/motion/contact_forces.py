@@ -46,21 +46,6 @@ Touches = tuple[MovingContact, ...]
 """The contacts of a stretch of a motion, with the places where it begins."""
 
 
-@dataclass(frozen=True)
-class ContactsAtState:
-    """The contacts at one state.
-
-    Attributes:
-        places: abscissae, one for each.
-        gaps: their gaps, over the length of their rods.
-        gradients: derivatives of the gaps with the unknowns, shape (n,) each.
-    """
-
-    places: list[float]
-    gaps: list[SectionGap]
-    gradients: list[FloatArray]
-
-
 class Followed(NamedTuple):
     """Where contacts are that were followed to a state.
 
@@ -159,11 +144,10 @@ class Follower:
         gaps = [SectionGap(own, facing.points.count) for facing, own in zip(self.facings, memory, strict=True)]
         return memory[:, 0].tolist(), gaps
 
-    def state(self, x: FloatArray, inputs: FloatArray) -> ContactsAtState:
-        """The contacts, with gradients."""
-        places, gaps = self.gaps(x, inputs)
-        gradients = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
-        return ContactsAtState(places, gaps, gradients)
+    def gradients(self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap]) -> FloatArray:
+        """Derivatives of the gaps of the contacts with the unknowns, shape (m, n)."""
+        own = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
+        return np.array(own).reshape(len(gaps), len(x))
 
     def open_by(self, gaps: Sequence[SectionGap]) -> list[float]:
         """By how much gaps are wider than the heights that the contacts keep, over the lengths."""

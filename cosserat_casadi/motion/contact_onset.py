@@ -204,7 +204,9 @@ class Onset:
         return opening, compliance, tolerance
 
     def _gradients(self, touches: Touches) -> FloatArray:
-        return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
+        follower, x = self._follower(touches), self.before.x
+        _, gaps = follower.gaps(x, self.inputs.value)
+        return follower.gradients(x, self.inputs.value, gaps)
 
     def _follower(self, touches: Sequence[MovingContact]) -> Follower:
         return Follower(self.facings, tuple(touches))

@@ -124,9 +124,9 @@ class ExactContacts:
         follower = phases.follower
         x, v = at.x[:size], at.v[:size]
         saddle = saddle_at(plain, Instant(at.time, x, v, at.a[:size]))
-        contacts = follower.state(x, inputs.value)
-        gradients = np.array(contacts.gradients)
-        open_by = np.array(follower.open_by(contacts.gaps))
+        _, gaps = follower.gaps(x, inputs.value)
+        gradients = follower.gradients(x, inputs.value, gaps)
+        open_by = np.array(follower.open_by(gaps))
         for _ in range(CLOSINGS):
             if np.abs(open_by).max() <= CLOSED:
                 break

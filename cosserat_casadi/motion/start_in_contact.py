@@ -71,9 +71,9 @@ def resting(
     for _ in range(MOST_TURNS):
         candidates = _candidates(contacts, x, inputs, laid)
         follower = Follower(facings, candidates)
-        state = follower.state(x, inputs)
-        gradients = np.array(state.gradients).reshape(len(candidates), len(x))
-        gaps = np.array([gap.value for gap in state.gaps])
+        _, at_candidates = follower.gaps(x, inputs)
+        gradients = follower.gradients(x, inputs, at_candidates)
+        gaps = np.array([gap.value for gap in at_candidates])
         jacobian, residual = contacts.model.jacobian(x, inputs)
         stiffness = jacobian.full() - _turning(facings, pressing, forces, x, inputs)
         stiffness = _stiffened(stiffness, allowed)

@@ -316,7 +316,7 @@ def test_a_step_in_contact_is_put_right_by_the_smallest_change_in_the_metric_of_
     v -= norm * (norm @ v) / (norm @ norm)
     follower = phases.follower
     (rate,), _ = follower.rates(x, v, piece.at(0.0))
-    gradient = follower.state(x, inputs).gradients[0]
+    (gradient,) = follower.gradients(x, inputs, follower.gaps(x, inputs)[1])
 
     def kinetic(speeds: FloatArray) -> float:
         return float(model.energies(x, speeds, inputs, 0.0 * inputs)[0])
