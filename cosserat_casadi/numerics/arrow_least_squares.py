@@ -26,6 +26,15 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.kinks import kink_row
 from cosserat_casadi.numerics.robust_loss import Loss
 
+MOST_ITERATIONS = 200
+"""Steps tried, at most."""
+
+DECREASE = 1e-13
+"""Predicted decrease of half the sum of squares at which to stop: a step in standard deviations is about its root."""
+
+RELATIVE_DECREASE = 1e-14
+"""The same relative to half the sum of squares."""
+
 FIRST_DAMPING = 1e-3
 """Damping of the first step relative to the squares of the columns."""
 
@@ -138,22 +147,6 @@ class FitOutcome(Enum):
     AT_KINK = "The misfit is least where its derivatives jump."
     MAX_ITERATIONS = "The iterations ran out before the misfit was least."
     STALLED = "No step that can be followed lessens the misfit, though its gradient is not zero."
-
-
-@dataclass(frozen=True)
-class FitSettings:
-    """Limits of a fit.
-
-    Attributes:
-        iterations: most steps tried.
-        decrease: predicted decrease of half the sum of squares at which to stop: a step in standard deviations of the
-            unknowns is about its root.
-        relative: the same relative to half the sum of squares.
-    """
-
-    iterations: int = 200
-    decrease: float = 1e-13
-    relative: float = 1e-14
 
 
 @dataclass(frozen=True)
@@ -527,7 +520,6 @@ class ArrowFit(Generic[StateType]):
         shared: limits of the shared unknowns, each entry of shape (n,).
         own: limits of the unknowns of the blocks, each of shape (k,), the same for all blocks.
         loss: what residuals cost.
-        settings: limits of the search.
         kinked: blocks whose derivatives jump between two states, shape (blocks,); by default none.
     """
 
@@ -535,7 +527,6 @@ class ArrowFit(Generic[StateType]):
     shared: Limits
     own: Limits
     loss: Loss = field(default_factory=Loss)
-    settings: FitSettings = field(default_factory=FitSettings)
     kinked: Callable[[StateType, StateType], npt.NDArray[np.bool_]] | None = None
 
     def run(
@@ -559,7 +550,7 @@ class ArrowFit(Generic[StateType]):
         tried = 0
         arrow = self.linear(search.shared, search.own, search.state)
         self._rescale(search, arrow)
-        while tried < self.settings.iterations:
+        while tried < MOST_ITERATIONS:
             if progress is not None:
                 progress(tried, search.cost)
             tried += 1
@@ -694,7 +685,7 @@ class ArrowFit(Generic[StateType]):
 
     def _least_decrease(self, search: _Search[StateType]) -> float:
         """Predicted decrease below which there is nothing left to gain."""
-        return max(self.settings.decrease, self.settings.relative * search.cost)
+        return max(DECREASE, RELATIVE_DECREASE * search.cost)
 
     def _more_damping(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool:
         """Let the next step be shorter; an outcome where it would be too short to change anything."""

@@ -12,7 +12,8 @@ import scipy.optimize
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, Fit, FitOutcome, FitSettings, Limits
+from cosserat_casadi.numerics import arrow_least_squares
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, Fit, FitOutcome, Limits
 from cosserat_casadi.numerics.robust_loss import Loss
 from tests.families import mostly_slow
 
@@ -194,15 +195,16 @@ def test_a_linear_problem_takes_its_closed_form() -> None:
             return matrix, np.zeros((30, 0))
 
     start, own = np.zeros(3), np.zeros((1, 0))
-    fit = ArrowFit(Linear(), free(3), free(0), Loss(), FitSettings()).run(start, own, Point(start, own, -right))
+    fit = ArrowFit(Linear(), free(3), free(0), Loss()).run(start, own, Point(start, own, -right))
     assert fit.outcome is FitOutcome.CONVERGED
     expected = np.linalg.solve((matrix * sizes).T @ (matrix * sizes), (matrix * sizes).T @ right) * sizes
     assert_allclose(fit.shared, expected, rtol=1e-6, atol=0)
 
 
-def test_iterations_that_run_out_are_told(decays: Decays) -> None:
+def test_iterations_that_run_out_are_told(decays: Decays, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(arrow_least_squares, "MOST_ITERATIONS", 2)
     start, own = np.array([0.3, 0.0]), np.ones((4, 1))
-    few = ArrowFit(decays, free(2), free(1), Loss(), FitSettings(iterations=2))
+    few = ArrowFit(decays, free(2), free(1))
     assert few.run(start, own, decays.point(start, own)).outcome is FitOutcome.MAX_ITERATIONS
 
 
