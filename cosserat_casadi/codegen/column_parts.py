@@ -14,9 +14,8 @@ from cosserat_casadi.codegen.blocks import Blocks
 from cosserat_casadi.codegen.columns import GIVEN, ColumnedJacobian, ColumnPart, columned_jacobian, on_path
 from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
 from cosserat_casadi.codegen.streams import Stream, alike, names_of_part, same_but_for_rounding, shared
-from cosserat_casadi.compiling.column_form import ColumnForm, in_groups
 from cosserat_casadi.compiling.listing import LANES, UnknownOperationError
-from cosserat_casadi.compiling.printed_kernels import Kernel
+from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel, in_groups
 from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
 from cosserat_casadi.model.build import Model
 

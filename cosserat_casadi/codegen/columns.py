@@ -20,8 +20,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
-from cosserat_casadi.compiling.column_form import ColumnForm
 from cosserat_casadi.compiling.listing import LANES
+from cosserat_casadi.compiling.printed_kernels import ColumnForm
 from cosserat_casadi.maths.calls import in_scalars
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model

@@ -20,9 +20,8 @@ from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
-from cosserat_casadi.compiling.column_form import ColumnForm
 from cosserat_casadi.compiling.listing import UnknownOperationError
-from cosserat_casadi.compiling.printed_kernels import Kernel, PrintedKernel
+from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel, PrintedKernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model

@@ -14,7 +14,6 @@ from functools import cached_property, partial
 
 import casadi as ca
 
-from cosserat_casadi.compiling.column_form import ColumnForm, in_groups
 from cosserat_casadi.compiling.listing import (
     LANES,
     Called,
@@ -29,9 +28,11 @@ from cosserat_casadi.compiling.printed_kernels import (
     COLUMNS,
     PART_OF_COLUMNS,
     Callee,
+    ColumnForm,
     ConstantTable,
     Kernel,
     PrintedKernel,
+    in_groups,
 )
 from cosserat_casadi.compiling.statements import (
     ATOM,

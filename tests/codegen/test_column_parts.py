@@ -16,9 +16,8 @@ from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import parted
-from cosserat_casadi.compiling.column_form import in_groups
 from cosserat_casadi.compiling.listing import LANES
-from cosserat_casadi.compiling.printed_kernels import PrintedKernel
+from cosserat_casadi.compiling.printed_kernels import PrintedKernel, in_groups
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import gcc, run
 from tests.scenes import push, rod, scene
