@@ -49,7 +49,8 @@ JACOBIANS = "motion_jacobians"
 """Names of the functions in C, and of their files in the cache."""
 
 MARGINS = "motion_margins"
-"""Name of the margins of strains in C."""
+RESOLUTION = "motion_resolution"
+"""Names in C of the margins of strains, and of the index that tells whether nodes resolve the rods."""
 
 PROGRAM = "motion_program"
 """Inverse dynamics as a program of scalars, three stages at once."""
@@ -343,8 +344,9 @@ def _equations(model: Model) -> list[Any]:
 
 
 def functions_of_limits(model: Model) -> list[ca.Function]:
-    """The margins to states that no rod can be in, as :attr:`Model.strain_margins` has them; none without limits."""
-    return [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
+    """What judges states of a model: its resolution index, and the margins to states that no rod can be in, if any."""
+    margins = [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
+    return [renamed(model.resolution_index, RESOLUTION), *margins]
 
 
 def _residual(model: Model) -> list[ca.Function]:

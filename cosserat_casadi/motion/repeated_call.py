@@ -110,7 +110,7 @@ class RepeatedCall:
         self.evaluate()
 
     def _machine_code(self, function: ca.Function, library: str) -> MachineCode:
-        loaded = ctypes.CDLL(library)
+        loaded = _loaded(library)
         address = ctypes.cast(getattr(loaded, function.name()), ctypes.c_void_p).value
         assert address is not None, "a function has an address"
         arguments, results = (np.zeros(size, dtype=np.uintp) for size in (function.sz_arg(), function.sz_res()))
@@ -140,6 +140,12 @@ INTERPRETED = Libraries()
 def external(name: str, library: str) -> ca.Function:
     """A function of a shared object, loaded once in a process: a file under the same name has the same contents."""
     return ca.external(name, library)
+
+
+@lru_cache(maxsize=MOST_LOADED)
+def _loaded(library: str) -> ctypes.CDLL:
+    """A shared object, loaded once in a process: a file under the same name has the same contents."""
+    return ctypes.CDLL(library)
 
 
 def renamed(function: ca.Function, name: str) -> ca.Function:

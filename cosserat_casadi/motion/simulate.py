@@ -29,7 +29,7 @@ from cosserat_casadi.motion.event_restart import LAID_DOWN, Restart
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
-from cosserat_casadi.motion.motion_compiler import MARGINS, MotionCompiler
+from cosserat_casadi.motion.motion_compiler import MARGINS, RESOLUTION, MotionCompiler
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import ALONG, Start, equilibrium_start, given_start, unloaded_start
@@ -578,11 +578,18 @@ def _along(model: Model, start: Start, rates: FloatArray) -> Start:
     return replace(start, sentence=start.sentence + ALONG) if moved and start.found else start
 
 
-def unresolved(history: History, duration: float) -> bool:
-    """Whether the rods bend too sharply for their nodes at some time."""
+def unresolved(history: History, duration: float, library: str | None = None) -> bool:
+    """Whether the rods bend too sharply for their nodes at some time.
+
+    Args:
+        history: the motion.
+        duration: its end, s.
+        library: shared object that has :func:`functions_of_limits`; None without one.
+    """
     model = history.model
     _, x, inputs = watched_states(history, duration)
-    (indices,) = evaluated(model.resolution_index, x, inputs)
+    index = model.resolution_index if library is None else external(RESOLUTION, library)
+    (indices,) = evaluated(index, x, inputs)
     return bool(indices.max() > 1.0)
 
 
@@ -624,7 +631,7 @@ def judged(
     duration = simulator.simulation.duration
     beyond = told_beyond(history, duration, simulator.library)
     entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
-    if unresolved(history, duration):
+    if unresolved(history, duration, simulator.library):
         outcome = MotionOutcome.UNRESOLVED
         deep = too_deep(history, duration)
         message = f"{NOT_OF_RODS} {deep}" if deep else message_of(history, outcome)

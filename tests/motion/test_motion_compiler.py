@@ -241,11 +241,12 @@ def test_bodies_and_limits_of_strains_stand_beside_the_residual() -> None:
     radius = np.sqrt(3e-3 / (2 * 0.1))
     at_gyration = np.moveaxis(position + radius * rotation, 2, 1) / 0.8
     assert_allclose(found.points[:, -3:], at_gyration, rtol=1e-12, atol=1e-13)
-    (in_c,) = functions_of_limits(model)
-    (limits,) = evaluated(ca.external(in_c.name(), library), states, inputs)
-    (margins,) = evaluated(model.strain_margins, states, inputs)
-    assert np.ptp(margins) > 1e-3
-    assert_allclose(limits, margins, rtol=1e-12, atol=1e-12)
+    in_vm = (model.resolution_index, model.strain_margins)
+    for in_c, function in zip(functions_of_limits(model), in_vm, strict=True):
+        (found_limits,) = evaluated(ca.external(in_c.name(), library), states, inputs)
+        (limits,) = evaluated(function, states, inputs)
+        assert np.ptp(limits) > 1e-3
+        assert_allclose(found_limits, limits, rtol=1e-12, atol=1e-12)
 
 
 def test_poses_of_tips_and_displacements_stand_beside_the_residual() -> None:

@@ -4,14 +4,12 @@
    cosserat_casadi/numerics holds the same algorithm in Python, which runs where there is no compiler: time_steps.py,
    step_run.py, step_matrices.py, step_control.py; and stage_newton.c is Newton's method. */
 
-/* The loops that take most of the time are compiled for speed, the rest so that the first motion waits for it less. Of all
-   that O3 does loops gain by vectors alone; the operations of a program gain by the rest too. */
+/* Loops and sums are put into vectors, and little else, so that the first motion waits for it less. Of all that O3 does
+   the operations of a program alone gain by the rest too. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("O1")
-#define FAST __attribute__((optimize("O1", "tree-loop-vectorize", "vect-cost-model=dynamic")))
+#pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic")
 #define FASTEST __attribute__((optimize("O3")))
 #else
-#define FAST
 #define FASTEST
 #endif
 #ifdef __clang__
@@ -32,7 +30,7 @@ typedef double real;
 #include "fours.h"
 #define ABSOLUTE fabs
 
-FAST static inline real larger(real a, real b) { return a > b ? a : b; }
+static inline real larger(real a, real b) { return a > b ? a : b; }
 static real smaller(real a, real b) { return a < b ? a : b; }
 
 /* A function of Python that reads and writes the arrays of the record. Not zero: it was interrupted. */
@@ -378,11 +376,11 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
 /* ---- Linear systems: step_matrices.py ---- */
 
 /* Of a complex number the sum of the sizes of its parts, as in LAPACK: a root for each entry takes longer than the sums. */
-FAST static inline real size_of(const real *entry, int plane) {
+static inline real size_of(const real *entry, int plane) {
   return plane ? fabs(entry[0]) + fabs(entry[plane]) : fabs(entry[0]);
 }
 
-FAST static void swap(real *a, int stride, real *b, int count) {
+static void swap(real *a, int stride, real *b, int count) {
   for (int i = 0; i < count; i++) {
     const real kept = a[i * stride];
     a[i * stride] = b[i * stride];
@@ -391,12 +389,12 @@ FAST static void swap(real *a, int stride, real *b, int count) {
 }
 
 /* A row less a multiple of another one. */
-FAST static void subtract_real_row(real *restrict row, real factor, const real *restrict other, int n) {
+static void subtract_real_row(real *restrict row, real factor, const real *restrict other, int n) {
   for (int j = 0; j < n; j++) row[j] -= factor * other[j];
 }
 
 /* The same of complex numbers, whose imaginary parts are a plane behind. */
-FAST static void subtract_complex_row(real *restrict row, real *restrict imaginary, real factor, real factor_imaginary,
+static void subtract_complex_row(real *restrict row, real *restrict imaginary, real factor, real factor_imaginary,
                                       const real *restrict other, const real *restrict other_imaginary, int n) {
   for (int j = 0; j < n; j++) {
     row[j] -= factor * other[j] - factor_imaginary * other_imaginary[j];
@@ -405,7 +403,7 @@ FAST static void subtract_complex_row(real *restrict row, real *restrict imagina
 }
 
 /* The rows of a matrix less multiples of the row of a pivot, which is the identity's then. */
-FAST static void eliminate_real(real *a, int k, int n) {
+static void eliminate_real(real *a, int k, int n) {
   real *own = a + k * n;
   const real inverse = 1 / own[k];
   own[k] = 1;
@@ -419,7 +417,7 @@ FAST static void eliminate_real(real *a, int k, int n) {
   }
 }
 
-FAST static void eliminate_complex(real *a, int k, int n) {
+static void eliminate_complex(real *a, int k, int n) {
   const int plane = n * n;
   real *own = a + k * n;
   real *own_imaginary = own + plane;
@@ -446,7 +444,7 @@ FAST static void eliminate_complex(real *a, int k, int n) {
 }
 
 /* Largest sum of the sizes of the entries of a column. */
-FAST static real norm_of_columns(const real *a, int plane, int n, real *sums) {
+static real norm_of_columns(const real *a, int plane, int n, real *sums) {
   real largest = 0;
   memset(sums, 0, (size_t)n * sizeof *sums);
   for (int i = 0; i < n; i++) {
@@ -459,7 +457,7 @@ FAST static real norm_of_columns(const real *a, int plane, int n, real *sums) {
 }
 
 /* Every entry of a matrix times a number of its row and one of its column. */
-FAST static void scale_entries(real *a, int plane, const real *restrict of_rows, const real *restrict of_columns, int n) {
+static void scale_entries(real *a, int plane, const real *restrict of_rows, const real *restrict of_columns, int n) {
   for (int p = 0; p <= plane; p += n * n) {
     for (int i = 0; i < n; i++) {
       real *row = a + p + i * n;
@@ -471,7 +469,7 @@ FAST static void scale_entries(real *a, int plane, const real *restrict of_rows,
 
 /* The inverse of a matrix, in place, by Gauss-Jordan elimination with partial pivoting, of the matrix whose largest entry
    of every row and column is one. Zero where that one is singular to rounding. */
-FAST static int invert(real *a, int is_complex, workspace *work) {
+static int invert(real *a, int is_complex, workspace *work) {
   const int n = N;
   const int plane = is_complex ? n * n : 0;
   real *rows = work->vectors;
@@ -523,7 +521,7 @@ FAST static int invert(real *a, int is_complex, workspace *work) {
 }
 
 /* The inverses of K + p C + p^2 M at the real and at the complex eigenvalue of the method. */
-FAST static int factorise_step(real size, workspace *work) {
+static int factorise_step(real size, workspace *work) {
   const int entries = N * N;
   const real *stiffness = work->matrices;
   const real *damping = stiffness + entries;
@@ -548,7 +546,7 @@ FAST static int factorise_step(real size, workspace *work) {
 }
 
 /* Of stage_newton.c, which asks for what stands here. */
-FAST static real inner_product(const real *a, const real *b, int count);
+static real inner_product(const real *a, const real *b, int count);
 
 /* Rows of a matrix times a vector. */
 static void multiply(const real *a, const real *b, real *result, int n) {
