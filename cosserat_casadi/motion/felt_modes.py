@@ -216,27 +216,39 @@ def lacking(history: History, duration: float, moved_by: ByStrain | None = None)
 def lacking_at_fronts(history: History, duration: float) -> float:
     """Largest displacement over the length that a wave with a front would make which coefficients lack.
 
+    What a front lacks from all rods that it comes through adds up, as errors at different times do: in squares.
+    """
+    model = history.model
+    by_rod = at_fronts(history, duration)
+    squares = dict.fromkeys(by_rod, 0.0)
+    for name, by_strain in by_rod.items():
+        for other in moved_along(model.scene, name).rods:
+            squares[other] += max(by_strain) ** 2
+    return float(np.sqrt(max(squares.values())))
+
+
+def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
+    """The same of every strain of every rod alone; zero of curvatures, whose fronts make no kinks.
+
     A sudden load sends fronts along a rod by its twist, its stretch and its shear. Where one arrives at the tip, turn
     or place has a kink, which any polynomials meet with the first power of their number: what two motions differ by
-    there says little, for their kinks err at different times. What a front lacks from all rods that it comes through
-    adds up, as errors at different times do: in squares.
+    there says little, for their kinks err at different times.
     """
     moved_by = felt(history, duration)
     model = history.model
-    squares = dict.fromkeys(moved_by, 0.0)
-    for name, rod in model.discrete.rods.items():
-        fronts = [
-            AT_FRONT
+    return {
+        name: [
+            0.0
+            if strain in BENDING
+            else AT_FRONT
             * (len(moved) + 2)
             * float(np.sqrt(np.mean(moved[-min(LAST_AT_FRONT, max(2, len(moved) // 2)) :] ** 2)))
             * _fronts_over_seen(model, name)[strain]
             * let_through
             for strain, moved, let_through in zip(rod.admitted, moved_by[name], _let_through(model, name), strict=True)
-            if strain not in BENDING
         ]
-        for other in moved_along(model.scene, name).rods:
-            squares[other] += max(fronts, default=0.0) ** 2
-    return float(np.sqrt(max(squares.values())))
+        for name, rod in model.discrete.rods.items()
+    }
 
 
 def _fronts_over_seen(model: Model, name: str) -> dict[int, float]:

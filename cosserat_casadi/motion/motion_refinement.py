@@ -29,6 +29,7 @@ from cosserat_casadi.motion.felt_modes import (
     REST,
     SAFETY,
     UNKNOWN_ORDER,
+    at_fronts,
     felt,
     lacking,
     lacking_at_fronts,
@@ -137,6 +138,9 @@ MOST_WITHOUT_START = 4
 
 FELT = 0.02
 """Displacement by a coefficient, over the tolerance, from which it counts."""
+
+FELT_AT_FRONTS = 0.3
+"""What the fronts of a strain lack, over what the modes may leave, from which on it gets further ones."""
 
 
 ERRATIC = (
@@ -752,6 +756,8 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
         left = lacking(history, search.simulation.duration, moved_by)
         if max(left, search.last.fronts) <= SPACE_SHARE * search.tolerance:
             return None, left
+    fronts = at_fronts(history, search.simulation.duration) if search.last.waves else {}
+    front_is_felt = FELT_AT_FRONTS * SPACE_SHARE * search.tolerance
     chosen = {}
     unseen = 0.0
     for name, discretisation in _uniform(search.scene, modes).items():
@@ -764,7 +770,11 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
             if moved.max() < FELT * search.tolerance:
                 counts.append(1)
                 unseen = max(unseen, REST * kept * float(moved.max()))
-            elif last < FELT * search.tolerance and not _has_blows(history):
+            elif (
+                last < FELT * search.tolerance
+                and not (fronts and fronts[name][strain] > front_is_felt)
+                and not _has_blows(history)
+            ):
                 counts.append(kept)
                 unseen = max(unseen, REST * kept * last)
             else:
