@@ -344,7 +344,7 @@ def _equations(model: Model) -> list[Any]:
 
 
 def functions_of_limits(model: Model) -> list[ca.Function]:
-    """What judges states of a model: its resolution index, and the margins to states that no rod can be in, if any."""
+    """The functions that judge states of a model: its resolution index, and margins to states that no rod can be in."""
     margins = [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
     return [renamed(model.resolution_index, RESOLUTION), *margins]
 

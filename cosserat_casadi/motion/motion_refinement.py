@@ -140,7 +140,7 @@ FELT = 0.02
 """Displacement by a coefficient, over the tolerance, from which it counts."""
 
 FELT_AT_FRONTS = 0.3
-"""What the fronts of a strain lack, over what the modes may leave, from which on it gets further ones."""
+"""Displacement that fronts of a strain lack, over the share of modes, from which on it gets further ones."""
 
 
 ERRATIC = (
