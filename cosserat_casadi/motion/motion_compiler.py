@@ -39,7 +39,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_residual,
 )
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
-from cosserat_casadi.motion.tip_paths import functions_of_paths
+from cosserat_casadi.motion.tip_paths import function_of_paths
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
@@ -354,7 +354,7 @@ def _residual(model: Model) -> list[ca.Function]:
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
     # Every motion asks for the watched paths, for how far unknowns move them, and for rows on limits and constraints.
-    beside = [*functions_of_paths(model), function_of_displacements(model), *functions_of_flight(model)]
+    beside = [function_of_paths(model), function_of_displacements(model), *functions_of_flight(model)]
     for points in touching_points(model):
         beside += points.in_iterations
     # With parameters no motion is computed, and rows have no parameters.

@@ -6,7 +6,6 @@ of :func:`watched_sections`, as at rest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache, reduce
 from typing import NamedTuple
@@ -15,8 +14,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.equilibrium.solution import rotations
-from cosserat_casadi.maths.calls import evaluated
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.calls import chooses, evaluated
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.section_poses import SectionPoses, section_weights
@@ -24,18 +23,12 @@ from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.pose_series import Frames, frames_of
-from cosserat_casadi.motion.repeated_call import external, renamed
+from cosserat_casadi.motion.pose_series import Frames
+from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.scene.constraint_records import Body
 
-TIP = "motion_tip_"
-"""Name of the pose of a tip in C, before the number of its rod."""
-
-BETWEEN = "motion_between_"
-"""Name of the poses of the sections between the ends of a rod in C, before its number."""
-
-BODY = "motion_body_"
-"""Name of the pose of a body in C, before its number."""
+PATHS = "motion_paths"
+"""Name in C of the function of all that moves along the watched paths."""
 
 WATCHED = 401
 """Times at which paths are compared, evenly spaced."""
@@ -71,20 +64,6 @@ class WatchedStates(NamedTuple):
     inputs: FloatArray
 
 
-class PathFunctions(NamedTuple):
-    """Functions (x, inputs) ↦ what moves along the watched paths.
-
-    Attributes:
-        tips: frames of the tips, by their rods.
-        between: positions and quaternions of the sections between ends, by their rods.
-        bodies: frames of the bodies, by their names.
-    """
-
-    tips: Mapping[str, ca.Function]
-    between: Mapping[str, ca.Function]
-    bodies: Mapping[str, ca.Function]
-
-
 def watched_states(history: History, duration: float) -> WatchedStates:
     """The states of a motion at the times at which it is compared with another one of a duration, s."""
     if duration not in history.watched_until:
@@ -95,11 +74,36 @@ def watched_states(history: History, duration: float) -> WatchedStates:
     return known
 
 
-def functions_of_paths(model: Model) -> list[ca.Function]:
-    """The poses of tips and bodies, as :attr:`Model.tip` and its like have them, and of the sections between ends."""
-    tips = [renamed(tip, f"{TIP}{number}") for number, tip in enumerate(model.tip.values())]
-    bodies = [renamed(body, f"{BODY}{number}") for number, body in enumerate(model.body.values())]
-    return [*tips, *_between(model).values(), *bodies]
+def function_of_paths(model: Model) -> ca.Function:
+    """The function (x, inputs) ↦ all that moves along the watched paths.
+
+    Of every rod the position and the rotation of its tip, then positions, 3×k, and quaternions, 4×k, of its k watched
+    sections before the tip, if any; then position and rotation of every body. Terms that they share are computed once.
+    """
+    function: ca.Function = kept_with(model, "_paths", lambda: _written(model))
+    return function
+
+
+def _written(model: Model) -> ca.Function:
+    arguments = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
+    system = System(model.discrete, arguments)
+    results: list[Matrix] = []
+    for name, tip in model.tip.items():
+        results += _frame(tip, arguments)
+        places = _places_between(model, name)
+        if places:
+            poses = SectionPoses(system, name, section_weights(model.discrete, name, places))
+            results += [poses.positions, poses.quaternions]
+    for body in model.scene.bodies:
+        results += _frame(model.body[body.name], arguments)
+    dense = [ca.densify(result) for result in results]
+    return ca.Function(PATHS, [arguments.x, arguments.inputs], ca.cse(dense))
+
+
+def _frame(function: ca.Function, arguments: Arguments) -> list[Matrix]:
+    """Position and rotation of a tip or a body, written out: what others share with it is found then."""
+    position, _, rotation = function.call([arguments.x, arguments.inputs], True, False)
+    return [position, rotation]
 
 
 def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None = None) -> Paths:
@@ -109,19 +113,20 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
         model: the model.
         x: unknowns, shape (T, model.size).
         inputs: stacked inputs, shape (T, model.inputs.size).
-        library: shared object that has :func:`functions_of_paths`; None without one.
+        library: shared object that has :func:`function_of_paths`; None without one.
     """
-    tips, between, bodies = _interpreted(model) if library is None else _external(model, library)
+    function = _in_scalars(model) if library is None else external(PATHS, library)
+    found = iter(evaluated(function, x, inputs))
     points = []
     section_axes = []
     lengths = _lengths(model, inputs)
     for name in model.discrete.rods:
         length = lengths[name]
-        tip = frames_of(tips[name], x, inputs)
+        tip = Frames(next(found)[:, :, 0], next(found))
         points.append(tip.position / length)
         section_axes.append(tip.rotation[:, :, :2])
-        if name in between:
-            positions, quaternions = evaluated(between[name], x, inputs)
+        if _places_between(model, name):
+            positions, quaternions = next(found), next(found)
             points += list(np.moveaxis(positions / length[..., None], 2, 0))
             of_sections = rotations(np.moveaxis(quaternions, 2, 0).reshape(-1, 4))
             section_axes += list(of_sections[:, :, :2].reshape(-1, len(x), 3, 2))
@@ -133,7 +138,7 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
             points.append((moved + start) / length)
     longest = reduce(np.maximum, lengths.values())
     for body in model.scene.bodies:
-        frames = frames_of(bodies[body.name], x, inputs)
+        frames = Frames(next(found)[:, :, 0], next(found))
         points += list(_moved_with(frames, watched_arms(body, longest.max())) / longest)
     return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
 
@@ -150,51 +155,19 @@ def _lengths(model: Model, inputs: FloatArray) -> dict[str, FloatArray]:
     return lengths
 
 
-def _interpreted(model: Model) -> PathFunctions:
-    # As scalars those of bodies take less than half of the time.
-    bodies = kept_with(model, "_bodies_in_scalars", lambda: {name: body.expand() for name, body in model.body.items()})
-    return PathFunctions(model.tip, _between(model), bodies)
-
-
-def _external(model: Model, library: str) -> PathFunctions:
-    """The functions of a shared object, without a function being written for them; every motion asks."""
-    loaded: dict[str, PathFunctions] = kept_with(model, "_paths_in_c", dict)
-    if library not in loaded:
-        loaded[library] = _loaded(model, library)
-    return loaded[library]
-
-
-def _loaded(model: Model, library: str) -> PathFunctions:
-    rods = list(enumerate(model.discrete.rods))
-    tips = {name: external(f"{TIP}{number}", library) for number, name in rods}
-    between = {name: external(f"{BETWEEN}{number}", library) for number, name in rods if _places_between(model, name)}
-    bodies = {body.name: external(f"{BODY}{number}", library) for number, body in enumerate(model.scene.bodies)}
-    return PathFunctions(tips, between, bodies)
+def _in_scalars(model: Model) -> ca.Function:
+    """The function for CasADi's virtual machine, as scalars where it can be written so: a quarter of the time."""
+    function = function_of_paths(model)
+    scalars: ca.Function = kept_with(
+        model, "_paths_in_scalars", lambda: function if chooses(function) else function.expand()
+    )
+    return scalars
 
 
 def _places_between(model: Model, rod: str) -> list[float]:
     """Abscissae of the watched sections of a rod before its tip."""
     places: list[float] = watched_sections(model.scene, rod)[:-1].tolist()
     return places
-
-
-def _between(model: Model) -> dict[str, ca.Function]:
-    """(x, inputs) ↦ positions, 3×k, and quaternions, 4×k, of the k watched sections before its tip, by their rod."""
-    return kept_with(model, "_between_ends", lambda: _written_between(model))
-
-
-def _written_between(model: Model) -> dict[str, ca.Function]:
-    discrete = model.discrete
-    arguments = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
-    system = System(discrete, arguments)
-    functions = {}
-    for number, name in enumerate(discrete.rods):
-        places = _places_between(model, name)
-        if places:
-            poses = SectionPoses(system, name, section_weights(discrete, name, places))
-            outputs = [poses.positions, poses.quaternions]
-            functions[name] = ca.Function(f"{BETWEEN}{number}", [arguments.x, arguments.inputs], outputs)
-    return functions
 
 
 def path_distance(first: Paths, second: Paths) -> float:
