@@ -57,7 +57,7 @@ def error_words(model: Model, names: Names) -> Words:
         "error_settled": answer_error.SETTLED,
         "error_followed": FOLLOWED,
         "error_contracting": answer_error.CONTRACTING,
-        "error_enough": answer_error.enough_for(tolerance),
+        "error_enough": answer_error.enough_for(model),
         "error_fastest": answer_error.FASTEST,
         "error_slowest": answer_error.SLOWEST,
         "error_floor": ROUNDING,

@@ -20,6 +20,7 @@ from cosserat_casadi.equilibrium.metrics import ROUNDING, distance_of_poses
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
 from cosserat_casadi.numerics.neutral import regular_inverse
@@ -232,7 +233,7 @@ def _with_safety(change: float) -> float:
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
     """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model."""
     # A look that leaves the answer within its tolerance need not be repeated.
-    enough = enough_for(solution.model.scene.accuracy.tolerance)
+    enough = enough_for(solution.model)
     # Far from an answer the equations overflow: what comes out then is not settled.
     with np.errstate(all="ignore"):
         for corrections in (_sweeps(solution), _newton_steps(solution)):
@@ -248,9 +249,14 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
     return False, correction
 
 
-def enough_for(tolerance: float) -> float:
-    """Change below which the first sweep is believed: the estimate that it gives is within the tolerance."""
-    return max(tolerance / SAFETY, ROUNDING)
+def enough_for(model: Model) -> float:
+    """Change below which the first sweep is believed: the estimate that it gives is within the tolerance.
+
+    Thin layers are so far from linear that the first one tells down to half of the change: there none is believed.
+    """
+    if model.discrete.closer_sections:
+        return ROUNDING
+    return max(model.scene.accuracy.tolerance / SAFETY, ROUNDING)
 
 
 def _sweeps(solution: Solution) -> Iterator[Correction]:

@@ -80,12 +80,23 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
     for part in runs(gaps < width):
         start = _crossing(looked_at, gaps - width, part.start - 1, part.start)
         end = _crossing(looked_at, gaps - width, part.stop - 1, part.stop)
-        X, weights = _summed_at(sections, start, end)
-        per_length = pressure(layer, _gaps(solution, layer, X))
-        along = normals(solution, layer.rod, layer.obstacle, X)
-        force = length * ((weights * per_length) @ along)
+        force = length * _push_between(solution, layer, sections, (start, end))
         force += friction_between(solution.model, layer, solution.x, solution.inputs, (start, end))
         yield Contact(layer.obstacle.name, layer.rod, start, end, force, (), "smooth", width, float(gaps[part].min()))
+
+
+def _push_between(
+    solution: Solution, layer: ContactLayer, sections: EqualSections | None, between: tuple[float, float]
+) -> FloatArray:
+    """Force of a layer on a rod between two abscissae, over the length, shape (3,), N/m."""
+    X, weights = _summed_at(sections, *between)
+    if not len(X):
+        # Parameters have drawn sections apart, and the rod is in the layer between two of them.
+        return np.zeros(3)
+    per_length = pressure(layer, _gaps(solution, layer, X))
+    assert layer.rod is not None, "a layer along a rod"
+    push: FloatArray = (weights * per_length) @ normals(solution, layer.rod, layer.obstacle, X)
+    return push
 
 
 def _summed_at(sections: EqualSections | None, start: float, end: float) -> tuple[FloatArray, FloatArray]:

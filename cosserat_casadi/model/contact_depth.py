@@ -12,6 +12,7 @@ from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.contact_layers import LOOSEST_SECTIONS, pressed
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
@@ -31,6 +32,23 @@ def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
     """The layers of smooth obstacles that have another side."""
     layers = [load for load in discrete.loads if isinstance(load, ContactLayer)]
     return [layer for layer in layers if isfinite(layer.obstacle.thickness)]
+
+
+def sections_lie_apart(system: System) -> Matrix | None:
+    """Whether sections at which thin layers are summed are too far apart by the inputs and parameters, 1×1.
+
+    None where none of these can draw them apart.
+    """
+    apart: list[Matrix] = []
+    for layer in thin_layers(system.discrete):
+        sections = system.discrete.closer_sections.get(layer.name or "")
+        if sections is None or layer.name not in system.discrete.stretched_layers:
+            continue
+        rod = sections.rod
+        radius = ca.mmin(as_matrix(section_radii(rod.properties, sections.placed.X)))
+        longest = ca.mmax(as_matrix(sections.lengths)) * system.length(rod.properties.name) / rod.length
+        apart.append(ca.MX(longest > LOOSEST_SECTIONS * pressed(layer.obstacle, radius)))
+    return ca.mmax(ca.vertcat(*apart)) if apart else None
 
 
 def _depth(system: System, layer: ContactLayer) -> Matrix:

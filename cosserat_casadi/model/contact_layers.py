@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isfinite, pi, sqrt
+from typing import overload
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_pairs import pair_widths
 from cosserat_casadi.rod.placed_sections import EqualSections
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -37,6 +39,13 @@ USUAL_NODES = 12
 SECTION_SPACING = 0.5
 """Distance of the sections at which a thinner layer is summed over half of the stretch that it presses, on the fewest
 intervals: a force (1 − s²)³ within this stretch, |s| ≤ 1, is summed to 4 thousandths by equal parts of it."""
+
+SPARE_SECTIONS = 2
+"""Sections for each of those where numbers may stretch a rod, or make a layer thinner, than the scene has them."""
+
+LOOSEST_SECTIONS = 0.75
+"""Distance of sections over half of the stretch that a layer presses, up to which an error of their sum shows: where
+they are farther apart, the stiffness that they give the layer hangs on where they are."""
 
 FEWEST_NODES = 8
 """Intervals that are called so: those of three modes. On more intervals sections are as much closer."""
@@ -163,7 +172,9 @@ def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) ->
     return ceil(min(max((_nodes_for(own, radius, widest) for own in at_nodes), default=0.0), MOST_LAYER_NODES))
 
 
-def closer_sections(obstacle: scenes.ObstacleRecord, rod: DiscreteRod, moved: bool) -> EqualSections | None:
+def closer_sections(
+    obstacle: scenes.ObstacleRecord, rod: DiscreteRod, *, moved: bool, stretched: bool
+) -> EqualSections | None:
     """The sections of a rod at which the layer of an obstacle is summed; None where that is at the nodes.
 
     Args:
@@ -171,6 +182,8 @@ def closer_sections(obstacle: scenes.ObstacleRecord, rod: DiscreteRod, moved: bo
         rod: with the scene's own numbers.
         moved: whether parameters move its elements: a short one may become long, and has as many sections as the
             longest.
+        stretched: whether inputs or parameters change the layer's width, or the rod's length or radius: there are
+            sections to spare.
     """
     lengths = rod.properties.length * np.diff(rod.grid.breaks)
     radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
@@ -178,7 +191,8 @@ def closer_sections(obstacle: scenes.ObstacleRecord, rod: DiscreteRod, moved: bo
     if ratio == 1:
         return None
     shares = np.ones(len(lengths)) if moved else lengths / lengths.max()
-    counts = np.ceil(ratio * rod.grid.intervals * shares).astype(int)
+    spare = SPARE_SECTIONS if stretched else 1
+    counts = np.ceil(spare * ratio * rod.grid.intervals * shares).astype(int)
     return EqualSections(rod, tuple(counts.tolist()))
 
 
@@ -189,7 +203,7 @@ def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: flo
     """
     if obstacle.rubs or _nodes_for(obstacle, radius, widest) <= USUAL_NODES:
         return 1
-    return ceil(widest / (SECTION_SPACING * _pressed(obstacle, radius)) / FEWEST_NODES)
+    return ceil(widest / (SECTION_SPACING * pressed(obstacle, radius)) / FEWEST_NODES)
 
 
 def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> float:
@@ -199,16 +213,25 @@ def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) ->
     """
     if not obstacle.width or not isfinite(obstacle.thickness):
         return 0.0
-    return pi / 2 * widest / (LOOSEST_NODES * _pressed(obstacle, radius))
+    return pi / 2 * widest / (LOOSEST_NODES * pressed(obstacle, radius))
 
 
-def _pressed(obstacle: scenes.ObstacleRecord, radius: float) -> float:
+@overload
+def pressed(obstacle: scenes.ObstacleRecord, radius: float) -> float: ...
+@overload
+def pressed(obstacle: scenes.ObstacleRecord, radius: Matrix) -> Matrix: ...
+def pressed(obstacle: scenes.ObstacleRecord, radius: float | Matrix) -> float | Matrix:
     """How far to both sides a thin obstacle presses a straight rod, m.
 
     Where the distance of their axes is d, the rod is in the layer for √(2 w d).
+
+    Args:
+        obstacle: the obstacle.
+        radius: of the rod, m.
     """
     assert obstacle.width is not None, "it is smooth"
-    return sqrt(2 * obstacle.width * (obstacle.thickness / 2 + radius))
+    stretch: float | Matrix = (2 * obstacle.width * (obstacle.thickness / 2 + radius)) ** 0.5
+    return stretch
 
 
 def inexact_beside(scene: scenes.Scene) -> float:

@@ -8,7 +8,7 @@ rods whose stress relaxes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -53,6 +54,10 @@ UNEVEN = 1e4
 
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
+
+
+FINER_SECTIONS = 3
+"""Sections of a richer scene for each one at which a scene sums a thin layer: the error of the sum shows as well."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +136,7 @@ class DiscreteScene:
         moving: whether it is for a motion, in which stress that relaxes has flows.
         memory: grids of the rods at whose nodes loads remember sections along a path; None for those of this scene.
         layers: widths of smooth contact over those of the scene.
+        fewest_sections: least sections of each element at which thin layers are summed, by the name of the load.
     """
 
     scene: scenes.Scene
@@ -141,6 +147,7 @@ class DiscreteScene:
     moving: bool = False
     memory: Mapping[str, Grid] | None = None
     layers: float = 1.0
+    fewest_sections: Mapping[str | None, tuple[int, ...]] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
         """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
@@ -215,12 +222,37 @@ class DiscreteScene:
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is None or layer.at is not None:
                 continue
-            rod = self.rods[layer.rod]
-            moved = rod.grid.ends is not None
-            sections = closer_sections(layer.obstacle, self.nominal.rods[layer.rod], moved)
+            sections = closer_sections(
+                layer.obstacle,
+                self.nominal.rods[layer.rod],
+                moved=self._named.rods[layer.rod].grid.ends is not None,
+                stretched=layer.name in self.stretched_layers,
+            )
             if sections is not None:
-                found[layer.name] = replace(sections, rod=rod)
+                fewest = self.fewest_sections.get(layer.name, sections.counts)
+                counts = tuple(map(max, sections.counts, fewest))
+                found[layer.name] = EqualSections(self.rods[layer.rod], counts)
         return found
+
+    @cached_property
+    def stretched_layers(self) -> list[str | None]:
+        """Names of the layers whose width, or the length or a radius of whose rod, inputs or parameters change."""
+        found: list[str | None] = []
+        for layer in contact_layers(self._named.scene, self.nominal.rods):
+            if layer.rod is None:
+                continue
+            properties = self._named.rods[layer.rod].properties
+            is_longer = properties.ratio is not None or self.layout.of_rod(layer.rod, "length") is not None
+            if is_longer or any_symbolic([layer.obstacle.width, section_radii(properties, np.zeros(1))]):
+                found.append(layer.name)
+        return found
+
+    @cached_property
+    def _named(self) -> DiscreteScene:
+        """The scene with symbols for the parameters that its file names, even where they are fixed."""
+        if self.parameters.size or not self.nominal.scene.parameters:
+            return self
+        return with_parameters(self.nominal)
 
     @property
     def remembered(self) -> Mapping[str, Grid]:
@@ -452,7 +484,11 @@ class DiscreteScene:
         discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        return Richer(self, replace(discrete, memory=self.remembered))
+        fewest = {
+            name: tuple(FINER_SECTIONS * count for count in sections.counts)
+            for name, sections in self.closer_sections.items()
+        }
+        return Richer(self, replace(discrete, memory=self.remembered, fewest_sections=fewest))
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """Unit of contact forces on a rod, or on a body, N."""

@@ -11,7 +11,7 @@ import casadi as ca
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_depth import contact_depths
+from cosserat_casadi.model.contact_depth import contact_depths, sections_lie_apart
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import (
@@ -220,7 +220,12 @@ class ModelFunctions:
         residual, lacking = richer.split(SceneEquations(system).residual)
         # By which elasticity alone would take up the lacking balance.
         steps = richer.split(richer.elastic_step(lacking))
-        return [ca.densify(ca.vertcat(*steps, residual, watched(system).column))]
+        poses = watched(system).column
+        apart = sections_lie_apart(written.system)
+        if apart is not None:
+            # An error that does not show is not known.
+            poses = poses + ca.if_else(apart, ca.inf, 0.0)
+        return [ca.densify(ca.vertcat(*steps, residual, poses))]
 
     @scene_function(Output("poses"), kernel="watched", judges_answers=True)
     def watched(self, written: Expressions) -> list[Matrix]:
