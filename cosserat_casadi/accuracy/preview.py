@@ -185,7 +185,7 @@ class Preview:
         tips = _tips_of(current)
         for _ in range(max(sweeps, 1)):
             _, lacking = richer.split(_as_numbers(SceneEquations(current).residual))
-            step, missing_step = richer.split(richer.elastic_step(lacking))
+            step, missing_step = richer.split(richer.elastic_step(lacking, current.shapes))
             known = known + _column(step)
             missing = missing + _column(missing_step)
             if sweeps > 0:

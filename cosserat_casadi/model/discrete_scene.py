@@ -43,9 +43,10 @@ from cosserat_casadi.model.scene_constraints import (
 from cosserat_casadi.model.scene_rods import fixed_masses, rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.placed_sections import EqualSections
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.strain_density import StiffnessBeyondHooke, stiffness_beyond_hooke
 from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
 from cosserat_casadi.scene.input_fields import InputField
 
@@ -58,6 +59,16 @@ NO_SOFTNESS = 1e-9
 
 FINER_SECTIONS = 3
 """Sections of a richer scene for each one at which a scene sums a thin layer: the error of the sum shows as well."""
+
+
+STEPS_OF_LAWS = 3
+"""Steps of conjugate gradients by which an elastic step goes where laws couple strains, or vary along a rod."""
+
+NO_ENERGY = 1e-30
+"""Energy of a step, in units of EI/ℓ, that is none."""
+
+SOFTEST = 0.01
+"""Least tangent stiffness of a mode over that of Hooke's law: what softens more is held by something else."""
 
 
 @dataclass(frozen=True)
@@ -558,22 +569,53 @@ class Richer:
         missing = np.flatnonzero(~self.known).tolist()
         return richer[known], richer[missing]
 
-    def elastic_step(self, residual: Matrix) -> Matrix:
+    def elastic_step(self, residual: Matrix, shapes: Mapping[str, Shape]) -> Matrix:
         """Step by which elasticity alone would take up what the balance lacks in the missing coordinates.
 
         The step −K⁻¹ r of all strains, K the stiffness of the richer rods. With parameters K is scaled by its diagonal.
+        With laws of materials K is the stiffness at the strains, and the step goes by conjugate gradients.
 
         Args:
             residual: of the richer scene in the missing coordinates, missing×1.
+            shapes: of the richer rods.
 
         Returns:
             step of all unknowns of the richer scene, zero for unknowns that are no strains.
         """
+        further = {name: stiffness_beyond_hooke(shape) for name, shape in shapes.items()}
         lacking = self.joined(ca.DM(self.coarse.size, 1), residual)
-        units = [self._stiffness_unit(name) for name in self.discrete.rods]
+        units = [self._stiffness_unit(name, further[name]) for name in self.discrete.rods]
         rest = self.discrete.size - sum(rod.size for rod in self.discrete.rods.values())
         unit = ca.vertcat(*units, ca.DM.ones(rest, 1))
-        return -(ca.DM(ca.sparsify(self._nominal_flexibility)) @ (lacking / unit)) / unit
+        flexibility = ca.DM(ca.sparsify(self._nominal_flexibility))
+
+        def scaled_step(left: Matrix) -> Matrix:
+            return -(flexibility @ (left / unit)) / unit
+
+        if not any(further.values()):
+            return scaled_step(lacking)
+        step, left = ca.MX(self.discrete.size, 1), lacking
+        direction = scaled_step(left)
+        descent = -ca.dot(left, direction)
+        for number in range(STEPS_OF_LAWS):
+            against = self._stiffness_times(direction, further)
+            length = descent / ca.fmax(ca.dot(direction, against), NO_ENERGY)
+            step = step + length * direction
+            if number + 1 < STEPS_OF_LAWS:
+                left = left + length * against
+                further_step = scaled_step(left)
+                before, descent = descent, -ca.dot(left, further_step)
+                direction = further_step + descent / ca.fmax(before, NO_ENERGY) * direction
+        return step
+
+    def _stiffness_times(self, step: Matrix, further: Mapping[str, StiffnessBeyondHooke | None]) -> Matrix:
+        """Product of the stiffness of all rods with a step of the unknowns, n×1; zero of what is no strain."""
+        product = ca.MX(self.discrete.size, 1)
+        for name, stiffness in further.items():
+            strains = self.discrete.unknowns.strain(name)
+            of_rod = self.discrete.rods[name].stiffness_matrix @ step[strains]
+            product[strains] = of_rod if stiffness is None else of_rod + stiffness.times(step[strains])
+        return product
 
     @cached_property
     def _nominal_flexibility(self) -> ca.DM:
@@ -586,10 +628,13 @@ class Richer:
             flexibility[strains, strains] = np.linalg.inv(known(rod.stiffness))
         return ca.DM(flexibility)
 
-    def _stiffness_unit(self, rod: str) -> Matrix:
+    def _stiffness_unit(self, rod: str, further: StiffnessBeyondHooke | None) -> Matrix:
         """Square root of how much each diagonal entry of K differs from that of the nominal scene, n×1."""
         stiffness = self.discrete.rods[rod].stiffness
         nominal = np.diag(known(self.discrete.nominal.rods[rod].stiffness))
+        if further is not None:
+            ratio = (ca.diag(as_matrix(stiffness)) + further.diagonal) / ca.DM(nominal)
+            return ca.sqrt(ca.fmax(ratio, SOFTEST))
         if is_symbolic(stiffness):
             return ca.sqrt(ca.diag(as_matrix(stiffness)) / ca.DM(nominal))
         return ca.DM(np.sqrt(np.diag(known(stiffness)) / nominal))

@@ -219,7 +219,7 @@ class ModelFunctions:
         system = System(richer.discrete, Arguments(corrected, written["inputs"]))
         residual, lacking = richer.split(SceneEquations(system).residual)
         # By which elasticity alone would take up the lacking balance.
-        steps = richer.split(richer.elastic_step(lacking))
+        steps = richer.split(richer.elastic_step(lacking, system.shapes))
         poses = watched(system).column
         apart = sections_lie_apart(written.system)
         if apart is not None:

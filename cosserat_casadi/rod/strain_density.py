@@ -19,6 +19,7 @@ from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, recipr
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.actuation import Conjugate
 from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.strain import DiscreteRod
 
 Density = Callable[[Matrix, Matrix], Matrix]
 """Strains of a section, 6×1, and its data, d×1 ↦ quantity per length of the rod, 1×1."""
@@ -152,3 +153,49 @@ def energy_beyond_hooke(shape: Shape) -> StrainDensityOnRod | None:
         return None
     data = law.data(rod.grid.nodes).T
     return StrainDensity(law.density, np.arange(rod.grid.size), data, of_change=True).on(shape)
+
+
+@dataclass(frozen=True)
+class StiffnessBeyondHooke:
+    """Stiffness of a rod beyond that of its Hooke tensor, as its strains make it, over EI/ℓ.
+
+    Attributes:
+        energy: elastic energy of the rod beyond that of its Hooke tensor.
+    """
+
+    energy: StrainDensityOnRod
+
+    @property
+    def diagonal(self) -> Matrix:
+        """Diagonal of the matrix, n×1."""
+        parts = []
+        for c in self._rod.admitted:
+            squares = ca.sparsify(ca.DM(self._rod.at_nodes[c] ** 2))
+            curvature = self.energy.curvature(c, c)
+            parts.append(ca.DM(squares.shape[1], 1) if curvature is None else squares.T @ curvature.T)
+        return ca.vertcat(*parts) / self._rod.energy_unit
+
+    def times(self, q: Matrix) -> Matrix:
+        """Product with strain coordinates, n×1; the matrix is not written."""
+        admitted = self._rod.admitted
+        tables = {c: ca.sparsify(ca.DM(self._rod.at_nodes[c])) for c in admitted}
+        strains = {c: (tables[c] @ q[self._rod.columns[c]]).T for c in admitted}
+        parts = []
+        for a in admitted:
+            stress = ca.MX(1, self._rod.grid.size)
+            for b in admitted:
+                curvature = self.energy.curvature(a, b)
+                if curvature is not None:
+                    stress = stress + curvature * strains[b]
+            parts.append(tables[a].T @ stress.T)
+        return ca.vertcat(*parts) / self._rod.energy_unit
+
+    @property
+    def _rod(self) -> DiscreteRod:
+        return self.energy.shape.rod
+
+
+def stiffness_beyond_hooke(shape: Shape) -> StiffnessBeyondHooke | None:
+    """Stiffness of a rod at a shape beyond that of its Hooke tensor; None of a rod that is linear."""
+    energy = energy_beyond_hooke(shape)
+    return None if energy is None else StiffnessBeyondHooke(energy)

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Outcome
+from cosserat_casadi import Outcome, solve
 from tests.codegen.libraries import Exported, Recipe
+from tests.equilibrium.test_answer_error import stiffened
 from tests.families import mostly_slow
 from tests.model.test_material_laws import CIRCLE, LAWS, TABLE, loaded, rod
 
@@ -48,3 +49,16 @@ def test_strain_beyond_a_table_vs_python(export_recipe: ExportRecipe) -> None:
     assert made.compiled.solve(far, inside.x).outcome is Outcome.BEYOND_MATERIAL
     batch = made.compiled.solve_batch([far, near])
     assert [one.outcome for one in batch] == [Outcome.BEYOND_MATERIAL, Outcome.CONVERGED]
+
+
+@pytest.mark.slow
+def test_error_of_a_strained_law_vs_python(export_recipe: ExportRecipe) -> None:
+    """Known, though the rod is several times as stiff as unloaded."""
+    scene = stiffened("planar", 6.0).model_copy(update={"inputs": ("push.force",)})
+    made = export_recipe("strained_law", Recipe(scene, 3, 10))
+    for share in (0.3, 1.0):
+        inputs = share * made.model.pack()
+        in_c, in_python = made.compiled.solve(inputs), solve(made.model, inputs)
+        assert in_c.error_estimate is not None and in_python.error_estimate is not None
+        assert 1e-6 < in_c.error_estimate < 0.1
+        assert_allclose(in_c.error_estimate, in_python.error_estimate, rtol=0.05, atol=0)

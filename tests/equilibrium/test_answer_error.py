@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Solution, build, discretise, read_scene, scene_from_dict, solve
+from cosserat_casadi import Scene, Solution, build, discretise, read_scene, scene_from_dict, solve
 from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.strain_density import energy_beyond_hooke, stiffness_beyond_hooke
 from tests.conftest import AWAY, ROOT
 from tests.families import mostly_slow
+from tests.model.test_material_laws import CIRCLE, LENGTH, RADIUS, E, loaded, rod
 from tests.pose_errors import pose_error
 from tests.scenes import push, scene
 from tests.shooting_near import shoot
@@ -244,3 +248,39 @@ def test_errors_are_over_the_length_that_a_rod_has(kind: str) -> None:
     assert_allclose(cable_distance(solution, bent), cable_distance(same, bent_same), rtol=1e-4, atol=0)
     assert_allclose(solution.shape_error_estimate, same.shape_error_estimate, rtol=1e-2, atol=0)
     assert_estimated(solution)
+
+
+def stiffened(strain: Any, force: float) -> Scene:
+    """A rod that its tip force, in units of EI/ℓ², strains so far that it is several times as stiff as unloaded."""
+    bending = E * np.pi * RADIUS**4 / 4
+    terms = [{"bending_y": 4, "coefficient": 0.3 * bending * LENGTH**2}]
+    if "extension" in strain:
+        terms.append({"bending_y": 2, "extension": 1, "coefficient": bending})
+    table = rod({"law": "polynomial", "terms": terms}, CIRCLE, strain)
+    return loaded(table, force=[force * bending / LENGTH**2, 0, 0])
+
+
+@pytest.mark.parametrize("strain", ["planar", ["bending_y", "extension"]])
+def test_sweeps_know_the_stiffness_of_strained_laws(strain: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """C has sweeps alone: by the stiffness of the unloaded rod they would not contract."""
+    monkeypatch.setattr(estimates, "_newton_steps", lambda _: iter(()))
+    strained = stiffened(strain, 6.0)
+    coarse, fine = (solve(build(strained, discretise(strained, *sizes))) for sizes in ((3, 10), (10, 20)))
+    assert coarse.converged and fine.converged and coarse.error_estimate is not None
+    assert 0.75 * coarse.error_estimate < pose_distance(coarse, fine) < coarse.error_estimate
+
+
+def test_stiffness_of_strained_laws_is_a_derivative() -> None:
+    strained = stiffened(["bending_y", "extension"], 6.0)
+    richer = build(strained, discretise(strained, 3, 10)).discrete.richer
+    own = richer.discrete.rods["rod"]
+    q = ca.MX.sym("q", own.size)
+    energy = energy_beyond_hooke(shape(own, q))
+    stiffness = stiffness_beyond_hooke(shape(own, q))
+    assert energy is not None and stiffness is not None
+    v = np.random.default_rng(1).normal(size=own.size)
+    hessian = ca.hessian(energy.value, q)[0] / own.energy_unit
+    given = [hessian, stiffness.diagonal, stiffness.times(ca.DM(v))]
+    whole, diagonal, product = (one.full() for one in ca.Function("K", [q], given)(0.5 * v))
+    assert_allclose(diagonal[:, 0], np.diag(whole), rtol=1e-10, atol=0)
+    assert_allclose(product[:, 0], whole @ v, rtol=0, atol=1e-10 * np.abs(product).max())
