@@ -18,7 +18,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.refine import FINER_MODES, solve_rods
 from cosserat_casadi.accuracy.scene_solver import TIGHT
-from cosserat_casadi.equilibrium.answer_error import FRICTION_IN_STEPS
+from cosserat_casadi.equilibrium.answer_error import FRICTION_IN_STEPS, SAFETY
 from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, without_contacts
 from cosserat_casadi.equilibrium.contact.pressing_contacts import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
@@ -377,7 +377,8 @@ def _on_fixed(equilibrium: Solution, count: int, report: Report | None) -> Modes
     """Modes on the discretisation of an equilibrium, judged by a finer one."""
     own = modes_at(equilibrium, count, report=report)
     witness = modes_at(_finer_equilibrium(equilibrium, FINER_MODES, report), count, report=report)
-    return _judged(own, witness)
+    # The finer modes are not exact either.
+    return _judged(own, witness, SAFETY)
 
 
 def _to_tolerance(equilibrium: Solution, count: int, report: Report | None) -> Modes:
@@ -433,13 +434,13 @@ def _most_modes(solution: Solution) -> int:
     return max(max(d.modes, default=0) for d in solution.model.discretisation.values())
 
 
-def _judged(modes: Modes, witness: Modes) -> Modes:
-    """Modes with the errors that those of another discretisation give them."""
+def _judged(modes: Modes, witness: Modes, safety: float = 1.0) -> Modes:
+    """Modes with the errors that those of another discretisation give them, times a factor of safety."""
     if not witness.converged:
         return witness
     if not modes.converged:
         return modes
-    errors = _distances(modes.eigenvalues, witness.eigenvalues)
+    errors = safety * _distances(modes.eigenvalues, witness.eigenvalues)
     estimated = tuple(
         replace(mode, error_estimate=float(error)) for mode, error in zip(modes.modes, errors, strict=True)
     )

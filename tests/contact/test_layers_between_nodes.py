@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Compiled, Model, Solution, build, discretise, export, load, parse_scene, solve
+from cosserat_casadi import Compiled, Model, Solution, build, discretise, export, load, modes_of, parse_scene, solve
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from tests.contact.test_smooth_contact import ON_A_BAR
@@ -173,6 +173,20 @@ def test_where_sections_lie_too_far_apart_the_error_is_not_known(changes: dict[s
     assert found.converged and not found.within_tolerance
     assert found.error_estimate == 1.0
     assert "not known" in found.message
+
+
+@pytest.mark.slow
+def test_errors_of_modes_on_fixed_polynomials_bound_the_true_ones() -> None:
+    """The finer modes that tell them leave a tenth of the error, by which it was told too small."""
+    coarse, fine = (
+        modes_of(parse_scene(FREE, [*THIN, f"accuracy.modes={modes}", f"accuracy.nodes={nodes}"]), count=4)
+        for modes, nodes in ((3, 6), (7, 14))
+    )
+    frequencies = [np.array([mode.frequency for mode in found.modes]) for found in (coarse, fine)]
+    true = np.abs(frequencies[0] / frequencies[1] - 1)
+    told = np.array([mode.error_estimate for mode in coarse.modes])
+    assert np.all(true < told)
+    assert np.all(0.8 * told < true)
 
 
 @pytest.mark.slow
