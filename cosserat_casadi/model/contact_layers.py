@@ -41,7 +41,7 @@ SECTION_SPACING = 0.5
 intervals: a force (1 − s²)³ within this stretch, |s| ≤ 1, is summed to 4 thousandths by equal parts of it."""
 
 SPARE_SECTIONS = 2
-"""Sections for each of those where numbers may stretch a rod, or make a layer thinner, than the scene has them."""
+"""Sections for each usual one, where inputs or parameters may stretch a rod or make a layer thinner."""
 
 LOOSEST_SECTIONS = 0.75
 """Distance of sections over half of the stretch that a layer presses, up to which an error of their sum shows: where

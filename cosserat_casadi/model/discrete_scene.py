@@ -261,9 +261,11 @@ class DiscreteScene:
     @cached_property
     def _named(self) -> DiscreteScene:
         """The scene with symbols for the parameters that its file names, even where they are fixed."""
-        if self.parameters.size or not self.nominal.scene.parameters:
+        if self.parameters.size:
             return self
-        return with_parameters(self.nominal)
+        if self.scaling is not None:
+            return self.scaling._named
+        return with_parameters(self) if self.scene.parameters else self
 
     @property
     def remembered(self) -> Mapping[str, Grid]:
@@ -609,7 +611,7 @@ class Richer:
         return step
 
     def _stiffness_times(self, step: Matrix, further: Mapping[str, StiffnessBeyondHooke | None]) -> Matrix:
-        """Product of the stiffness of all rods with a step of the unknowns, n×1; zero of what is no strain."""
+        """Product of the stiffness of all rods with a step of the unknowns, n×1; zero but for strains."""
         product = ca.MX(self.discrete.size, 1)
         for name, stiffness in further.items():
             strains = self.discrete.unknowns.strain(name)
