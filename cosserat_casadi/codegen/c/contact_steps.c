@@ -8,9 +8,6 @@
    Optimization, Springer 1997, section 3.1). Simulated motions, cosserat_casadi/motion/exact_contact.py, have the
    same gaps and pushes; their steps are cut at all changes of contact. */
 
-/* Gap that counts as closed. */
-static const real GAP_CLOSED = (real)1e-12;
-
 /* Depth up to which a section without a force may come at the end of a step. */
 static const real GAP_OPEN = (real)1e-9;
 
@@ -25,8 +22,7 @@ enum {
   SETS = 8,           /* sets of pressing sections that are tried for a stretch */
   LOOKS_IN_TIME = 2,  /* looks for blows in a stretch, at least */
   MOST_IN_TIME = 64,
-  LOCATIONS = 60,     /* looks at which the time of a blow is found */
-  CLOSINGS = 3        /* changes of the positions that close a gap: the first leaves its square */
+  LOCATIONS = 60      /* looks at which the time of a blow is found */
 };
 
 typedef solver_touch touch;
@@ -41,7 +37,7 @@ static void add_touch(int number, int slides, real place, workspace *work) {
     work->too_many = 1;
     return;
   }
-  const touch added = {.facing = number, .slides = slides, .presses = 0, .place = place, .end_place = place, .gap = 0, .force = 0, .forces = {0, 0}, .places = {place, place}};
+  const touch added = {.facing = number, .slides = slides, .presses = 0, .place = place, .end_place = place, .gap = 0, .height = 0, .force = 0, .forces = {0, 0}, .places = {place, place}};
   work->touches[work->touch_count++] = added;
 }
 
@@ -86,10 +82,14 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
       if (lowest.place - before > SAME_PLACE / 2) add_touch(number, !own->is_body, lowest.place, work);
       before = lowest.place;
     }
-    if (lies || (before >= 0 && lay_before(number, work) && add_laid(number, 0, work) > 1)) {
+    const int lies_down = lies || (before >= 0 && lay_before(number, work) && add_laid(number, 0, work) > 1);
+    if (lies_down && add_laid(number, 0, work) > 0) {
       work->touch_count = first;
       work->too_many = had_too_many;
       add_laid(number, 1, work);
+    } else if (lies_down) {
+      /* Where it touches between these sections alone, it is held there. */
+      for (int k = first; k < work->touch_count; k++) work->touches[k].slides = 0;
     }
   }
   return !work->too_many;
@@ -198,30 +198,17 @@ static real wanted_of(int k, real still, const workspace *work) {
   return work->rates[k] - (work->rates[k] < -still ? -restitution * work->rates[k] : 0);
 }
 
-/* Closes gaps below zero, and takes speeds of approach from what touches, at an instant, in place: by the smallest changes in
-   the metric of the mass. Of what pressed before, as known says, the rate is no approach but the inexactness of a step: it is
-   taken from both sides. Zero where that is not settled. */
+/* Takes speeds of approach from what touches, at an instant, in place: by the smallest changes in the metric of the mass. Of
+   what pressed before, as known says, the rate is no approach but the inexactness of a step: it is taken from both sides. Zero where that is not settled. */
 static int strike(instant *at, real size, workspace *work) {
   const stage_factors factors = {work->stage_rows, work->stage_columns, work->stage_matrix, work->stage_pivots,
                                  &work->stages_as_a_whole};
   const int count = work->touch_count;
-  real *x = at->state;
+  const real *x = at->state;
   real *v = at->state + N;
   real *rates = work->rates;
   real *wanted = work->wanted;
   if (!gradients_at(x, at->inputs, work) || !factorise_masses(at, &factors, work)) return 0;
-  for (int pass = 0; pass < CLOSINGS; pass++) {
-    int is_open = 0;
-    for (int k = 0; k < count; k++) is_open |= work->touches[k].gap < -GAP_CLOSED;
-    if (!is_open) break;
-    respond(&factors, work);
-    for (int k = 0; k < count; k++) wanted[k] = work->touches[k].gap;
-    if (!least_pushes(work->compliance, wanted, count, GAP_CLOSED, work->pushes, work)) return 0;
-    for (int k = 0; k < count; k++) {
-      for (int i = 0; i < N; i++) x[i] += work->pushes[k] * work->responses[k][i];
-    }
-    if (!gradients_at(x, at->inputs, work)) return 0;
-  }
   respond(&factors, work);
   /* Rates of what pressed, first: nothing of it is a blow. */
   int known = 0;
@@ -266,7 +253,7 @@ static void push_in_stage(int stage, const instant *at, real *residual, workspac
     if (!own->presses) continue;
     gradient_at(own, own->places[stage], at->state, at->inputs, &gap, work->stage_gradients[stage][k], work);
     if (gap.bend > FLATTEST) own->places[stage] = gap.place;
-    work->stage_gaps[stage][k] = gap.value;
+    work->stage_gaps[stage][k] = gap.value - own->height;
     for (int i = 0; i < N; i++) residual[i] -= own->forces[stage] * work->stage_gradients[stage][k][i];
 #ifdef CONTACT_RUBS
     rub_in_stage(stage, k, &gap, at, residual, work);
@@ -458,7 +445,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     own->gap = gap.value;
     own->end_place = gap.place;
     own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
-    holds &= own->presses ? own->force >= 0 : gap.value >= -GAP_OPEN;
+    holds &= own->presses ? own->force >= 0 : gap.value - own->height >= -GAP_OPEN;
 #ifdef CONTACT_RUBS
     note_friction(k, &gap, work);
 #endif
@@ -476,7 +463,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     }
   }
   for (int j = 0; j < count; j++) {
-    wanted[j] = work->touches[j].gap;
+    wanted[j] = work->touches[j].gap - work->touches[j].height;
     for (int k = 0; k < count; k++) wanted[j] -= work->compliance[k * count + j] * work->touches[k].force;
   }
   if (!least_pushes(work->compliance, wanted, count, GAP_OPEN / 10, work->pushes, work)) return -1;
@@ -671,6 +658,7 @@ static void know_touches(workspace *work) {
       const int is_same = own->slides ? ABSOLUTE(before[i].place - own->place) <= SAME_PLACE : before[i].place == own->place;
       if (!before[i].presses || before[i].facing != own->facing || before[i].slides != own->slides || !is_same) continue;
       own->presses = 1;
+      own->height = before[i].height;
       own->force = before[i].force;
 #ifdef CONTACT_RUBS
       memcpy(own->axis, before[i].axis, sizeof own->axis);
@@ -699,7 +687,8 @@ static int begin_stretch(const step_start *start, real *x, real *v, workspace *w
     follow_touch(own, own->place, at->state, at->inputs, &gap, work);
     const real rate = rate_of(own, at, &gap, work);
     if (!isfinite(rate)) return 0;
-    strikes |= !own->presses && (rate < -STILL / start->size || own->gap < -GAP_OPEN);
+    if (!own->presses) own->height = own->gap;
+    strikes |= !own->presses && rate < -STILL / start->size;
   }
   if (!strikes) return 1;
   work->was_cut = 1;

@@ -130,7 +130,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
     if not words["steps_in_contact"]:
         return 0
     touches = words["most_touches"]
-    of_touch = 10
+    of_touch = 11
     friction = 0
     if words["contact_rubs"]:
         # Places of touches have forces of friction, and each three rows in place of one.
