@@ -19,6 +19,10 @@ static const real LAW_ROUNDING = (real)1e-13;
    how several share what holds a rod that does not stretch is not determined. */
 static const real YIELDING = (real)1e-9;
 
+/* Shares of the same by which drags yield as they leave those at hand, where Newton's method goes round in circles: then each
+   law has one solution, and those of one after the other go to one without. */
+static const real RELUCTANCES[] = {(real)1e-2, (real)1e-1, 1};
+
 /* Cosine of the axis of the tangents to the normal from which on another one is taken. */
 static const real UPRIGHT = (real)0.9;
 
@@ -41,6 +45,7 @@ typedef struct {
 enum {
   ROWS = 3,         /* of what touches: along the normal, and along both tangents */
   LAW_TURNS = 60,   /* iterations of the law */
+  RELUCTANT = 60,   /* laws with drags that leave those at hand reluctantly, one after the other */
   HALVINGS = 8,     /* of a step of these */
   TURNS = 6,        /* looks for the end of a stretch at which something comes to rest */
   FAINTER = 8       /* halvings of the restitution of a blow that would give energy */
@@ -137,8 +142,8 @@ static real tried_drag(int q, const workspace *work, real tried[2]) {
 }
 
 /* What gaps and the law miss by with the forces at hand, as forces; tells by how much the largest is more than rounding, and
-   returns the length of all. */
-static real misses_of_law(int count, const int *members, real *excess, workspace *work) {
+   returns the length of all. Drags leave those in law_held reluctantly. */
+static real misses_of_law(int count, const int *members, real reluctance, real *excess, workspace *work) {
   const int order = ROWS * count;
   const real *answers = work->law_answers;
   const real *forces = work->law_forces;
@@ -156,8 +161,11 @@ static real misses_of_law(int count, const int *members, real *excess, workspace
       value += term;
       terms += ABSOLUTE(term);
     }
+    if (i % ROWS > 0 && reluctance > 0) value += reluctance / weight * (forces[i] - work->law_held[i]);
     misses[i] = weight * value;
     work->law_terms[i] = LAW_ROUNDING * ABSOLUTE(weight) * terms;
+    /* How far it slides in a stretch is no more than the rounding of positions. */
+    if (i % ROWS > 0) work->law_terms[i] = larger(work->law_terms[i], weight * STAGE_ROUNDING / work->stretch_size);
     if (i % ROWS > 0) work->law_slides[q][i % ROWS - 1] = value;
   }
   for (int q = 0; q < count; q++) {
@@ -177,7 +185,7 @@ static real misses_of_law(int count, const int *members, real *excess, workspace
 }
 
 /* Newton's matrix of what the law misses by. */
-static void matrix_of_law(int count, const int *members, real *matrix, workspace *work) {
+static void matrix_of_law(int count, const int *members, real reluctance, real *matrix, workspace *work) {
   const int order = ROWS * count;
   const real *answers = work->law_answers;
   const real *forces = work->law_forces;
@@ -193,6 +201,7 @@ static void matrix_of_law(int count, const int *members, real *matrix, workspace
             answers[(first + 1) * order + i] * by_drag[0][b] + answers[(first + 2) * order + i] * by_drag[1][b];
       }
     }
+    for (int slot = first + 1; slot < first + ROWS; slot++) matrix[slot * order + slot] += reluctance / work->law_scales[q];
   }
   for (int q = 0; q < count; q++) {
     const int normal = ROWS * q, first = normal + 1;
@@ -218,13 +227,52 @@ static void matrix_of_law(int count, const int *members, real *matrix, workspace
   }
 }
 
-/* Normal forces that close what is open, and drags that obey the law, of so many that press: open and law_answers tell gaps,
-   or their rates, and slides without forces and by forces, law_forces is the first guess. Steps of Newton's method are halved
-   while what is missed does not become less: its kinks may send it round in circles. Zero where they are not found. */
-static int settle_law(int count, const int *members, workspace *work) {
+/* Newton's method for the law, from the forces at hand. Its steps are halved while what is missed does not become less: its
+   kinks may send it round in circles. Zero where it finds none. */
+static int iterate_law(int count, const int *members, real reluctance, workspace *work) {
   const int order = ROWS * count;
   real *steps = work->law_values;
   real excess;
+  real missed = misses_of_law(count, members, reluctance, &excess, work);
+  for (int turn = 0; turn < LAW_TURNS; turn++) {
+    if (!isfinite(missed)) return 0;
+    if (excess <= 0) return 1;
+    matrix_of_law(count, members, reluctance, work->law_matrix, work);
+    if (!factorise_square(order, work->law_matrix, 0, work->law_pivots)) return 0;
+    for (int i = 0; i < order; i++) steps[i] = -work->law_misses[i];
+    solve_square(order, work->law_matrix, work->law_pivots, steps);
+    real share = 1;
+    for (int i = 0; i < order; i++) work->law_forces[i] += steps[i];
+    const real before = missed;
+    missed = misses_of_law(count, members, reluctance, &excess, work);
+    for (int halving = 0; halving < HALVINGS && excess > 0 && !(missed < before); halving++) {
+      share /= 2;
+      for (int i = 0; i < order; i++) work->law_forces[i] -= share * steps[i];
+      missed = misses_of_law(count, members, reluctance, &excess, work);
+    }
+  }
+  return 0;
+}
+
+/* The same with drags that leave those of the solution before reluctantly, over and over, until the law without holds (R. T.
+   Rockafellar, SIAM Journal on Control and Optimization 14, 1976). */
+static int iterate_reluctantly(int count, const int *members, real reluctance, workspace *work) {
+  const size_t size = (size_t)(ROWS * count) * sizeof *work->law_forces;
+  real excess;
+  for (int turn = 0; turn < RELUCTANT; turn++) {
+    memcpy(work->law_held, work->law_forces, size);
+    if (!iterate_law(count, members, reluctance, work)) return 0;
+    misses_of_law(count, members, 0, &excess, work);
+    if (excess <= 0) return 1;
+  }
+  return 0;
+}
+
+/* Normal forces that close what is open, and drags that obey the law, of so many that press: open and law_answers tell gaps,
+   or their rates, and slides without forces and by forces, law_forces is the first guess. Zero where they are not found. */
+static int settle_law(int count, const int *members, workspace *work) {
+  const int order = ROWS * count;
+  const size_t size = (size_t)order * sizeof *work->law_forces;
   for (int q = 0; q < count; q++) {
     const real *given = FACING[work->touches[members[q]].facing].coefficients;
     real slides = 0;
@@ -235,23 +283,11 @@ static int settle_law(int count, const int *members, workspace *work) {
     work->law_scales[q] = slides > 0 ? 1 / slides : 1;
     if (!(ABSOLUTE(work->law_answers[ROWS * q * (order + 1)]) > 0)) return 0;
   }
-  real missed = misses_of_law(count, members, &excess, work);
-  for (int turn = 0; turn < LAW_TURNS; turn++) {
-    if (!isfinite(missed)) return 0;
-    if (excess <= 0) return 1;
-    matrix_of_law(count, members, work->law_matrix, work);
-    if (!factorise_square(order, work->law_matrix, 0, work->law_pivots)) return 0;
-    for (int i = 0; i < order; i++) steps[i] = -work->law_misses[i];
-    solve_square(order, work->law_matrix, work->law_pivots, steps);
-    real share = 1;
-    for (int i = 0; i < order; i++) work->law_forces[i] += steps[i];
-    const real before = missed;
-    missed = misses_of_law(count, members, &excess, work);
-    for (int halving = 0; halving < HALVINGS && excess > 0 && !(missed < before); halving++) {
-      share /= 2;
-      for (int i = 0; i < order; i++) work->law_forces[i] -= share * steps[i];
-      missed = misses_of_law(count, members, &excess, work);
-    }
+  memcpy(work->law_starts, work->law_forces, size);
+  if (iterate_law(count, members, 0, work)) return 1;
+  for (size_t k = 0; k < sizeof RELUCTANCES / sizeof *RELUCTANCES; k++) {
+    memcpy(work->law_forces, work->law_starts, size);
+    if (iterate_reluctantly(count, members, RELUCTANCES[k], work)) return 1;
   }
   return 0;
 }

@@ -692,6 +692,9 @@ static int begin_stretch(const step_start *start, real *x, real *v, workspace *w
   }
   if (!strikes) return 1;
   work->was_cut = 1;
+#ifdef CONTACT_RUBS
+  work->stretch_size = start->size;
+#endif
   if (!strike(at, start->size, work)) return 0;
   memcpy(x, at->state, N * sizeof *x);
   memcpy(v, at->state + N, N * sizeof *v);

@@ -136,7 +136,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
         # Places of touches have forces of friction, and each three rows in place of one.
         of_touch += 15
         rows = 6 * touches
-        friction = touches * (26 * size + 20 * inputs + 42) + 3 * rows**2 + 20 * rows
+        friction = touches * (26 * size + 20 * inputs + 42) + 3 * rows**2 + 22 * rows
         friction += (6 + size) * (1 + size + inputs) + 3 * words["most_points"]
     records = of_touch * touches * (3 + words["most_step_parts"])
     vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 12 * words["most_points"]
