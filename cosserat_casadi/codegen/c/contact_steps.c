@@ -436,7 +436,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
   const real whole = TO_EIGENVECTOR[0][0] + TO_EIGENVECTOR[1][0];
   const real imaginary = TO_EIGENVECTOR[0][1] + TO_EIGENVECTOR[1][1];
   real *wanted = work->wanted;
-  int holds = 1;
+  int holds = 1, closed = 1;
   stage_at(start, STAGES - 1, unknowns, &work->at);
   for (int k = 0; k < count; k++) {
     touch *own = work->touches + k;
@@ -445,11 +445,13 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     own->gap = gap.value;
     own->end_place = gap.place;
     own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
+    closed &= !own->presses || ABSOLUTE(gap.value - own->height) <= TOUCHING;
     holds &= own->presses ? own->force >= 0 : gap.value - own->height >= -GAP_OPEN;
 #ifdef CONTACT_RUBS
     note_friction(k, &gap, work);
 #endif
   }
+  if (!closed) return -1;
 #ifdef CONTACT_RUBS
   if (work->friction_lost) return -1;
 #endif
@@ -668,6 +670,16 @@ static void know_touches(workspace *work) {
   }
 }
 
+/* Gradients of the gaps of all that touches, at the start of a stretch. */
+static int gradients_at_start(const step_start *start, const real *x, const real *v, workspace *work) {
+  instant *at = &work->at;
+  memcpy(at->state, x, N * sizeof *x);
+  memcpy(at->state + N, v, N * sizeof *v);
+  memset(at->state + 2 * N, 0, N * sizeof *v);
+  inputs_of(start, 0, at);
+  return gradients_at(at->state, at->inputs, work);
+}
+
 /* What touches at the start of a stretch, and the blows that are struck there: x and v of the start are written over then.
    Zero where nothing settles it. */
 static int begin_stretch(const step_start *start, real *x, real *v, workspace *work) {
@@ -676,11 +688,7 @@ static int begin_stretch(const step_start *start, real *x, real *v, workspace *w
   if (!find_touching(x, start->inputs, work)) return 0;
   know_touches(work);
   if (work->touch_count == 0) return 1;
-  memcpy(at->state, x, N * sizeof *x);
-  memcpy(at->state + N, v, N * sizeof *v);
-  memset(at->state + 2 * N, 0, N * sizeof *v);
-  inputs_of(start, 0, at);
-  if (!gradients_at(at->state, at->inputs, work)) return 0;
+  if (!gradients_at_start(start, x, v, work)) return 0;
   for (int k = 0; k < work->touch_count; k++) {
     touch *own = work->touches + k;
     section_gap gap;
@@ -751,6 +759,7 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
         work->was_cut = 1;
         start.size /= 2;
         guess_stages(0, 1, &work->end, unknowns);
+        if (!gradients_at_start(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
         continue;
       }
       if (status != SOLVER_MOTION_DONE) return status;
