@@ -21,7 +21,7 @@ static const real YIELDING = (real)1e-9;
 
 /* Shares of the same by which drags yield as they leave those at hand, where Newton's method goes round in circles: then each
    law has one solution, and those of one after the other go to one without. */
-static const real RELUCTANCES[] = {(real)1e-2, (real)1e-1, 1};
+static const real RELUCTANCES[] = {(real)1e-6, (real)1e-4, (real)1e-2, 1};
 
 /* Cosine of the axis of the tangents to the normal from which on another one is taken. */
 static const real UPRIGHT = (real)0.9;
