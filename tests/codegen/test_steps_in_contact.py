@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import json
+import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +16,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, build, export, load, scene_from_dict, simulate
+from cosserat_casadi import Model, build, export, load, read_scene, scene_from_dict, simulate
 from cosserat_casadi.codegen.compiled import Compiled
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepOptions, StepState
 from cosserat_casadi.codegen.fmu import write_fmu
@@ -22,6 +24,7 @@ from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.simulate import moving_inputs
 from tests.motion.test_exact_contact_in_motion import beam_on_a_stop
 
 LENGTH = 0.4
@@ -384,3 +387,53 @@ def test_an_fmu_takes_the_steps_of_the_library(touches: bool, tmp_path: Path) ->
     assert_allclose(found[height], made.tips(states)[:, 2] * LENGTH, rtol=0, atol=1e-9)
     if touches:
         assert_allclose(found[height], found[height][0], rtol=0, atol=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("friction", "dt"), [(0.0, 5e-4), (0.0, 2e-4), (0.1, 1e-3), (0.3, 1e-3), (0.3, 2e-4), (0.6, 5e-4)])
+def test_a_rod_that_is_thrown_on_the_floor_comes_to_lie(friction: float, dt: float, tmp_path: Path) -> None:
+    changes = ["floor.restitution=0.3", *([f"floor.friction={friction}"] if friction else [])]
+    scene = read_scene("examples/rod_hits_floor.toml", changes).with_motion_inputs()
+    model = build(scene, moving=True)
+    compiled = load(export(model, tmp_path / "robot", dynamics=True))
+    assert isinstance(compiled, Compiled)
+    pieces = moving_inputs(model).pieces(1.0)
+    memory, state = compiled.step_memory(), compiled.contact_start()
+    (facing,) = facings(model)
+    energies, depths = [], []
+    for k in range(round(1.0 / dt)):
+        time = k * dt
+        inputs = next((piece for piece in pieces if time < piece.end - dt / 2), pieces[-1]).at(time)
+        step = compiled.step(state, dt, *inputs, memory=memory)
+        assert step.done, (time, step.status.value)
+        state = step.state
+        if time > 0.1:
+            # The hand has let go.
+            parts = model.energies(state.x, state.v, inputs.value, 0.0 * inputs.value)[:3]
+            energies.append(sum(float(np.sum(np.asarray(part))) for part in parts))
+        depths.append(facing.deepest(facing.nodes(state.x, inputs.value)).gap)
+    assert np.diff(energies).max() <= 1e-11
+    # Between the sections at which it is held a rod that lies is lower.
+    assert min(depths) >= -1e-5
+    contacts = compiled.step_contacts(memory)
+    assert_allclose(sum(contact.force for contact in contacts), 1100 * np.pi * 8e-3**2 * LENGTH * 9.81, rtol=1e-2)
+    assert np.abs(facing.gaps(facing.nodes(state.x, inputs.value))).max() < 1e-5
+    along = model.tip["rod"](state.x + state.v, inputs.value)[0] - model.tip["rod"](state.x, inputs.value)[0]
+    assert friction == 0.0 or np.abs(along.full()[:, 0]).max() < 1e-2
+
+
+@pytest.mark.slow
+def test_the_demo_simulates_a_rod_that_nothing_holds(tmp_path: Path) -> None:
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0.2], "free": True}
+    small = {"modes": 2, "nodes": 8, "tolerance": 1e-3}
+    made = Moving(scene(floor(-0.05, friction=0.3), rod(base=base), accuracy=small), tmp_path)
+    export(made.model, tmp_path / "robot", dynamics=True)
+    sources = [tmp_path / "robot" / f"robot{end}.c" for end in ("_motion_demo", "", "_kernels")]
+    program = tmp_path / "program"
+    flags = ["-O1", "-std=c99", "-D_POSIX_C_SOURCE=199309L", "-Wall", "-Wextra", "-Werror"]
+    subprocess.run(["gcc", *flags, *map(str, sources), "-lm", "-o", str(program)], check=True)
+    printed = json.loads(subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout)
+    assert (printed["status"], printed["steps"]) == ("done", 1000)
+    # It has come to lie.
+    assert_allclose(printed["tip"][2], -0.05, rtol=0, atol=1e-6)
+    assert printed["kinetic_J"] < 1e-12

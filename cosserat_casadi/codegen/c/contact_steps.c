@@ -207,7 +207,6 @@ static int strike(instant *at, real size, workspace *work) {
   const real *x = at->state;
   real *v = at->state + N;
   real *rates = work->rates;
-  real *wanted = work->wanted;
   if (!gradients_at(x, at->inputs, work) || !factorise_masses(at, &factors, work)) return 0;
   respond(&factors, work);
   /* Rates of what pressed, first: nothing of it is a blow. */
@@ -234,8 +233,8 @@ static int strike(instant *at, real size, workspace *work) {
 #ifdef CONTACT_RUBS
   return strike_with_friction(at, still, &factors, work);
 #else
-  for (int k = 0; k < count; k++) wanted[k] = wanted_of(k, still, work);
-  if (!least_pushes(work->compliance, wanted, count, still, work->pushes, work)) return 0;
+  for (int k = 0; k < count; k++) work->wanted[k] = wanted_of(k, still, work);
+  if (!least_pushes(work->compliance, work->wanted, count, still, work->pushes, work)) return 0;
   for (int k = 0; k < count; k++) {
     for (int i = 0; i < N; i++) v[i] += work->pushes[k] * work->responses[k][i];
   }
