@@ -390,7 +390,9 @@ def test_an_fmu_takes_the_steps_of_the_library(touches: bool, tmp_path: Path) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("friction", "dt"), [(0.0, 5e-4), (0.0, 2e-4), (0.1, 1e-3), (0.3, 1e-3), (0.3, 2e-4), (0.6, 5e-4)])
+@pytest.mark.parametrize(
+    ("friction", "dt"), [(0.0, 5e-4), (0.0, 2e-4), (0.1, 1e-3), (0.3, 1e-3), (0.3, 2e-4), (0.6, 5e-4)]
+)
 def test_a_rod_that_is_thrown_on_the_floor_comes_to_lie(friction: float, dt: float, tmp_path: Path) -> None:
     changes = ["floor.restitution=0.3", *([f"floor.friction={friction}"] if friction else [])]
     scene = read_scene("examples/rod_hits_floor.toml", changes).with_motion_inputs()
