@@ -81,6 +81,19 @@ def test_a_block_sticks_below_the_angle_of_friction_slides_above_it_and_stops(tm
     assert abs(sum(contact.friction[0] for contact in made.compiled.step_contacts(memory))) < 1e-9
 
 
+@pytest.mark.parametrize("gap", [5e-8, -5e-8])
+def test_what_touches_keeps_its_gap_in_the_shortest_step(gap: float, tmp_path: Path) -> None:
+    """To close it within a step of 1e-5 s would be a blow at 1e-2 lengths per second."""
+    made = Moving(block(0.3), tmp_path)
+    start = made.compiled.contact_start()
+    x = start.x.copy()
+    x[3] += gap
+    states = run(made, StepState(x, start.v, start.a), made.compiled.step_memory(), 1e-5, weights(0.0, 3))
+    assert np.diff(made.energies(states)).max() <= 1e-15
+    assert np.abs(states[-1].v).max() < 1e-9
+    assert_allclose(made.least_gap(states[-1:]), gap, rtol=1e-6, atol=0)
+
+
 @pytest.mark.slow
 def test_a_block_that_is_shaken_sticks_and_slips_as_its_closed_form(tmp_path: Path) -> None:
     friction, largest, rate = 0.3, 6.0, 20.0
