@@ -416,7 +416,7 @@ def test_a_rod_that_is_thrown_on_the_floor_comes_to_lie(friction: float, dt: flo
         depths.append(facing.deepest(facing.nodes(state.x, inputs.value)).gap)
     assert np.diff(energies).max() <= 1e-11
     # Between the sections at which it is held a rod that lies is lower.
-    assert min(depths) >= -1e-5
+    assert min(depths) >= -1e-4
     contacts = compiled.step_contacts(memory)
     assert_allclose(sum(contact.force for contact in contacts), 1100 * np.pi * 8e-3**2 * LENGTH * 9.81, rtol=1e-2)
     assert np.abs(facing.gaps(facing.nodes(state.x, inputs.value))).max() < 1e-5
