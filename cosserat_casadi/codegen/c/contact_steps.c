@@ -199,7 +199,8 @@ static real wanted_of(int k, real still, const workspace *work) {
 }
 
 /* Takes speeds of approach from what touches, at an instant, in place: by the smallest changes in the metric of the mass. Of
-   what pressed before, as known says, the rate is no approach but the inexactness of a step: it is taken from both sides. Zero where that is not settled. */
+   what pressed before, as known says, the rate is no approach but the inexactness of a step: it is taken from both sides.
+   Zero where that is not settled. */
 static int strike(instant *at, real size, workspace *work) {
   const stage_factors factors = {work->stage_rows, work->stage_columns, work->stage_matrix, work->stage_pivots,
                                  &work->stages_as_a_whole};
