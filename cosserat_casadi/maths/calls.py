@@ -11,7 +11,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 
 MOST_MAPPED = 64
-"""Maps of functions over many arguments that are kept: those of a few searches for modes."""
+"""Maps of functions over many arguments that are kept: as many as a few searches for modes ask for."""
 
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.

@@ -69,7 +69,7 @@ class Grid:
 
     @property
     def known_places(self) -> tuple[float, ...]:
-        """The same of a grid whose element ends are numbers."""
+        """Abscissae X of the element ends, base to tip, as numbers; for a grid whose element ends are numbers."""
         return tuple(known(as_vector(self.places)).tolist())
 
     @cached_property

@@ -37,7 +37,7 @@ class HermiteCurve:
     def integral(self, at: Matrix) -> Matrix:
         """Integral of the curve from zero, 1×1, for an expression of an abscissa, 1×1.
 
-        One cubic is evaluated at a time, so that derivatives at the points are those of one side.
+        One cubic is evaluated at a time, so that a derivative at a point is the derivative on one side of it.
         """
         pieces = [self._piece(i, at) for i in range(len(self.abscissae) + 1)]
         result = pieces[-1]

@@ -17,7 +17,7 @@ from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 
 TERMS = 12
-"""Of the series of the factors, whose second derivatives are exact to rounding with as many for θ ≤ 2."""
+"""Terms of the series of the factors, enough for second derivatives that are exact to rounding for θ ≤ 2."""
 
 
 def _derivatives(coefficients: list[float]) -> tuple[list[float], list[float]]:

@@ -84,7 +84,7 @@ def _bracket(a: AnyMatrix, b: AnyMatrix) -> AnyMatrix:
 
 
 def _commuting(a1: AnyMatrix) -> AnyMatrix:
-    """Without commutators: exact where K keeps its direction."""
+    """The series up to h²: α₁ without commutators, exact where K keeps its direction."""
     return a1
 
 

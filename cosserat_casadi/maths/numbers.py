@@ -132,7 +132,7 @@ def stacked_rows(rows: Sequence[Numbers]) -> Numbers:
 
 
 def among(table: Numbers, columns: Sequence[int] | IndexArray, count: int) -> Numbers:
-    """Columns of a table among so many, zero elsewhere; one column of expressions may stand for all of them."""
+    """A table of ``count`` columns: these columns of another, zero elsewhere; one of expressions stands for all."""
     if is_symbolic(table):
         chosen = ca.sparsify(ca.DM(np.eye(count)[np.asarray(columns)]))
         return as_matrix(repeated(table.T, len(columns))).T @ chosen
@@ -168,14 +168,14 @@ def each_times(numbers: Numbers, factors: Numbers | None) -> Numbers:
 
 
 def reciprocal(numbers: Numbers | None) -> Numbers | None:
-    """One over each entry; None for None."""
+    """The reciprocal of each entry; None for None."""
     if numbers is None:
         return None
     return 1 / numbers
 
 
 def repeated(numbers: Numbers, count: int) -> Numbers:
-    """A vector of so many entries; one that stands for all of them is repeated."""
+    """A vector of ``count`` entries; a single entry, which stands for all, is repeated."""
     if numbers.shape[0] != 1 or count == 1:
         return numbers
     if is_symbolic(numbers):
@@ -217,8 +217,8 @@ def sparse_known(entries: Matrix) -> Matrix:
 def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray:
     """Entries, with what rounding alone makes differ made the same, so that expressions of them can be shared.
 
-    Entries that are rounding errors beside the largest one are zero: orthogonal polynomials leave them. Entries of one
-    size, but for rounding, take that of the middle one, or a whole number: symmetric rows leave them.
+    Entries that are rounding errors beside the largest one are zero: orthogonal polynomials leave them. Entries whose
+    sizes differ by rounding alone take the size of the middle one, or a whole number: symmetric rows leave them.
 
     Args:
         entries: of any shape.

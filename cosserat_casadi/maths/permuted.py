@@ -91,7 +91,7 @@ def permuted_system(A: Sequence[Matrix], b: Sequence[Matrix], *, known_at: End =
 
     Args:
         A: N + 1 matrices (m, m), the state matrix at the points, base to tip.
-        b: N + 1 vectors (m, 1), likewise.
+        b: N + 1 vectors (m, 1), the constant term at the points, base to tip.
         known_at: the end where the value of x will be given.
 
     Returns:

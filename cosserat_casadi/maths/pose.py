@@ -71,7 +71,7 @@ class NumericPose:
 
     @property
     def pose(self) -> Pose:
-        """The same for expressions."""
+        """The pose as constants of CasADi, for expressions."""
         return Pose(ca.DM(self.position), ca.DM(self.quaternion))
 
     @cached_property

@@ -18,7 +18,7 @@ _INSIDE = np.array([0.1, 0.4, 0.6, 0.9])
 """Places in a piece that tell a cubic polynomial, as shares of its length; at the ends it may jump."""
 
 _BINOMIALS = np.array([1.0, 3.0, 3.0, 1.0])
-"""Of the third degree."""
+"""Binomial coefficients of the third degree."""
 
 _DEGREES = np.arange(4)
 
@@ -31,10 +31,10 @@ _SQUARE = np.array(
 """Matrices that take Bernstein coefficients of two cubic polynomials to those of their product, shape (7, 4, 4)."""
 
 _LEAST_NORM_ERROR = 1e-14
-"""Of the largest norm: some tens of rounding errors."""
+"""Error of the least norm as a share of the largest norm: some tens of rounding errors."""
 
 _HALVINGS = 53
-"""As many as the digits of a number: the halves of a piece are no longer told apart after them."""
+"""Halvings of a piece: as many as a number has binary digits, so that its halves are no longer told apart."""
 
 
 def table_coefficients(knots: FloatArray, values: FloatArray, interpolation: Interpolation) -> FloatArray:

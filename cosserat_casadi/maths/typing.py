@@ -22,7 +22,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 """A NumPy array of 64-bit floats."""
 
 AnyMatrix = TypeVar("AnyMatrix", ca.SX, ca.MX, ca.DM, Matrix)
-"""One of CasADi's three types, for functions that return the type of their argument."""
+"""Any of CasADi's three types, for functions that return the type of their argument."""
 
 Columns = TypeVar("Columns", ca.SX, ca.MX, ca.DM, Matrix, FloatArray)
 """Vectors side by side, one a column, in CasADi or in NumPy, for functions that return the type of their argument."""

@@ -64,7 +64,7 @@ class Monitor:
 
     Attributes:
         values: (y of length n + 1, jacobian n×n, bordered (n+1)×(n+1)) ↦ real numbers in ascending order.
-        feels_limits: whether one of them changes sign at a limit point too.
+        feels_limits: whether one of these numbers changes sign at a limit point too.
     """
 
     values: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]

@@ -54,7 +54,7 @@ SUFFICIENT = 1e-4
 """Share of the predicted decrease that a step must bring."""
 
 MOST_SETS = 100
-"""Sets of unknowns at their ends that one step is tried with; the sum falls with each of them."""
+"""Sets of unknowns at their ends that one step is tried with; the sum of squares falls with each set."""
 
 ROUNDING = 1e-9
 """Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
@@ -64,7 +64,7 @@ MEETING = 1e-4
 
 
 class FitState(Protocol):
-    """Residuals of a problem at some unknowns, with all that its Jacobian needs of them.
+    """Residuals of a problem at some unknowns, with all that its Jacobian needs.
 
     Attributes:
         residual: differences in standard deviations, all blocks one after the other, shape (m,).
@@ -104,9 +104,9 @@ class Limits:
         lower: least values, shape (n,).
         upper: largest values, shape (n,).
         mean: expected values, shape (n,); any where nothing is expected.
-        weight: one over the standard deviation of these, shape (n,); 0 where nothing is expected.
-        ratios: whether an unknown is positive and its changes count by their ratio, as those of a modulus: then one
-            step changes it by MOST_RATIO at most; shape (n,).
+        weight: reciprocal of the standard deviation of the expected value, shape (n,); 0 where nothing is expected.
+        ratios: whether an unknown is positive and its changes count by their ratio, as changes of a modulus do: then
+            one step changes it by MOST_RATIO at most; shape (n,).
     """
 
     lower: FloatArray
@@ -182,7 +182,7 @@ class ArrowStep:
         by_own: shape (m, k).
         offsets: shape (blocks + 1,).
         shared_prior: weights of the priors of the shared unknowns and their residuals, each of shape (n,).
-        own_prior: likewise of the unknowns of the blocks: weights of shape (k,), residuals of shape (blocks, k).
+        own_prior: weights of the priors of the unknowns of the blocks, shape (k,), and residuals, shape (blocks, k).
         shared_held: shared unknowns that must not change, shape (n,).
         own_held: own unknowns that must not change, shape (blocks, k).
     """
@@ -198,7 +198,7 @@ class ArrowStep:
 
     @property
     def sizes(self) -> tuple[int, int]:
-        """Numbers of shared unknowns and of those of each block."""
+        """Number of shared unknowns, and number of unknowns of each block."""
         return self.by_shared.shape[1], self.by_own.shape[1]
 
     @cached_property
@@ -246,7 +246,7 @@ class ArrowStep:
 
         Args:
             shared_damping: rows that are added to the shared unknowns, shape (n,), positive.
-            own_damping: likewise, shape (k,).
+            own_damping: rows that are added to the unknowns of each block, shape (k,), positive.
         """
         n, k = self.sizes
         left, eliminations = self.eliminated(own_damping)
@@ -293,7 +293,7 @@ class ArrowStep:
 
         Args:
             shared: changes of the shared unknowns, shape (n,); zero for free unknowns.
-            own: changes of the unknowns of the blocks, shape (blocks, k); likewise.
+            own: changes of the unknowns of the blocks, shape (blocks, k); zero for free unknowns.
             shared_held: shared unknowns that are held, shape (n,).
             own_held: own unknowns that are held, shape (blocks, k).
         """
@@ -310,10 +310,10 @@ class ArrowStep:
         """The problem with a row for each kink that parts it from another one, which keeps steps on the kink.
 
         Args:
-            other: on the other side.
-            changes: of the unknowns, from here to there.
+            other: the problem on the other side of the kinks.
+            changes: changes of the unknowns, from here to there.
             scales: sizes of the derivatives by the unknowns, shapes (n,) and (k,).
-            blocks: which of them have a kink in between, shape (blocks,).
+            blocks: whether a block has a kink in between, shape (blocks,).
         """
         n, k = self.sizes
         rows = []
@@ -419,7 +419,7 @@ class BoundedStep:
         return present
 
     def _free_step(self, present: Pair, held: Held) -> Pair:
-        """Where the sum is least if some unknowns stay where they are, whatever the bounds of the others."""
+        """Unknowns where the sum is least if some of them stay where they are, whatever the bounds of the rest."""
         changes = self._changes(present)
         given = (np.where(held[0], changes[0], 0.0), np.where(held[1], changes[1], 0.0))
         steps = self.arrow.with_changes(*given, *held).step(*self.damping)
@@ -445,7 +445,7 @@ class BoundedStep:
         return place
 
     def _to_first_end(self, present: Pair, wanted: Pair) -> tuple[Pair, Held]:
-        """The unknowns on the way to wanted ones where the first of them meets its end, and which do."""
+        """Unknowns on the way to wanted ones where the first unknown meets its end, and which unknowns meet theirs."""
         shares = []
         for box, start, end in zip(self.boxes, present, wanted, strict=True):
             ends = np.where(end > start, box.upper, box.lower)
@@ -485,7 +485,7 @@ class _Search(Generic[StateType]):
         along: damping of steps along kinks.
         beyond: the state on the other side of a kink that steps from here have met; None where they met none.
         shared_scale: largest norms of the columns so far, shape (n,).
-        own_scale: likewise, shape (k,).
+        own_scale: largest norms of the columns of the blocks' unknowns so far, shape (k,).
     """
 
     shared: FloatArray

@@ -114,7 +114,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
     Args:
         jacobian: n×n, dense or sparse.
         residual: shape (n,).
-        factors: those of a sparse Jacobian, by :func:`sparse_factors`, where they serve several steps.
+        factors: the factorisation of a sparse Jacobian, by :func:`sparse_factors`, where it serves several steps.
 
     Returns:
         the step, shape (n,); None where it is not finite.

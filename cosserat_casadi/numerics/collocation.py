@@ -21,7 +21,7 @@ MOST_STAGES = 3
 """Most stages that the tables are made, and tested, for."""
 
 STAGES = 3
-"""Stages of simulated motions, and of those of an optimal-control problem: order 5 of Radau IIA, 6 of Gauss."""
+"""Stages of simulated motions, and of motions of an optimal-control problem: order 5 of Radau IIA, 6 of Gauss."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Collocation:
         order: order of a step for smooth equations that are not stiff.
         stiffly_accurate: whether the last stage is the end of the step.
         polynomials: coefficients of the Lagrange polynomials, ℓ_j(θ) = Σ_k θ^k polynomials[k, j], shape (s, s).
-        eigenvalues: those of A, real ones first, and of a conjugate pair the one above the real axis, shape (k,).
+        eigenvalues: eigenvalues of A, real ones first; of a conjugate pair the one above the real axis; shape (k,).
         to_eigenvectors: (k, s): maps values at stages to coordinates along these eigenvectors.
         from_eigenvectors: (s, k): its real part maps back; it counts a conjugate pair twice.
     """

@@ -24,12 +24,12 @@ DEGREE = 6
 """Degree of the polynomial that the constraints along the motion are differentiated by."""
 
 NODES = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
-"""Its nodes, from -1 to 1."""
+"""Nodes of that polynomial, from -1 to 1."""
 
 _COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(NODES, DEGREE))
 
 DERIVATIVES = tuple(chebyshev.chebval(-1.0, chebyshev.chebder(_COEFFICIENTS, order)) for order in (1, 2))
-"""Its first and second derivative at the first node: weights of the values at the nodes."""
+"""First and second derivative of that polynomial at the first node: weights of the values at the nodes."""
 
 RANK = 1e-11
 """Singular value, relative to the largest, below which a direction is one without mass."""
@@ -210,7 +210,7 @@ def least_change(saddle: Saddle, gradients: FloatArray, values: FloatArray) -> F
 def shortly_after(
     equations: MotionEquations, instant: Instant, horizon: float, directions: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean accelerations over a short time, and those of unit forces: a linear step of Euler's implicit method.
+    """Mean accelerations over a short time, and answers to unit forces: a linear step of Euler's implicit method.
 
     Damping and stiffness of stiff parts answer within that time: accelerations at its beginning do not show it.
 
@@ -255,7 +255,7 @@ def impact(
 
     Returns:
         velocities after it, shape (n,), 1/s; and impulses, the integrals over the blow of the algebraic entries, zero
-        of the others, shape (n,), s.
+        for differential entries, shape (n,), s.
     """
     differential = equations.differential
     instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
@@ -330,8 +330,8 @@ def _scale(sizes: FloatArray) -> FloatArray:
 def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
     """Inverse of a matrix whose singular values are all above a share of the largest; None where they may not be.
 
-    It takes a tenth of the time of the singular values. The condition in the norm of sums of columns bounds that of the
-    singular values by the number of columns.
+    It takes a tenth of the time of the singular values. The condition in the norm of sums of columns, times the number
+    of columns, bounds the ratio of the singular values.
 
     Args:
         matrix: square.

@@ -26,7 +26,7 @@ WORK_NODES = (_GAUSS_NODES + 1) / 2
 """Quadrature nodes of the work along a step, shares of it."""
 
 WORK_WEIGHTS = _GAUSS_WEIGHTS / 2
-"""Their weights."""
+"""Weights of the quadrature of the work, which add up to one."""
 
 ACCEPT_ABOVE = 0.1
 """Share of the foreseen decrease from which on a step is taken."""

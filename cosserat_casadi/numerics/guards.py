@@ -27,7 +27,7 @@ WATCHED = np.linspace(0.0, 1.0, 9)
 """Shares of a step at which guards are asked for."""
 
 MOST_HALVINGS = 12
-"""Halvings of the time between two of them in which a guard that lies on zero is looked for above it."""
+"""Halvings of the time between two looks in which a guard that lies on zero is looked for above it."""
 
 
 STEEPER = 2.0
@@ -37,7 +37,7 @@ GOLDEN = (3.0 - 5.0**0.5) / 2.0
 """Share of an interval at which golden sections are looked at."""
 
 MOST_SECTIONS = 40
-"""Golden sections of the time between two of them in which a guard may fall through zero and rise again."""
+"""Golden sections of the time between two looks in which a guard may fall through zero and rise again."""
 
 
 def remembering(guards: Guards) -> Guards:

@@ -18,9 +18,9 @@ def kink_row(here: FloatArray, there: FloatArray, change: FloatArray, scales: Fl
     """The row of a linear model that is zero on the kink between two states, shape (1, 1 + n).
 
     Args:
-        here: residual and derivatives at one of them, shape (m, 1 + n).
-        there: at the other one.
-        change: of the unknowns, from here to there, shape (n,).
+        here: residual and derivatives at one state, shape (m, 1 + n).
+        there: residual and derivatives at the other state, shape (m, 1 + n).
+        change: change of the unknowns, from here to there, shape (n,).
         scales: sizes of the derivatives by each unknown, shape (n,).
     """
     jump = here - there

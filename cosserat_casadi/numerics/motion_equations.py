@@ -96,7 +96,7 @@ class MotionEquations:
             return self.residual(instant.time, instant.x, instant.v, instant.a)
 
     def residual_of_stages(self, times: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        """F at s instants: times of shape (s,), the others and the result of shape (s, n)."""
+        """F at s instants, shape (s, n): times of shape (s,); x, v and a of shape (s, n)."""
         with np.errstate(all="ignore"):
             if self.residuals is not None:
                 return self.residuals(times, x, v, a)

@@ -268,7 +268,7 @@ def _line_search(
 
 
 def relative_norm(residual: FloatArray, x: FloatArray) -> float:
-    """2-norm of the dimensionless residual over one plus that of the unknowns: what rounding scales with."""
+    """2-norm of the dimensionless residual over one plus the 2-norm of the unknowns, which rounding scales with."""
     scale = _scale(x)
     return length_of(residual) / scale
 

@@ -44,7 +44,7 @@ class StageSolution:
     """Where Newton's method ended in one step.
 
     Attributes:
-        unknowns: those of the stages, as in :class:`Step`, shape (s, n).
+        unknowns: unknowns of the stages, as in :class:`Step`, shape (s, n).
         outcome: how it ended.
         iterations: corrections computed.
         contraction: ratio of the last two corrections; 0 where there was but one.
@@ -170,7 +170,7 @@ class SecantUpdates:
         """Corrections with all updates; not finite where the last one says that F would not change along them.
 
         Args:
-            corrections: those of the linear system before any update, with F after the last correction, shape (s, n).
+            corrections: solution of the linear system before any update, with F after the last correction, (s, n).
         """
         with np.errstate(all="ignore"):
             for dual, following in zip(self.duals, self.taken[1:], strict=False):

@@ -126,7 +126,7 @@ class TimeStep(StepPolynomial):
 def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> FloatArray:
     """Positions and algebraic entries at T times by the polynomials of the steps that hold them, shape (T, n).
 
-    They are those of :meth:`TimeStep.at`, all at once.
+    :meth:`TimeStep.at` computes the same numbers for one time.
 
     Args:
         steps: of one method and the same n unknowns.

@@ -38,7 +38,7 @@ WORTH_GROWING = 1.2
 """Growth below which a step keeps its size, and with it its factorised matrices."""
 
 WORTH_SHRINKING = 0.85
-"""Shrinkage above which the next step has the size of this one, likewise: its error leaves room for that."""
+"""Shrinkage above which a step keeps its size, and with it its matrices: its error leaves room for that."""
 
 SMALLEST_ERROR = 1e-10
 """Error over tolerance below which a step grows by the most in any case."""

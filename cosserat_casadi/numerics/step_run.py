@@ -37,7 +37,7 @@ ON_GUARD = 1e-13
 """Value of a guard that counts as zero."""
 
 ROUNDED = 1e-11
-"""The same where another length of the step brings the guard no nearer: as much is left by Newton's method."""
+"""Value of a guard that counts as zero where no other length of the step brings it nearer: Newton leaves as much."""
 
 NEARER = 0.5
 """Share of the value at the length before from which on a guard is no nearer."""

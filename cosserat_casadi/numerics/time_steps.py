@@ -36,7 +36,7 @@ TRIES = 1000
 """Steps, taken or refused, after which a motion has to be on its way."""
 
 SLOWEST = 3e-6
-"""Share of the piece that each of them has to bring on average: slower, the end is hundreds of thousands away."""
+"""Share of the piece that these tries have to bring on average: slower, the end is hundreds of thousands away."""
 
 WHOLE = 1e-9
 """Distance of a quotient of times from a whole number that is put down to rounding."""
@@ -52,7 +52,7 @@ AT_ONCE = 64
 
 
 class StepsElsewhere(Protocol):
-    """The steps of one integration, taken by other code than that of this module, with the same digits."""
+    """The steps of one integration, taken by other code than this module's, with the same digits."""
 
     def take(self, most: int) -> tuple[StepOutcome | None, list[float]]:
         """Take steps, at most so many.
@@ -95,7 +95,7 @@ def integrate(
         guards: values that have to stay at zero or above; where one does not, the motion ends.
         settled: what puts the end of each step right; None for ends as they are.
         memory: of the steps up to the start, where a motion goes on in a piece: it takes the very steps of one motion.
-        stepper: other code that takes steps whose sizes are controlled; None for that of this module.
+        stepper: other code that takes steps whose sizes are controlled; None for the code of this module.
         stepper_after: asked after each step of this module for other code that takes the rest; None for none.
 
     Raises:

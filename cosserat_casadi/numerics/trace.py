@@ -98,7 +98,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None, gu
         branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
             for the other half of that branch, 0 goes straight on.
         progress: receives the largest load factor reached, in [0, 1].
-        guard: as that of :func:`extend`.
+        guard: the guard of :func:`extend`.
     """
     # The start has no point before it: that the load grows decides which way is forward.
     unloaded = np.append(curve.path.start, 0.0)
@@ -228,7 +228,7 @@ def _departure(traced: Trace, passed: list[Event], number: int) -> int | None:
 
 
 def _leave(curve: Curve, traced: Trace, passed: list[Event], side: int) -> None:
-    """From the last of these events onto one half of the branch that crosses there."""
+    """Leave a path at the last of these events onto one half of the branch that crosses there."""
     bifurcation = passed[-1]
     traced.events += passed
     # The branch begins at the bifurcation itself, which belongs to both curves.

@@ -97,13 +97,13 @@ shape = true
     )
 
     def of_rod(self, name: str) -> Accuracy | RodDiscretisation:
-        """The record that fixes modes, nodes and rotation of a rod: its entry in ``of_rods``, else that of all."""
+        """The record that fixes modes, nodes and rotation of a rod: its entry in ``of_rods``, else this record."""
         own = [entry for entry in self.of_rods if entry.rod == name]
         return own[0] if own else self
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Ranges are those of modes and nodes; what differs in single rods differs from what all have."""
+        """Refuse ``chosen_for`` without modes, and ``of_rods`` without modes, nodes and rotation of the other rods."""
         if "chosen_for" in given and "modes" not in given:
             yield Fault(("chosen_for",), "stands without modes", "leave it out: it says what modes were chosen for")
         if given.get("of_rods") and not {"modes", "nodes", "rotation"} <= given.keys():

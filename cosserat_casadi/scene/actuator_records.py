@@ -172,7 +172,7 @@ offset = [1.5e-3, 0.0]
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """One of tension and length, one of offset and helix."""
+        """Require one of tension and length, and one of offset and helix."""
         yield from _faults_of_holes(given)
         yield from one_of("tension", "length", given)
         yield from one_of("offset", "helix", given)
@@ -272,7 +272,7 @@ reference_pressure = 2.0e4
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """One of area and wall; growths with their reference pressure."""
+        """Require one of area and wall, and growths with their reference pressure."""
         yield from one_of("area", "wall", given)
         if "wall" in given and "area_growth" in given:
             yield Fault(("area_growth",), "stands beside wall", "it follows from the wall: leave one of them out")

@@ -192,7 +192,7 @@ mass = 0.1
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """A disk has a radius; a name as ``spacers[0]`` is that of a disk of a row, which results do not list."""
+        """Require a radius of a disk; refuse names as ``spacers[0]``, which disks of rows and joints have."""
         if given.get("listed", True) and "[" in str(given.get("name", "")):
             problem = f"{shown(given['name'])} is the name of a disk of a row, or of a joint"
             yield Fault(("name",), problem, "use letters, digits and underscores")
@@ -297,7 +297,7 @@ class JointRecord(Oriented, Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The place of a base is said by its rod, that of a joint in the world by the joint; an orientation once."""
+        """Require two ends of the joint, and a place in the world; refuse a place or an orientation of a base."""
         yield from super().conflicts(given)
         if "between" in given:
             for fault in end_faults(given["between"]):
@@ -404,7 +404,7 @@ position = [0.02, 0, 0]
 
     @property
     def keeps_place(self) -> bool:
-        """It does."""
+        """True: a fixed joint leaves no motion free."""
         return True
 
 

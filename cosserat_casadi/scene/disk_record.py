@@ -13,7 +13,7 @@ from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.values import ABOVE_BASE, Name, NotEmpty, NotNegative, Number, Positive, Whole, above_base
 
 MOST_DISKS = 1000
-"""Largest number of disks of a row; each of them ends an element of its rod."""
+"""Largest number of disks of a row; each disk ends an element of its rod."""
 
 
 def lead_through_disks(tables: dict[str, Any]) -> None:
@@ -69,7 +69,7 @@ thickness = 0.002
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """One of count and abscissae, which ascend and are not too many."""
+        """Require one of count and abscissae, which ascend and are not too many."""
         if ("count" in given) == ("at" in given):
             problem = "stands beside at" if "at" in given else "missing"
             yield Fault(("count",), problem, "give count or at")

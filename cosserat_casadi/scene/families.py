@@ -199,7 +199,7 @@ def _referable(record: type[Record]) -> CoreSchema:
 
 
 def contents_of(field: FieldInfo) -> Family[Any] | type[Record] | None:
-    """Kind of the tables under a field: one record, a family of them, or None where the field holds no tables."""
+    """Kind of the tables under a field: one record, a family of records, or None where the field holds no tables."""
     return _contents(field.annotation)
 
 

@@ -17,7 +17,7 @@ PLAIN = (str, int, float)
 """Classes of values without values inside; to ask for these is faster than to ask for a mapping."""
 
 LISTS = (list, tuple)
-"""Classes of arrays; likewise."""
+"""Classes of arrays; to ask for these is faster than to ask for a sequence."""
 
 LONGEST_TEXT = 60
 """Characters of a text or a key of the file that a message quotes."""
@@ -74,7 +74,7 @@ class Fault(NamedTuple):
     remedy: str = ""
 
     def below(self, path: Path) -> Fault:
-        """The same fault, its path counted from where ``path`` starts."""
+        """This fault, its path counted from where ``path`` starts."""
         full_path = (*path, *self.path)
         return self._replace(path=full_path)
 
@@ -196,7 +196,7 @@ def frame_faults(given: Table) -> Iterator[Fault]:
 
 
 def one_of(first: str, second: str, given: Table, remedy: str = "") -> Iterator[Fault]:
-    """Faults unless exactly one of two keys is there; with a remedy for neither of them."""
+    """Faults unless exactly one of two keys is there; with a remedy for a table without either."""
     if first in given and second in given:
         yield Fault((second,), f"stands beside {first}", "give one of the two")
     if first not in given and second not in given:
@@ -223,7 +223,7 @@ def faults_of_ends(given: Table, *, equal: bool) -> Iterator[Fault]:
 
 
 def numbers_of(value: Any) -> list[float]:
-    """The numbers of a value that is one or a list of them; none where it is faulty or left out."""
+    """The numbers of a value that is a number or a list of numbers; none where it is faulty or left out."""
     numbers = [value]
     if isinstance(value, list | tuple):
         numbers = list(value)

@@ -22,8 +22,8 @@ class InputField:
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
         lower: least value that physics allows each number; None without a bound.
-        axes: axes of the components: "none" of a number, those of the world or of the section, or "frame" for those
-            that the record's own ``frame`` names.
+        axes: axes of the components: "none" of a number, "world", "section", or "frame" for the axes that the
+            record's own ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
             must have a velocity.
         continuous: whether its path in a motion must not jump: it prescribes a length.

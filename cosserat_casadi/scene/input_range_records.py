@@ -37,7 +37,7 @@ Pairs = Annotated[
     Annotated[Pair, SINGLE] | Annotated[tuple[Pair, ...], NotEmpty(), SEVERAL],
     Discriminator(_one_or_several),
 ]
-"""One range for all entries, or one for each."""
+"""A range for all entries of an input or a parameter, or a range for each entry."""
 
 InputRanges = Annotated[dict[str, Pairs], AfterValidator(HashedTable)]
 """Ranges by the name of the input or the parameter."""

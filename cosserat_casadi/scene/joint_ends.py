@@ -95,7 +95,7 @@ def _between_bodies(joint: Tables, ends: list[Table]) -> bool:
 
 
 def _between_rods(tables: Tables, joint: Tables, sections: list[Table], index: int) -> bool:
-    """A section of a rod at that of another: the base of one is put there, or a body holds both."""
+    """Tie a section of a rod to a section of another: put the base of one there, or let a body hold both."""
     first, second = sections if _at(sections[0]) != 0 else sections[::-1]
     joint["rod"] = second["rod"]
     joint["at"] = _at(second)

@@ -119,7 +119,7 @@ field = [0, 0.02, 0]
 
 
 def _zero(key: str, given: Table, remedy: str) -> Iterator[Fault]:
-    """All numbers under a key are zero."""
+    """The fault that all numbers under a key are zero."""
     value = given.get(key)
     if isinstance(value, list | tuple) and value and not any(_is_not_zero(component) for component in value):
         yield Fault((key,), "must not be zero", remedy)

@@ -43,7 +43,7 @@ material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Poisson's ratio and the shear modulus say the same."""
+        """Require one of Poisson's ratio and the shear modulus."""
         yield from one_of("poisson_ratio", "shear_modulus", given, "give poisson_ratio or shear_modulus, Pa")
 
 
@@ -87,7 +87,7 @@ material.table = { bending_y = [[5, 0.12], [10, 0.2]], torsion = [[10, 0.05], [2
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Each curve rises and goes through zero; a bending curve of all directions stands alone."""
+        """Require curves that rise through zero; refuse a bending curve of one axis beside that of all directions."""
         if not given:
             yield Fault((), "has no curve", "give stress against strain, as in bending_y = [[5, 0.12], [10, 0.2]]")
         for name, curve in given.items():
@@ -147,7 +147,7 @@ material.table = { bending_y = [[0, 0], [5, 0.12], [10, 0.2]] }
     table: StressTable = Field(description="stress against strain, by strain")
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """No single number of a curve could vary."""
+        """Refuse a measured curve as a parameter: no single number of it could vary."""
         if key == "table":
             return "is a measured curve", "a curve that depends on few numbers is law = 'polynomial'"
         return super().parameter_refusal(key)
@@ -232,7 +232,7 @@ class IncompressibleMaterial(Material):
         return None
 
     def in_proportion(self) -> Self:
-        """Coefficients times the ratio of Young's modulus to that of theirs; as they are where theirs is none."""
+        """The material with its coefficients scaled to its Young's modulus; as it is where they make no modulus."""
         given = self.model_dump(exclude_unset=True)
         small = self.small_strain_modulus(given)
         if small is None or not small > 0.0:
@@ -320,7 +320,7 @@ material = { law = "ogden", youngs_modulus = 1.2e6, ogden = [[0.4e6, 2.0]] }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Every pair is stable by itself."""
+        """Require that every pair is stable by itself."""
         yield from super().conflicts(given)
         pairs = given.get("ogden")
         if not isinstance(pairs, list | tuple):
@@ -353,8 +353,8 @@ material = { law = "ogden", youngs_modulus = 1.2e6, ogden = [[0.4e6, 2.0]] }
 class Superelastic(Material):
     """A superelastic wire: moment against curvature in three straight pieces with rounded corners.
 
-    Bending of round sections, in whatever direction; other strains are linear. Strains are those of the outermost
-    fibre. One branch is computed at a time: there is no hysteresis.
+    It applies to bending of round sections, in whatever direction; other strains are linear. The record gives strains
+    of the outermost fibre. One branch is computed at a time: there is no hysteresis.
     """
 
     example: ClassVar[str] = """\
@@ -382,7 +382,7 @@ material.end_modulus = 2.5e10
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The plateau has a length; the unloading branch has a beginning, below that of the loading branch."""
+        """Require a plateau with a length, and a beginning of the unloading branch below that of the loading branch."""
         yield from super().conflicts(given)
         start = numbers_of(given.get("plateau_start"))
         end = numbers_of(given.get("plateau_end"))

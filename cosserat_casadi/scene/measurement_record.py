@@ -39,7 +39,7 @@ sigma = 1e-3
 
 
 def _as_input_column(value: Any) -> Any:
-    """A text as the table of a column, a number as that of a constant."""
+    """A text as the table of a column, a number as the table of a constant."""
     if isinstance(value, str):
         return {"column": value}
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -128,7 +128,7 @@ class MeasurementRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """As many columns, factors and deviations as the quantity has numbers."""
+        """Require as many columns, factors and deviations as the quantity has numbers."""
         count = len(cls.entries)
         columns = given.get("columns")
         if isinstance(columns, list) and columns:

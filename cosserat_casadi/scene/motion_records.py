@@ -129,7 +129,7 @@ wave = "one_minus_cosine"
 
     @property
     def entry_count(self) -> int:
-        """Count the numbers of the input at one time; of a travelling wave, those of one Legendre degree."""
+        """Count the numbers of the input at one time; of a travelling wave, its numbers of one Legendre degree."""
         if self.is_table:
             _, count = self.knot_values.shape
             return int(count)

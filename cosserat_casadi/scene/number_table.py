@@ -46,7 +46,7 @@ def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 
 def begun_rows(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """As :func:`read_rows`, one row after the other: a file may be larger than memory.
+    """Header and rows of a table, one row after the other: a file may be larger than memory.
 
     Raises:
         SceneError: the file cannot be read, as the rows may tell later, or holds no row.

@@ -76,7 +76,7 @@ Coefficients = Annotated[
     Annotated[NotNegative, SINGLE] | Annotated[Friction, TABLE],
     Discriminator(_number_or_table),
 ]
-"""A coefficient in all directions, or those of the rod's own directions."""
+"""A coefficient of friction in all directions, or coefficients along the rod's own directions."""
 
 
 class ObstacleRecord(Entry):
@@ -183,7 +183,7 @@ class ObstacleRecord(Entry):
         return self.disks is not None and row in self.disks
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """Only the push of a smooth contact may be a parameter: the rest decides where contacts are looked for."""
+        """Refuse all parameters but the push of a smooth contact: the rest decides where contacts are looked for."""
         if key in SMOOTH_NUMBERS:
             return super().parameter_refusal(key)
         problem = f"{key} of an obstacle decides where contacts are looked for, or how, and is no parameter"
@@ -327,12 +327,12 @@ class RoundRecord(ObstacleRecord):
 
     @property
     def thickness(self) -> float:
-        """Its diameter, m."""
+        """Diameter of the obstacle, m: how far a rod has to go to be outside of it again, on its other side."""
         return 2 * self.radius
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """It is thicker than its width: else a rod in its middle would not be seen to be too deep."""
+        """Refuse a width beyond the radius: a rod in the middle would not be seen to be too deep."""
         yield from super().conflicts(given)
         width, radius = given.get("width"), given.get("radius")
         if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:

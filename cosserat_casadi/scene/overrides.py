@@ -54,7 +54,7 @@ def apply_overrides(
         known: keys of a scene.
 
     Returns:
-        the assignments that were applied, the last one first, and problems of the others.
+        the assignments that were applied, the last one first, and problems of the refused ones.
     """
     applied: list[Assignment] = []
     refused: list[Problem] = []

@@ -45,7 +45,7 @@ Cell = tuple[int, int]
 
 
 class Form(Enum):
-    """How a key holds its numbers: each a number, those of base and tip, or the components of a vector."""
+    """How a key holds its numbers: as a number, as numbers at base and tip, or as the components of a vector."""
 
     NUMBER = "number"
     ENDS = "base and tip"
@@ -116,7 +116,7 @@ class NamedNumbers:
 
     @property
     def all_numbers(self) -> tuple[NamedNumbers, ...]:
-        """These numbers, and numbers that follow them."""
+        """The numbers themselves, then the numbers that follow them."""
         return (self, *(numbers for numbers, _ in self.tied))
 
     @property
@@ -183,7 +183,7 @@ def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
 
 
 def tied_numbers(names: Sequence[str], holders: Holders) -> NamedNumbers | None:
-    """The numbers that the first of several names stands for, with those of the others, which follow them.
+    """The numbers that the first of several names stands for, with the numbers of the other names, which follow them.
 
     All keep the ratios that they have in the scene; equal numbers stay equal. None where some entry is faulty.
 
@@ -216,7 +216,7 @@ def _ratios(first: NamedNumbers, other: NamedNumbers) -> tuple[float, ...]:
 
 
 def _with_key(holders: Sequence[Holder], key: str) -> Holder:
-    """Of entries of one name, the one that has a key."""
+    """The entry that has a key, among entries of one name; the first entry where none has it."""
     for holder in holders:
         if holder.record is None or key in keys_of(type(holder.record)):
             return holder

@@ -24,7 +24,7 @@ from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.spelling import closest
 
 MOST_CONVERTED = 10
-"""Most coefficients that become those of other polynomials: powers of a higher degree lose half of their digits."""
+"""Most coefficients that are converted to other polynomials: powers of a higher degree lose half of their digits."""
 
 REMEDY = "give base and tip, or legendre, or powers"
 
@@ -87,7 +87,7 @@ class Profile:
         return even - odd, even + odd
 
     def converted(self, notation: Notation) -> Profile:
-        """The same profile in another notation.
+        """This profile in another notation.
 
         Raises:
             RefusedProfile: two values do not say it, or too many coefficients would lose their digits.

@@ -116,7 +116,7 @@ def files_read(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> l
 
 
 def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
-    """Path of what an override with this key sets: two keys of one path set the same.
+    """Path of what an override with this key sets: two keys with one path set one value.
 
     Args:
         mapping: tables of a scene.

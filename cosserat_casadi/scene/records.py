@@ -85,7 +85,7 @@ class Record(BaseModel):
     """A table of the scene: frozen, without unknown keys, every number finite.
 
     Attributes:
-        example: the table as a scene has it, TOML, for the reference page. Names in it are those of the page: the rods
+        example: the table as a scene has it, TOML, for the reference page. The page uses these names: the rods
             "finger" and "arm", the body "platform", the load "push" and the actuator "cable".
         namesakes: keys of other records, each with the key that has its part here.
     """

@@ -61,7 +61,7 @@ width = 5e-4
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """One rod, or two."""
+        """Refuse more than two rods."""
         rods = given.get("rods")
         if isinstance(rods, list | tuple) and len(rods) > MOST_RODS:
             problem = f"must be one rod or two, got {len(rods)}"

@@ -49,7 +49,7 @@ IN_PLANE = {1, 3, 5}
 """Indices of the strains that keep a rod in the local x–z plane: bending_y, shear_x, extension."""
 
 SHEAR_AND_EXTENSION = {3, 4, 5}
-"""Indices of the strains Γ; a rod that admits none of them keeps its length."""
+"""Indices of the strains Γ; a rod that admits no such strain keeps its length."""
 
 StrainName = Literal["bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension"]
 StrainChoice = Annotated[

@@ -146,7 +146,7 @@ def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, 
 
 
 def _holds_one_name(record: type[Entry], field: str) -> bool:
-    """Whether a field that refers to other tables is one name, or a list of them."""
+    """Whether a field that refers to other tables holds one name; a list of names otherwise."""
     annotation: Any = record.model_fields[field].annotation
     return annotation in (str, str | None)
 
@@ -300,7 +300,7 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _listed_names(given: Any) -> list[Any]:
-    """The names of a key that holds one or a list of them."""
+    """The names of a key that holds one name or a list of names."""
     return list(given) if isinstance(given, list | tuple) else [given]
 
 
@@ -342,4 +342,4 @@ RULES: tuple[Rule, ...] = (
     ranges_of_no_input,
     motions_of_no_input,
 )
-"""Every rule. Faults at one key of the file are listed in this order."""
+"""Every rule of a scene. Faults at one key of the file are listed in this order."""

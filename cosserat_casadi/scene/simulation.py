@@ -14,7 +14,7 @@ from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, not_increasing
 
 TOLERANCE = 1e-3
-"""Error of the paths of tips, relative to the rod length, where the scene asks for none: that of a film."""
+"""Error of the paths of tips, relative to the rod length, where the scene asks for none: enough for a film."""
 
 FRAMES = 101
 """Rows of a result where the scene says neither how many nor when."""

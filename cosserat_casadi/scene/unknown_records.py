@@ -67,7 +67,7 @@ per_row = true
 
     @property
     def name(self) -> str:
-        """As the scene spells it."""
+        """Name of the unknown, as the scene spells it."""
         if self.parameter is not None:
             return names_in(self.parameter)[0]
         return str(self.input)

@@ -15,16 +15,16 @@ from cosserat_casadi.scene.tube_records import Tube
 LOG = logging.getLogger(__name__)
 
 SOFTEST = 1e3
-"""Young's modulus, Pa, below that of any rod: soft gels have some thousands, 60 GPa written as 60 has less."""
+"""Young's modulus, Pa, below the modulus of any rod: soft gels have some thousands, 60 GPa written as 60 has less."""
 
 LIGHTEST = 10.0
-"""Density, kg/m³, below that of foams: 6450 kg/m³ written as 6.45 g/cm³ is lighter."""
+"""Density, kg/m³, below the density of foams: 6450 kg/m³ written as 6.45 g/cm³ is lighter."""
 
 ANGLES = frozenset({"angle", "rest", "lower_stop", "upper_stop", "rotation"})
 """Keys of angles of hinges and of drives of tubes."""
 
 FURTHEST = 4 * math.pi
-"""Angle, rad, beyond that of most hinges and drives: 15° written as 15 is more."""
+"""Angle, rad, beyond the angle of most hinges and drives: 15° written as 15 is more."""
 
 NEAR_ONE = 100.0
 """Largest number, and inverse of the smallest one, of a rod or tube that is computed without units."""

@@ -263,7 +263,7 @@ ABOVE_BASE: Any = Field(json_schema_extra={"exclusiveMinimum": 0, "maximum": 1})
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 BodyName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*(\[[0-9]+\])?$")]
-"""Of a body, or of an entry of a table that is written as one: ``spacers[0]``, ``joints[2]``."""
+"""Name of a body, or of an entry of a table that is written as a body: ``spacers[0]``, ``joints[2]``."""
 Names = Annotated[tuple[str, ...], NotEmpty(), AfterValidator(without_repetition)]
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
