@@ -44,8 +44,8 @@ class Condensed:
         states_by_inputs: ∂ states / ∂ all inputs at the beginning, which then move on from there, shape (N + 1,
             state_size, inputs).
         states_shift: change of the states that closes the guess at its own rates, shape (N + 1, state_size).
-        unknowns_by_rates: the same of the unknowns, shape (N, unknowns_size, N · steered).
-        unknowns_shift: shape (N, unknowns_size).
+        unknowns_by_rates: ∂ unknowns / ∂ steered rates of all stages, shape (N, unknowns_size, N · steered).
+        unknowns_shift: change of the unknowns that closes the guess at its own rates, shape (N, unknowns_size).
     """
 
     guess: Horizon
@@ -71,8 +71,8 @@ class Condensing:
     """Linearises a horizon.
 
     Args:
-        stage: every stage of it.
-        equations: those of the stage, compiled or not.
+        stage: every stage of the horizon.
+        equations: equations of the stage, compiled or not.
         stages: number of stages N.
         steered: indices of the inputs whose rates are decision variables; the other inputs move as prescribed.
 
@@ -157,7 +157,7 @@ class Condensing:
         """Refuse arrays of other shapes: entries would be read at wrong places.
 
         Raises:
-            ValueError: with all of them.
+            ValueError: with all arrays whose shapes are not the expected ones.
         """
         stage = self._stage
         moving = (self._stages, stage.model.inputs.size)

@@ -33,13 +33,13 @@ MOST_TURNS = 20
 """Equilibria that are tried from one start."""
 
 FIRST_DAMPING = 1e-1
-"""Weight of the square of the first change of the inputs, in their scales, beside that of the errors."""
+"""Weight of the square of the first change of the inputs, in their scales, beside the squares of the errors."""
 
 MOST_DAMPING = 1e8
-"""The same from which on a search ends that comes no nearer."""
+"""Weight of the square of a change of the inputs from which on a search ends that comes no nearer."""
 
 EASED = 10.0
-"""Factor by which it falls after a turn that has come nearer."""
+"""Factor by which that weight falls after a turn that has come nearer."""
 
 TIGHTENED = 5.0
 """Factor by which it grows after one that has not."""
@@ -131,7 +131,7 @@ class ContactProblem(SoughtInputs):
 def contact_problem(
     model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Solution, stable: bool
 ) -> ContactProblem:
-    """The problem of a model of rods in exact contact, with arguments as those of :func:`lifted_problem`."""
+    """The problem of a model of rods in exact contact, with the arguments of :func:`lifted_problem`."""
     variables = decision_variables(model)
     given = given_inputs(start.model, start.inputs)
     if stable:

@@ -80,7 +80,7 @@ def embedded(
         near: the equilibrium that it starts from.
         iterations: most steps.
         parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
-            scene's values. Those of relaxed contact always are.
+            scene's values. Parameters of relaxed contact always are an argument.
 
     Returns:
         inputs, or (inputs, p), ↦ (x, excess): ``excess`` is the squared relative residual over its squared tolerance.

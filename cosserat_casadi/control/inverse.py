@@ -47,7 +47,7 @@ def inverse(
     """Inputs for which a model's equilibrium meets the targets of its scene, as the public ``inverse`` describes them.
 
     Raises:
-        SceneError: likewise.
+        SceneError: as the public ``inverse`` raises it.
     """
     model = model.at()
     check_targets(model.scene.targets)
@@ -115,7 +115,7 @@ def search(
     """
 
     def rank(end: Inverse) -> tuple[bool, bool, float]:
-        """Less is better: an equilibrium, a stable one if that is wanted, a smaller target error."""
+        """Rank of an end, less is better: an equilibrium, a stable one if that is wanted, a smaller target error."""
         return not end.solution.converged, stable and end.unstable, gap_left(end)
 
     began = monotonic()
@@ -145,7 +145,7 @@ def search_near(
     starts: int,
     report: Callable[[str], None] | None = None,
 ) -> Inverse:
-    """As :func:`search`, from an equilibrium near the targets: by Newton's method, where that leads to them."""
+    """Search from an equilibrium near the targets: by Newton's method, where that leads there, else :func:`search`."""
     if isinstance(problem, LiftedProblem):
         found = followed(problem, start)
         if found is not None and found.met and not found.unstable:

@@ -94,8 +94,8 @@ def inverse_rows(
 ) -> list[Inverse]:
     """Inputs for each of many sets of targets, every model built once for all rows that need it.
 
-    A row starts from the nearest one that has met its targets, the first from the scene's own inputs; the order is
-    that of nearness. Modes and nodes are chosen as in :func:`inverse`, for each row.
+    A row starts from the nearest one that has met its targets, the first from the scene's own inputs; rows are solved
+    in the order of nearness. Modes and nodes are chosen as in :func:`inverse`, for each row.
 
     Args:
         scene: a validated scene.
@@ -215,15 +215,15 @@ def _distance(gaps: Sequence[TargetMiss], lengths: FloatArray) -> float:
 
 
 def _distances(wanted: FloatArray, here: FloatArray, lengths: FloatArray) -> FloatArray:
-    """The same between the poses that rows want and those of one row.
+    """How far the poses that rows want are from the poses of one row: distances over lengths, or angles, rad.
 
     Args:
         wanted: as in :func:`wanted_poses`, shape (rows, targets, 7).
-        here: those of one row, shape (targets, 7).
-        lengths: of the rods, shape (targets,), m.
+        here: poses of the one row, shape (targets, 7).
+        lengths: lengths of the rods, shape (targets,), m.
 
     Returns:
-        shape (rows,).
+        the largest over the targets of each row, shape (rows,).
     """
     distances = np.linalg.norm(wanted[:, :, :3] - here[:, :3], axis=2) / lengths
     largest = distances.max(axis=1)
@@ -245,7 +245,7 @@ def _error_within(result: Inverse) -> bool:
 
 
 def _unresolved(result: Inverse) -> Inverse:
-    """The result as one that is not of the rod; the gaps are those of the discrete model."""
+    """The result as one that is not of the rod; its gaps are gaps of the discrete model."""
     solution = result.solution.unresolved()
     if solution.largest_error is not None:
         message = f"{solution.message} The estimated error is {solution.largest_error:.2g} of the length."

@@ -99,7 +99,7 @@ class LevelsOfRods:
 
 @dataclass(frozen=True)
 class LevelsOfTubes:
-    """Levels of steps, each with twice those of the one before; the unknowns do not depend on them."""
+    """Levels of steps, each with twice the steps of the level before; the unknowns do not depend on them."""
 
     scene: scenes.Scene
 

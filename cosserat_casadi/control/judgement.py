@@ -30,14 +30,14 @@ def judged(
     that has ``converged`` and is ``within_tolerance`` is one of the rod.
 
     Args:
-        model: that of the problem.
+        model: the model of the problem.
         x: unknowns that the optimiser found, shape (model.size,).
         inputs: stacked inputs that it found, shape (model.inputs.size,).
         parameters: as for :meth:`Model.at`; by default the scene's values.
 
     Raises:
         SceneError: contact is exact, or an input or a parameter is refused.
-        ValueError: the unknowns are not as many as those of the model.
+        ValueError: the unknowns are not as many as the model has.
     """
     refuse_obstacles(model.scene, "an optimum")
     model = model.at(parameters)

@@ -65,7 +65,7 @@ class LiftedProblem(SoughtInputs):
         optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
             the same kinds share it.
         errors: x, change, origin, wanted poses ↦ weighted errors of the targets, their derivatives by x and by change;
-            shared likewise.
+            other targets of the same kinds share it too.
     """
 
     optimiser: ca.Function
@@ -104,8 +104,8 @@ class LiftedProblem(SoughtInputs):
     def on_this_side(self, start: Equilibrium[Any], result: Inverse) -> Inverse:
         """The result; where that is behind a smooth obstacle or a rod, the end of a path to its inputs.
 
-        Unknowns of the optimiser go anywhere. The path is that of the inputs from the start, or of the loads where the
-        start is no equilibrium, without steps through obstacles or rods.
+        Unknowns of the optimiser go anywhere. The path leads the inputs from the start, or the loads from zero where
+        the start is no equilibrium, without steps through obstacles or rods.
         """
         end = result.solution
         if not isinstance(end, Solution) or not end.converged:

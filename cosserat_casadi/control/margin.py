@@ -39,11 +39,11 @@ def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = F
         model: with loads that have a potential, and without cables that may go slack and stops.
         width: of the soft minimum.
         parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
-            scene's values. The elastic stiffness that the margin is a share of is that of the scene's values in both.
+            scene's values. The elastic stiffness that the margin is a share of is always taken at the scene's values.
 
     Returns:
-        (x, inputs), or (x, inputs, p), ↦ margin; off equilibrium that of the symmetric part of the Jacobian there. NaN
-        where x or inputs are, or where a body may move while no rod is strained.
+        (x, inputs), or (x, inputs, p), ↦ margin; off equilibrium the margin of the symmetric part of the Jacobian
+        there. NaN where x or inputs are, or where a body may move while no rod is strained.
 
     Raises:
         SceneError: the loads have no potential, a cable may go slack, or a joint has a stop.

@@ -34,7 +34,7 @@ def soft_minimum(measure: bytes, size: int, width: float) -> ca.Callback:
 
 
 class _SpectrumCache:
-    """Spectra of matrices, that of the last one kept: value, gradient and curvature share one decomposition."""
+    """Spectra of matrices; the last spectrum is kept: value, gradient and curvature share one decomposition."""
 
     def __init__(self, measure: FloatArray, size: int, width: float) -> None:
         self.size = size

@@ -18,7 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system_functions import SystemFunctions
 
 SEED = 20_240
-"""Of the generator that scatters them: the same scene has the same starts."""
+"""Seed of the generator that scatters starts: the same scene has the same starts."""
 
 AT_BOUND = 1e-6
 """Distance from a bound, in half its range, below which an input is at it."""

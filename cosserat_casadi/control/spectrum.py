@@ -75,7 +75,7 @@ class Spectrum:
         return np.asarray(weighted_modes @ self.modes.T)
 
     def curvature(self, change: FloatArray) -> FloatArray:
-        """Change of the gradient with that of the matrix, both N×N and symmetric."""
+        """Change of the gradient with a change of the matrix, both N×N and symmetric."""
         symmetric = (change + change.T) / 2
         changed_modes = symmetric @ self.modes
         # Between modes: zᵢᵀ δS zⱼ times the divided difference of p.

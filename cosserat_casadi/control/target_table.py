@@ -25,7 +25,7 @@ class TargetTable:
     """Targets of one section or body, one after the other.
 
     Attributes:
-        columns: of the file.
+        columns: names of the columns of the file.
         values: shape (rows, columns).
         lines: line of each row in the file.
         rows: the target of the scene at each row's pose.

@@ -36,7 +36,7 @@ class TargetMiss:
         angle: angle between the target's orientation and the actual one, rad; None where the orientation is free.
         position_error: estimated error of the discrete model that the distance was measured on, m; None where it was
             not estimated.
-        angle_error: likewise of the angle, rad.
+        angle_error: estimated error of the model that the angle was measured on, rad; None where it was not estimated.
     """
 
     what: str
@@ -57,7 +57,7 @@ class TargetMiss:
 
 
 def length_of(model: SystemFunctions, target: TargetRecord) -> float:
-    """Length that a target's distance is measured by, m: that of its rod, for a body or a tube that of the longest."""
+    """Length that a target's distance is measured by, m: its rod's length, for a body or a tube the longest length."""
     lengths = model.lengths
     rod = getattr(target, "rod", None)
     if rod is None:
@@ -68,7 +68,7 @@ def length_of(model: SystemFunctions, target: TargetRecord) -> float:
 class Target(Kind, ABC, Generic[RecordType]):
     """One kind of target. The methods take ``target``, the frozen record of the scene.
 
-    Models and solutions are those of rods; of concentric tubes where the target is for a tip.
+    Models and solutions are of rods, or of concentric tubes where the target is for a tip.
     """
 
     family = TARGETS
@@ -100,7 +100,7 @@ class Target(Kind, ABC, Generic[RecordType]):
         """Estimated error of a solution where the target is: position relative to the length of the rod, and rad.
 
         Returns:
-            None where it was not estimated; by default that of the shapes of all rods.
+            the error, by default of the shapes of all rods; None where it was not estimated.
         """
         error: float | None = solution.largest_error
         return error
@@ -118,7 +118,7 @@ class _OfFrame(Target[FrameType]):
     """Where one section of a rod, or one body, is to be."""
 
     def wanted(self, target: Any) -> FloatArray:
-        """Its position, and zeros for the orientation."""
+        """Position that the target asks for, and zeros for the orientation, shape (7,)."""
         return np.array([*target.position, 0.0, 0.0, 0.0, 0.0])
 
     def error(self, target: Any, model: SystemFunctions, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
@@ -132,13 +132,13 @@ class _OfFrame(Target[FrameType]):
         return TargetMiss(what, math.dist(position, target.position), None)
 
     def model_error(self, target: Any, solution: Equilibrium[Any]) -> float | None:
-        """That of the tips, of which a body is held; of a section in between that of the shapes."""
+        """Error of the shapes for a section in between; for tips and for bodies, which tips hold, error of the tips."""
         if target.rod is not None and target.at != 1.0:
             return solution.largest_error
         return solution.error_estimate
 
     def points(self, target: Any) -> Sequence[Sequence[float]]:
-        """Its position."""
+        """The position that the target asks for, as one point."""
         return [target.position]
 
     def _pose(self, target: Any, model: Any, x: Matrix, inputs: Matrix) -> list[Matrix]:
@@ -182,7 +182,7 @@ class PoseOfFrame(_OfFrame[scenes.PoseTarget]):
     record = scenes.PoseTarget
 
     def wanted(self, target: scenes.PoseTarget) -> FloatArray:
-        """Its position and quaternion."""
+        """Position and quaternion that the target asks for, shape (7,)."""
         return np.array([*target.position, *target.quaternion])
 
     def error(
@@ -232,7 +232,7 @@ class PointsAlongRod(Target[scenes.CurveTarget]):
         return TargetMiss(what, float(distances.max()), None)
 
     def points(self, target: scenes.CurveTarget) -> Sequence[Sequence[float]]:
-        """Its points."""
+        """The points that the target asks for."""
         return target.points
 
 

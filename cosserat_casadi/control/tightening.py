@@ -109,7 +109,7 @@ def tightened(
         optimum: solves the problem for given parameters of its stages, from its last optimum.
         stages: equilibria in the problem.
         near: an equilibrium of the scene at whose contacts there are sections from the beginning.
-        tolerance: of the difference and the errors of the equilibria; by default that of the scene.
+        tolerance: of the difference and the errors of the equilibria; by default the tolerance of the scene.
 
     Raises:
         SceneError: ``optimum`` returns other shapes, or numbers that are not finite.

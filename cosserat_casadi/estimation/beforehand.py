@@ -23,10 +23,10 @@ REACH = 2.0
 """Deviations of the prior up to which the discretisation is to serve."""
 
 DRAWS = 6
-"""Cases within that reach that it is chosen on."""
+"""Cases within that reach that the discretisation is chosen on."""
 
 SEED = 22
-"""Of these cases: the same scene gives the same discretisation."""
+"""Seed of the draw of these cases: the same scene gives the same discretisation."""
 
 
 def check_unknowns(scene: scenes.Scene) -> None:
@@ -138,7 +138,7 @@ def with_shared(known: Knowledge, shared: FloatArray) -> Knowledge:
 
     Args:
         known: knowledge of the row's unknowns.
-        shared: values of the others, shape (q,).
+        shared: values of the numbers that all rows share, shape (q,).
     """
     # The cost of their priors is counted once, not for each row.
     nothing = np.zeros_like(shared)

@@ -21,7 +21,7 @@ DOUBTED = 4.0
 """Deviations of a normal distribution beyond which chance is no explanation: 1 of 30 000 times on one side."""
 
 ROW_DOUBTED = 5.0
-"""The same for a single row: of a million rows none."""
+"""Deviations of a normal distribution beyond which a single row is doubted: of a million rows none by chance."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,10 @@ class Consistency:
 
     Attributes:
         squares: sum of the squares of all deviations from data and priors.
-        freedom: its expected value.
-        deviations: by how much it is larger, in standard deviations of a normal distribution.
-        row_deviations: the same of each row, shape (cases,); NaN where it was not found, or nothing is left over.
+        freedom: expected value of the sum.
+        deviations: by how much the sum is larger, in standard deviations of a normal distribution.
+        row_deviations: by how much the sum of each row is larger, in the same unit, shape (cases,); NaN where the row
+            was not found, or nothing is left over.
         bias: mean deviation of each sensor over the rows, in standard deviations of that mean, by its name; of sensors
             that were read in two rows at least, the largest deviation counted as the next largest.
     """

@@ -77,7 +77,7 @@ def estimate_model(
     cores: int | None = None,
     progress: StageProgress | None = None,
 ) -> Estimate:
-    """As :func:`estimate`, of a model on its modes and nodes."""
+    """Estimate as :func:`estimate` does, with a model on its modes and nodes."""
     report = progress or not_told
     check_unknowns(model.scene)
     model = with_unknown_parameters(model)
@@ -157,7 +157,7 @@ def _measured(cases: Sequence[Case]) -> list[tuple[int, int, float]]:
 
 
 def _beyond_obstacles(model: Model, found: Estimates, inputs: FloatArray) -> list[str]:
-    """Of each row BEHIND where it is behind a smooth obstacle or a rod, UNREACHED where it may be, else nothing.
+    """A word for each row: BEHIND where it is behind a smooth obstacle or a rod, UNREACHED where it may be, else "".
 
     Args:
         model: with its parameters free.

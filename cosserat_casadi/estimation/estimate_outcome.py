@@ -47,13 +47,13 @@ class Estimate(Result):
 
     Attributes:
         model: the model of the estimates.
-        cases: first row of each in words.
+        cases: first row of each case in words.
         labels: names of the unknown numbers.
-        units: of these.
+        units: units of the unknown numbers.
         outcomes: how each case ended: ``found``, or why not, see :data:`REASONS`.
         values: the maxima a posteriori, shape (cases, k); NaN where nothing was found.
-        covariance: shape (cases, k, k); likewise; the uncertainty of the shared numbers is in it. By draws it holds the
-            mean products of deviations from the values.
+        covariance: covariance of the values, shape (cases, k, k), NaN where nothing was found; the uncertainty of the
+            shared numbers is in it. By draws it holds the mean products of deviations from the values.
         cost: half the sum of squares in squared standard deviations, shape (cases,).
         numbers: how many were measured in each case, shape (cases,).
         x: the equilibria, shape (cases, size).

@@ -21,7 +21,7 @@ SAME = 0.1
 """Deviations within which two searches have found one minimum."""
 
 SEED = 16
-"""Of the order in which several unknown places are combined: the same scene gives the same starts."""
+"""Seed of the order in which several unknown places are combined: the same scene gives the same starts."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class SecondBest:
     Attributes:
         values: unknowns of the second-best minimum that the searches found, shape (cases, k); NaN where they found one
             alone.
-        cost: of it, shape (cases,); likewise.
-        share: of the posterior mass of all minima found, that of the best, shape (cases,); NaN where none was found.
+        cost: cost of the second-best minimum, shape (cases,); NaN where they found one alone.
+        share: share of the best minimum in the posterior mass of all minima, shape (cases,); NaN where none was found.
     """
 
     values: FloatArray
@@ -93,7 +93,7 @@ def _distance(one: Estimates, other: Estimates) -> FloatArray:
 
 
 def _log_mass(run: Estimates, rows: npt.NDArray[np.bool_], own: int) -> FloatArray:
-    """Logarithm of the posterior mass around the minima of some rows, but for a constant: that of Laplace."""
+    """Logarithm of the posterior mass around the minima of some rows, but for a constant, by Laplace's method."""
     _, log_determinant = np.linalg.slogdet(run.information[rows, :own, :own])
     mass: FloatArray = -run.cost[rows] - log_determinant / 2.0
     return mass

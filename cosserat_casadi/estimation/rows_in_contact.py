@@ -29,11 +29,11 @@ class _State:
 
     Attributes:
         shared: the numbers, shape (k,).
-        own: none, shape (1, 0).
+        own: no numbers of a block, shape (1, 0).
         case: the equilibrium.
         residual: differences in standard deviations, shape (rows,).
-        by_numbers: their derivatives, shape (rows, k).
-        z_by_numbers: those of the solution in contact, shape (len(z), k).
+        by_numbers: derivatives of the residual with the numbers, shape (rows, k).
+        z_by_numbers: derivatives of the solution in contact with the numbers, shape (len(z), k).
     """
 
     shared: FloatArray
@@ -49,7 +49,7 @@ class _Row:
     """One row as a problem of least squares.
 
     Attributes:
-        solver: of all rows.
+        solver: the solver of all rows.
         table: the row alone.
     """
 
@@ -58,7 +58,7 @@ class _Row:
 
     @property
     def offsets(self) -> npt.NDArray[np.int64]:
-        """One block of residuals."""
+        """Where the rows of the one block of residuals begin and end, shape (2,)."""
         return np.array([0, self.table.weights.size])
 
     def inputs_and_parameters(self, numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -141,8 +141,8 @@ class RowsInContact:
         Args:
             cases: all rows.
             numbers: their estimates, shape (cases, k); NaN where there is none.
-            covariance: of the first j of them, the others held, shape (cases, j, j).
-            known: of these j numbers, which do not go beyond their bounds.
+            covariance: covariance of the first j numbers, the rest held, shape (cases, j, j).
+            known: knowledge of these j numbers, which do not go beyond their bounds.
         """
         changes = {}
         for i in np.flatnonzero(np.isfinite(numbers).all(axis=1) & np.isfinite(covariance).all(axis=(1, 2))).tolist():

@@ -48,9 +48,9 @@ class CaseInContact:
     """The equilibrium of one case.
 
     Attributes:
-        equations: of its contacts, at its inputs and parameters.
+        equations: equations of the case with its contacts, at its inputs and parameters.
         z: their solution.
-        found: the same with elements that end at the contacts.
+        found: the equilibrium with elements that end at the contacts.
     """
 
     equations: ContactEquations
@@ -145,7 +145,7 @@ class ContactEquilibria(Equilibria):
         return PointInContact.of(cases, wanted, p), reasons
 
     def at_point(self, point: Point) -> Point:
-        """The same equilibria: each knows its derivatives."""
+        """The equilibria as they are: each knows its derivatives."""
         return point
 
     def tracked(
@@ -164,7 +164,7 @@ class ContactEquilibria(Equilibria):
     def sensitivities(
         self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of z with shared unknowns and those of the case while contacts stay, zeros behind them."""
+        """Derivatives of z with shared unknowns and with the case's own while contacts stay, zeros behind them."""
         assert isinstance(point, PointInContact)
         shared = inputs_by_shared.shape[1]
         own = inputs_by_own.shape[2]
@@ -288,7 +288,7 @@ class ContactMisfit(Misfit):
         return sentences
 
     def kinked(self, state: MisfitState, other: MisfitState) -> Flags:
-        """Cases with other contacts in one state than in the other, shape (cases,)."""
+        """Whether a case has other contacts in one state than in another, shape (cases,)."""
         pairs = zip(_settled(state.point), _settled(other.point), strict=True)
         return np.array([case.touches_otherwise(beside) for case, beside in pairs])
 

@@ -189,16 +189,16 @@ class Equilibria:
         return inverses
 
     def at_point(self, point: Point) -> Point:
-        """The same equilibria with Jacobians that are of them."""
+        """The equilibria with inverse Jacobians that are computed at them."""
         return Point(point.x, point.inputs, point.p, self._inverses(point.x, point.inputs, point.p))
 
     def sensitivities(
         self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the equilibria with shared unknowns, and with those of the case.
+        """Derivatives of the equilibria with shared unknowns, and with unknowns of the case.
 
         Args:
-            point: the equilibria, with Jacobians that are of them.
+            point: the equilibria, with Jacobians that are computed at them.
             p_by_shared: derivatives of the parameters with the n shared unknowns, shape (parameters, n).
             inputs_by_shared: of the inputs, shape (inputs, n).
             inputs_by_own: of the inputs of each case with its k unknowns, shape (cases, inputs, k).
@@ -334,7 +334,7 @@ def split(columns: ca.DM, cases: int) -> FloatArray:
 
 
 def _relative(residual: FloatArray, x: FloatArray) -> FloatArray:
-    """Norms of the residuals over one plus those of the unknowns, shape (cases,); infinite where not finite."""
+    """Norms of the residuals over one plus norms of the unknowns, shape (cases,); infinite where not finite."""
     with np.errstate(over="ignore", invalid="ignore"):
         norms = np.linalg.norm(residual, axis=1) / (1 + np.linalg.norm(x, axis=1))
     return np.where(np.isfinite(norms), norms, np.inf)

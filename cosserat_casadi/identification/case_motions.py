@@ -45,10 +45,10 @@ Flags = npt.NDArray[np.bool_]
 
 
 class StartInputs:
-    """The inputs at the start of a motion: those of a case where nothing moves them.
+    """The inputs at the start of a motion: a case's inputs where nothing moves them.
 
     Attributes:
-        held: which inputs have no table over time, so that those of the case count, shape (inputs,).
+        held: which inputs have no table over time, so that the values of the case count, shape (inputs,).
     """
 
     def __init__(self, model: AnyModel) -> None:
@@ -250,7 +250,7 @@ class Motions:
         ]
 
     def _linearised(self, count: int, numbers: int) -> ca.Function:
-        """(x, v, a, inputs, their rates and accelerations, p, its derivatives, those of the inputs) ↦ derivatives of F.
+        """(x, v, a, inputs, their rates and accelerations, p, p by numbers, inputs by numbers) ↦ derivatives of F.
 
         With x, v, a, and with the numbers that inputs and parameters depend on; for so many instants side by side.
         """
@@ -301,8 +301,8 @@ def _stage_response(
         method: the collocation method.
         differential: which entries have accelerations, shape (n,).
         stiffness: ∂F/∂x at each stage, shape (s, n, n).
-        damping: ∂F/∂v, likewise.
-        mass: ∂F/∂a, likewise.
+        damping: ∂F/∂v at each stage, shape (s, n, n).
+        mass: ∂F/∂a at each stage, shape (s, n, n).
         change: of F with the numbers themselves, by inputs and parameters, shape (s, n, m).
 
     Returns:

@@ -1,4 +1,4 @@
-"""From the end of a search to its statistics, remarks and warnings."""
+"""Statistics, remarks and warnings from the end of a search."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def _after(task: str, report: Report) -> Report:
 
 
 def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray, report: Report) -> list[Discretisation]:
-    """One for the equilibria of some rows of inputs, shape (cases, size); none where none has an equilibrium."""
+    """Discretisations for rows of inputs, shape (cases, size): one, or none where no row has an equilibrium."""
     if not len(inputs):
         return []
     cases = [LoadCase(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]

@@ -27,7 +27,7 @@ from cosserat_casadi.numerics.robust_loss import Loss
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 SEED = 16
-"""Of the cases that are held out, and of the random starts."""
+"""Seed of the draw of cases that are held out, and of the random starts."""
 
 DECADES = 10.0
 """Ratio of the bounds from which on starts are spread over their logarithm."""
@@ -192,7 +192,7 @@ class Task:
         return ArrowFit(misfit, limits, self.layout.own_limits, self.loss, kinked=misfit.kinked)
 
     def _best(self, misfit: Misfit, first: MisfitState) -> tuple[Fit[MisfitState], int]:
-        """The best fit of all starts, and how many of them ended there."""
+        """The best fit of all starts, and how many starts ended there."""
         arrow_fit = self._arrow_fit(misfit)
         misfit.jacobians(first)
         fits = []

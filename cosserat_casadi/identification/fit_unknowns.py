@@ -78,10 +78,10 @@ class UnknownEntry:
         return np.zeros(3) if self.turns else self.start.copy()
 
     def limits(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Least and largest values, expected ones, and one over the deviation of these; each of shape (n,).
+        """Least values, largest values, expected values and reciprocals of their deviations; each of shape (n,).
 
         Raises:
-            SceneError: the scene gives another number of them.
+            SceneError: the scene gives another number of values.
         """
         record = self.record
         lower = self._spread("lower", record.lower, -np.inf)
@@ -109,7 +109,7 @@ class UnknownLayout:
 
     Attributes:
         shared: unknowns that all cases share.
-        own: those of each case.
+        own: unknowns of each case.
         p: the scene's parameters, shape (size of the parameters,).
     """
 
@@ -138,7 +138,7 @@ class UnknownLayout:
         return _limits(self.own)
 
     def start(self, cases: int) -> tuple[FloatArray, FloatArray]:
-        """The scene's values, brought into the bounds: shared ones, (n,), and those of each case, (cases, k)."""
+        """The scene's values, brought into the bounds: shared numbers, (n,), and numbers of each case, (cases, k)."""
         shared = np.concatenate([np.zeros(0), *(entry.start_numbers for entry in self.shared)])
         own = np.concatenate([np.zeros(0), *(entry.start_numbers for entry in self.own)])
         return self.shared_limits.clipped(shared), np.tile(self.own_limits.clipped(own), (cases, 1))
@@ -168,8 +168,8 @@ class UnknownLayout:
 
         Args:
             shared: shared numbers, shape (n,).
-            own: those of each case, shape (cases, k).
-            measured: inputs that columns set, and the scene's values of others, shape as the result.
+            own: numbers of each case, shape (cases, k).
+            measured: inputs that columns set, and the scene's values of other inputs, shape as the result.
         """
         inputs = measured.copy()
         for entry, found in parts(self.shared, shared):
@@ -209,7 +209,7 @@ class UnknownLayout:
 
 
 def parts(entries: Sequence[UnknownEntry], stacked: FloatArray) -> list[tuple[UnknownEntry, FloatArray]]:
-    """Unknowns with their numbers out of all of them."""
+    """Unknowns, each with its numbers out of the stacked numbers of all."""
     ends = np.cumsum([entry.size for entry in entries]).tolist()
     return [(entry, stacked[end - entry.size : end]) for entry, end in zip(entries, ends, strict=True)]
 

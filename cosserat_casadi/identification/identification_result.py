@@ -99,10 +99,10 @@ class Identification(Result):
     """The end of an identification.
 
     Attributes:
-        model: that was fitted, with its parameters.
+        model: the fitted model, with its parameters.
         layout: the unknowns.
         shared: numbers found that all cases share, shape (n,), in the order of ``layout.shared_labels``.
-        own: those of each case, shape (cases, k).
+        own: numbers found for each case, shape (cases, k).
         statistics: how well the shared unknowns are known.
         converged: whether they are the least misfit and determined by data and priors.
         outcome: how it ended, in a word.
@@ -119,12 +119,12 @@ class Identification(Result):
         at_bounds: names of the numbers that are at a bound.
         warnings: sentences on what looks wrong.
         starts: how many starts there were, and how many ended here.
-        step: of the motions that were measured, s; None where nothing was measured over time.
-        step_error: largest error that these steps leave in a residual, in standard deviations; None likewise.
+        step: step of the motions that were measured, s; None where nothing was measured over time.
+        step_error: largest error that these steps leave in a residual, in standard deviations; None without steps.
         error_estimate: largest estimated error that modes and nodes leave in the equilibria that were measured, as of a
-            solution: distance over the length, angle in rad, 1 where it is not known; None where there are none.
-        error_case: the case in which it is largest; None likewise.
-        equilibria: of the cases with their contacts, where contact is exact.
+            solution: distance over the length, angle in rad, 1 where it is not known; None without equilibria.
+        error_case: the case in which that error is largest; None without equilibria.
+        equilibria: equilibria of the cases with their contacts, where contact is exact.
     """
 
     model: AnyModel
@@ -224,14 +224,14 @@ class Identification(Result):
 
     @property
     def ended_early(self) -> bool:
-        """Whether the search ended before the misfit was least: its numbers are better than those of the start."""
+        """Whether the search ended before the misfit was least: its numbers are better than the start's."""
         return self.outcome in EARLY
 
     def fitted_scene(self, scene: Scene | None = None, *, early: bool = False) -> Scene:
         """The scene with its identified numbers; unknowns of single cases keep the scene's values.
 
         Args:
-            scene: the scene that was identified; by default that of the model, with its inputs and parameters.
+            scene: the scene that was identified; by default the model's, with its inputs and parameters.
             early: whether numbers of a search that ended early will do.
 
         Raises:

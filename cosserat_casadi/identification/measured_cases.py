@@ -1,4 +1,4 @@
-"""From tables to cases: the measurements of each equilibrium, or of each motion.
+"""Cases from tables: the measurements of each equilibrium, or of each motion.
 
 A case is one equilibrium. Each row of one file is a case; measurements of the same file share them. Rows whose inputs
 are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column ``case`` joins

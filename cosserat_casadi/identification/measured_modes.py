@@ -40,10 +40,10 @@ class ModeCluster:
     """Modes that have one eigenvalue.
 
     Attributes:
-        value: λ, the mean of theirs, 1/s.
-        first: index of the first of them among the oscillating modes, from 1 on.
-        right: their vectors z in all unknowns, one a column, shape (size, r).
-        left: vectors l of the same size, one a row, with l (2λ M + C) z = 1, shape (r, size).
+        value: λ, the mean of the eigenvalues of these modes, 1/s.
+        first: index of the first of these modes among the oscillating modes, from 1 on.
+        right: vectors z of the modes in all unknowns, one a column, shape (size, r).
+        left: vectors l of the modes, one a row, with l (2λ M + C) z = 1, shape (r, size).
     """
 
     value: complex
@@ -58,7 +58,7 @@ class ModeCluster:
 
     @property
     def numbers(self) -> range:
-        """Their indices among the oscillating modes, from 1 on."""
+        """Indices of these modes among the oscillating modes, from 1 on."""
         return range(self.first, self.first + self.count)
 
 
@@ -159,12 +159,12 @@ class Vibrations:
 
 
 def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> ModeCluster:
-    """The modes that have the eigenvalue of one of them.
+    """The modes that have the eigenvalue of a given mode.
 
     Args:
         motions: the equations.
         swinging: eigenvalues with positive imaginary part, by size.
-        index: of the one.
+        index: index of the given mode.
     """
     alike = np.abs(swinging - swinging[index]) <= ONE_FREQUENCY * abs(swinging[index])
     chosen = np.flatnonzero(alike)
@@ -301,7 +301,7 @@ def check_vibrations(model: Model) -> None:
     """Refuse measured vibrations of rods without mass.
 
     Raises:
-        SceneError: a measurement of them is of a scene in which a rod has none.
+        SceneError: a vibration is measured of a scene in which a rod has no mass.
     """
     if any(isinstance(record, ModeMeasurement) for record in model.scene.measurements):
         refuse(immovable(model.at()))

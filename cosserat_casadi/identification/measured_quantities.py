@@ -108,7 +108,7 @@ class MeasurementSite:
 
 @dataclass(frozen=True)
 class TubeSite(MeasurementSite):
-    """The same of concentric tubes.
+    """Where a quantity of concentric tubes is measured.
 
     Attributes:
         section: unknowns, inputs and abscissa ↦ position and quaternion.
@@ -262,7 +262,7 @@ class ClampWrench(StateQuantity[MeasuredBaseWrench]):
 @final
 @register
 class FibreStrain(StateQuantity[MeasuredStrain]):
-    """Stretch of a fibre |Γ + K × r| over that of the unloaded rod, less one."""
+    """Stretch of a fibre |Γ + K × r| over its stretch in the unloaded rod, less one."""
 
     record = MeasuredStrain
 

@@ -112,7 +112,7 @@ def measured_numbers(
 
 
 def by_instant(rows: Sequence[tuple[int, list[Datum]]]) -> list[tuple[int, list[Datum]]]:
-    """Rows of cases as rows of instants: those of one time, or of one equilibrium, stand together."""
+    """Rows of cases as rows of instants: rows of one time, or of one equilibrium, stand together."""
     instants: dict[tuple[int, float | None], list[Datum]] = {}
     for case, data in rows:
         for datum in data:

@@ -34,13 +34,13 @@ class MisfitState:
 
     Attributes:
         shared: shared unknowns, shape (n,).
-        own: those of each case, shape (cases, k).
+        own: unknowns of each case, shape (cases, k).
         point: the equilibria.
         residual: differences in standard deviations, case after case, shape (m,); NaN of modes that do not swing, and
             of motions that could not be computed.
-        runs: motions of the cases that were measured over time, by their number; None of those without.
-        sensitivities: derivatives of the equilibria with the shared unknowns and with those of the case, (cases, size,
-            n) and (cases, size, k); None until they are asked for.
+        runs: motions of the cases that were measured over time, by the number of the case; None where there is none.
+        sensitivities: derivatives of the equilibria with the shared unknowns, (cases, size, n), and with the unknowns
+            of the case, (cases, size, k); None until they are asked for.
     """
 
     shared: FloatArray
@@ -102,7 +102,7 @@ class Misfit:
         return self.first(point, shared, own)
 
     def moved(self, shared: FloatArray, own: FloatArray, near: MisfitState, *, far: bool = True) -> tuple[Point, Flags]:
-        """The equilibria at other unknowns, and which of them could be reached; far as in `Equilibria.tracked`."""
+        """Equilibria at other unknowns, and which cases could be reached; far as in `Equilibria.tracked`."""
         of_cases = self.layout.inputs(shared, own, self.measured_inputs)
         inputs = self.motions.start.of(of_cases, self.moves)
         p = self.layout.parameters(shared)
@@ -114,7 +114,7 @@ class Misfit:
         return self.equilibria.tracked(near.point, predicted, inputs, p, far=far)
 
     def jacobians(self, state: MisfitState) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the residual with the shared unknowns, (m, n), and with those of the row's case, (m, k)."""
+        """Derivatives of the residual with the shared unknowns, (m, n), and with unknowns of the row's case, (m, k)."""
         state.point = self.equilibria.at_point(state.point)
         inputs = state.point.inputs.shape[1]
         p_by_shared, inputs_by_shared = self.layout.by_shared(state.shared, inputs)
@@ -134,7 +134,7 @@ class Misfit:
     def _rates(
         self, state: MisfitState, x_by_all: FloatArray, inputs_by_all: FloatArray, p_by_all: FloatArray
     ) -> FloatArray:
-        """Derivatives of the residual with all unknowns that a row sees, from those of unknowns, inputs, parameters."""
+        """Derivatives of the residual with all unknowns that a row sees, from those of x, inputs and parameters."""
         moved = {
             case: self.motions.sensitivity(run, x_by_all[case], inputs_by_all[case], p_by_all)
             for case, run in state.runs.items()
@@ -285,8 +285,8 @@ def without_rounding(
 
     Args:
         shared: derivatives with the shared unknowns, shape (m, n).
-        own: derivatives with those of the row's case, shape (m, k).
-        sizes: of the shared unknowns, shape (n,), and of the unknowns of the cases, shape (k,).
+        own: derivatives with the unknowns of the row's case, shape (m, k).
+        sizes: sizes of the shared unknowns, shape (n,), and of the unknowns of the cases, shape (k,).
     """
     norms = [np.linalg.norm(columns, axis=0) * size for columns, size in zip((shared, own), sizes, strict=True)]
     least = ROUNDING * np.concatenate(norms).max(initial=0.0)

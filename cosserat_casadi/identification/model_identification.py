@@ -43,7 +43,7 @@ def identify_model(
     report: Report | None = None,
     progress: Progress | None = None,
 ) -> Identification:
-    """As :func:`identify`, of a model on its modes and nodes."""
+    """Identify as :func:`identify` does, with a model on its modes and nodes."""
     refuse_row_parameters(model.scene)
     scene = model.scene
     options = scene.identification
@@ -77,17 +77,17 @@ def identify(
 ) -> Identification:
     """Identify the unknowns of a scene, or of a model, from measurements.
 
-    A model keeps its modes and nodes, or its steps. Those of a scene meet its tolerance. They are chosen on the cases
+    A model keeps its modes and nodes, or its steps. For a scene they are chosen to meet its tolerance, on the cases
     that lie farthest apart: at the scene's own numbers, and again at the identified numbers, which may bend the rods
-    otherwise. Where that asks for others, the search is made on them. Where the scene writes no tolerance and poses
-    alone were measured, a tenth of the least of their deviations is enough.
+    otherwise. Where these ask for more modes or steps, the search is made on them. Where the scene writes no tolerance
+    and poses alone were measured, a tenth of the least of their deviations is enough.
 
     Args:
         subject: a scene with measurements and unknowns; or a model in which these are parameters and inputs:
             ``build(scene.with_unknowns())``.
         data: columns by measurement, by its name or its file, that stand for the file.
-        hold_out: share of the cases that is not fitted but predicted; by default that of the scene.
-        starts: places from which the search begins; by default that of the scene.
+        hold_out: share of the cases that is not fitted but predicted; by default the scene's.
+        starts: number of places from which the search begins; by default the scene's.
         report: called with the work under way.
         progress: told the steps of the search.
 
@@ -172,7 +172,7 @@ def check_measured_in_contact(scene: scenes.Scene) -> None:
 
 
 def _split(cases: Sequence[Case], share: float) -> tuple[list[Case], list[Case]]:
-    """Cases that are fitted, and held-out cases: the ones that rows name, and a share of the others."""
+    """Fitted cases, and held-out cases: the cases that rows name, and a share of the rest."""
     if not 0.0 <= share < 1.0:
         raise SceneError(Problem("--hold-out", f"must be >= 0 and < 1, got {share:g}"))
     others = [i for i, case in enumerate(cases) if not case.held_out]
@@ -252,7 +252,7 @@ def _error(model: AnyModel, inputs: FloatArray, x: FloatArray) -> float:
 
 
 def _error_in_contact(solution: Solution) -> float:
-    """The same of an equilibrium in exact contact; what the search for contacts does not find has an unknown one."""
+    """The estimated error of an equilibrium in exact contact; UNKNOWN where the search for contacts finds none."""
     if not solution.converged:
         return UNKNOWN
     judged = estimated_in_contact(solution)

@@ -97,7 +97,7 @@ def statistics(
     Args:
         arrow: the misfit there, linear in the unknowns.
         labels: names of the shared unknowns.
-        scales: sizes that changes are compared with: of shared unknowns, shape (n,), and of those of each case, (k,).
+        scales: sizes that changes are compared with: of shared unknowns, shape (n,), and of a case's unknowns, (k,).
         freedom: data more than unknowns.
         squares: sum of the squares of the residuals, or what stands for it under a robust loss.
         noise_from: what the noise of the data follows from.
@@ -182,7 +182,7 @@ class _Directions:
 def _with_noise(covariance: FloatArray, prior: FloatArray, noise: float) -> FloatArray:
     """Covariance where data, but not priors, deviate by a factor more than the fit has counted on.
 
-    With the information A = D + P of data and priors, that of the estimate is A⁻¹ (noise² D + P) A⁻¹.
+    With the information A = D + P of data and priors, the covariance is A⁻¹ (noise² D + P) A⁻¹.
 
     Args:
         covariance: A⁻¹, NaN for unknowns that are not seen, shape (n, n).

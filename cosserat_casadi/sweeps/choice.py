@@ -36,10 +36,10 @@ class Choice:
     """A discretisation for all rows.
 
     Attributes:
-        discretisation: of all rods; None where the scene fixes it itself.
-        rows: rows of the table that it was chosen on.
-        converged: how many of them have an equilibrium on it.
-        error_estimate: the largest of them on this discretisation; None where the scene chose, or none converged.
+        discretisation: discretisation of all rods; None where the scene fixes it itself.
+        rows: rows of the table that the discretisation was chosen on.
+        converged: how many of these rows have an equilibrium on it.
+        error_estimate: largest estimated error of these rows on it; None where the scene chose, or no row converged.
     """
 
     discretisation: Discretisation | None

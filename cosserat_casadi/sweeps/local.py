@@ -19,7 +19,7 @@ AHEAD = 4
 
 
 class Cores(AbstractContextManager["Cores"]):
-    """So many chunks at once; results come as they are ready.
+    """Cores of this machine, each with a chunk at a time; results come as they are ready.
 
     Raises:
         SceneError: there is no core to work.

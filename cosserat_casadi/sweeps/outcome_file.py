@@ -41,14 +41,14 @@ BLOCK = 4096
 """Rows that are written at once."""
 
 ROW_GROUP = 65_536
-"""The same of Parquet, whose readers skip or share out such groups of rows."""
+"""Rows that are written to Parquet at once: its readers skip or share out such groups of rows."""
 
 PART_ROWS = 16 * ROW_GROUP
 """Rows of each file of a dataset: some 100 MB."""
 
 
 _Read = tuple[list[str], npt.NDArray[np.int64], FloatArray]
-"""Of a file of results its columns, the outcomes as places in LABELS, and the numbers of all other columns."""
+"""Columns of a file of results, its outcomes as places in LABELS, and the numbers of all other columns."""
 
 
 class ParquetUnavailableError(CosseratError):

@@ -39,7 +39,8 @@ class RowModel:
     Attributes:
         scene: text of the scene.
         stability: whether rows end with the stability of their equilibria.
-        measure: text of the scene that eigenvalues are counted in: that of the sweep as it stands. Empty for this one.
+        measure: text of the scene that eigenvalues are counted in: the scene of the sweep as it stands. Empty where
+            that is ``scene``.
         estimate_errors: whether rows tell their estimated error.
     """
 
@@ -82,7 +83,7 @@ class RowModel:
             yield solution
 
     def _counted_in_measure(self, solution: Solution | TubeSolution) -> Solution | TubeSolution:
-        """The same equilibrium with the unknowns that it has under the scaling of the measure."""
+        """This equilibrium with the unknowns that it has under the scaling of the measure."""
         if isinstance(solution, TubeSolution):
             return solution
         if not self.measure or not solution.converged:
@@ -184,7 +185,7 @@ def _in_units_of(measure: Scene, solution: Solution) -> Solution:
 
 @lru_cache(maxsize=2)
 def _measured(scene: str, measure: str) -> Model | None:
-    """As :func:`_scaled`, of scenes as texts."""
+    """The model of a scene under the scaling of another, both as texts; None where :func:`_scaled` gives none."""
     return _scaled(parse_scene(scene), _model(measure))
 
 

@@ -219,7 +219,7 @@ def sweep(
         output: file to write, ``.csv`` or ``.parquet``, or folder of Parquet files, ``.dataset``, with a record of what
             was computed beside it. What a killed or interrupted run of the same sweep has done is not done again.
         scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
-        cores: how many of them, at least 1; all by default.
+        cores: how many cores work, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
             units of EI/ℓ of the scene as it stands, and ``stable``, 1 or 0; NaN where the loads of a row have no
@@ -447,7 +447,7 @@ def _machine(scheduler: str | None, cores: int | None, device: str | None) -> Co
 def _begun(
     plan: Plan, work: Sequence[Chunk], store: Store, progress: StageProgress, choice: Choice | None = None
 ) -> Choice:
-    """The discretisation of a sweep whose store is ready for more; that of a new one is chosen now, unless given."""
+    """Ready a store for more, and return the sweep's discretisation; a new sweep chooses it now, if none is given."""
     head = store.head()
     if head is not None:
         rows = {chunk.number: len(chunk.rows) for chunk in work}
@@ -566,13 +566,13 @@ def _sweep(
     answered: Iterable[tuple[int, FloatArray]],
     progress: StageProgress,
 ) -> Sweep:
-    """All results in the order of the table, some of them checked.
+    """All results in the order of the table, some results checked.
 
     Args:
-        plan: of the sweep.
+        plan: the plan of the sweep.
         choice: its discretisation.
         work: its chunks.
-        answered: for each of them its number and its results, in any order.
+        answered: for each chunk its number and its results, in any order.
         progress: told the work under way.
     """
     swept = len(plan.table.columns)

@@ -1,4 +1,4 @@
-"""Which rows of a table stand for all of them: those nearest to its corners, and some at random."""
+"""Which rows of a table stand for all its rows: the rows nearest to its corners, and some at random."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweeps.scratch import MEMORY, Scratch
 
 SEED = 20
-"""Of the random rows: the same table gives the same sample."""
+"""Seed of the draw of random rows: the same table gives the same sample."""
 
 MOST_CORNERS = 3
 """Columns up to which every corner of the box of a table is looked for."""
@@ -21,8 +21,8 @@ def representative_rows(values: FloatArray, count: int, scratch: Scratch = MEMOR
     """Rows that a discretisation is chosen on, ascending.
 
     Args:
-        values: of the table, shape (rows, columns).
-        count: rows wanted; two thirds may be corners, the others are drawn at random.
+        values: values of the table, shape (rows, columns).
+        count: rows wanted; two thirds may be corners, the rest are drawn at random.
         scratch: where the values lie.
     """
     rng = np.random.default_rng(SEED)

@@ -30,7 +30,7 @@ AT_ONCE = 50
 """Bootstrap estimates that are made together: their weights take memory."""
 
 SEED = 21
-"""Of the bootstrap: the same sweep gives the same intervals."""
+"""Seed of the bootstrap: the same sweep gives the same intervals."""
 
 CONSTANT = 1e-9
 """Standard deviation below this share of the largest value says that a result is constant but for rounding."""
@@ -41,12 +41,12 @@ class Estimates:
     """Sobol indices of one result.
 
     Attributes:
-        mean: of the result.
-        variance: of the result.
+        mean: mean of the result.
+        variance: variance of the result.
         first: first-order index of each column, shape (columns,); NaN where the result does not vary.
-        total: total index of each column, likewise.
+        total: total index of each column, shape (columns,); NaN where the result does not vary.
         first_interval: bounds of the first-order indices, shape (columns, 2).
-        total_interval: bounds of the total indices, likewise.
+        total_interval: bounds of the total indices, shape (columns, 2).
     """
 
     mean: float
@@ -124,8 +124,8 @@ def estimates(first_draw: FloatArray, second_draw: FloatArray, mixed: FloatArray
 
     Args:
         first_draw: the result for A, shape (samples,).
-        second_draw: for B, likewise.
-        mixed: for A with column i of B, shape (columns, samples).
+        second_draw: the result for B, shape (samples,).
+        mixed: the result for A with column i of B, shape (columns, samples).
         smallest: standard deviation up to which the result counts as constant.
     """
     pooled = np.concatenate([first_draw, second_draw])

@@ -71,7 +71,7 @@ class Store(AbstractContextManager["Store"]):
         self.path = path
         self._file: FileIO | None = None
         self._places: dict[int, tuple[int, int, int]] = {}
-        """By the number of a chunk where its entry begins, the rows of its results, and their bytes."""
+        """Place of each chunk's entry, by the number of the chunk: where it begins, rows of its results, and bytes."""
 
     @property
     def done(self) -> Collection[int]:

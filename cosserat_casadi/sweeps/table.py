@@ -168,7 +168,7 @@ def _blocks(
 
 
 def table_of(columns: Mapping[str, npt.ArrayLike], scratch: Scratch = MEMORY) -> Table:
-    """The rows of arrays by column; a single number is that of every row.
+    """The rows of arrays by column; a single number counts for every row.
 
     Args:
         columns: the arrays.

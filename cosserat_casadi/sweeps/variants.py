@@ -98,8 +98,8 @@ class Variants:
     def with_potential(self, chosen: Iterable[int], scratch: Scratch) -> npt.NDArray[np.bool_]:
         """Which rows have loads with a potential, so that the stability of an equilibrium has a meaning, shape (rows,).
 
-        Whether they have depends on which inputs and parameters are zero, and on nothing else of them: one row of each
-        pattern is asked about.
+        This depends on which inputs and parameters are zero, and on nothing else: one row of each pattern of zeros is
+        asked about.
 
         Args:
             chosen: numbers of the scenes whose rows are asked about; rows of others count as having one.
@@ -248,7 +248,7 @@ def _may_be_input(tables: Mapping[str, Any], name: str) -> bool:
 
 
 def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Problem]:
-    """Names of inputs and parameters that set one thing: one of them would count for nothing."""
+    """Names of inputs and parameters that set one thing: one name would count for nothing."""
     tables = scene_tables(scene)
     paths: dict[str, tuple[str | int, ...]] = {}
     for name in names:

@@ -85,8 +85,8 @@ class Chunk:
     Attributes:
         number: counted from 0.
         pieces: for each scene the chunk has rows of, its index among the variants and its rows in the table.
-        compiled: whether threads of this process solve them, by a compiled library.
-        in_contact: whether one compiled library solves most of them, and Python the others.
+        compiled: whether threads of this process solve the rows, by a compiled library.
+        in_contact: whether one compiled library solves most rows, and Python the rest.
     """
 
     number: int

@@ -37,24 +37,24 @@ class Directions:
 
     @property
     def translations(self) -> slice:
-        """Which of them are translations."""
+        """Directions that are translations."""
         return slice(self.unknowns, self.unknowns + self.robot.size)
 
     @property
     def parameters(self) -> slice:
-        """Which of them are parameters."""
+        """Directions that are parameters."""
         first = self.unknowns + len(self._moving)
         return slice(first, first + self.robot.parameters.size)
 
     @property
     def stretching(self) -> list[int]:
-        """Which of them change the lengths of pieces: translations and parameters."""
+        """Directions that change the lengths of pieces: translations and parameters."""
         every = list(range(self.count))
         return [*every[self.translations], *every[self.parameters]]
 
     @cached_property
     def _moving(self) -> list[int]:
-        """Inputs that are no rotations: those have an effect at the drives alone."""
+        """Inputs that are no rotations: rotations have an effect at the drives alone."""
         size = self.robot.size
         return [*range(1, 2 * size, 2), *range(2 * size, self.robot.inputs.size)]
 
@@ -77,7 +77,7 @@ class Directions:
         return [self.of_inputs, self._among(ca.DM.eye(self.robot.parameters.size), self.parameters)]
 
     def _among(self, columns: ca.DM, place: slice) -> ca.DM:
-        """Columns at their place among those of all directions."""
+        """Columns of some directions at their place among columns of all directions."""
         among = ca.DM(columns.size1(), self.count)
         among[:, place] = columns
         return among
@@ -103,8 +103,8 @@ def with_changes(function: ca.Function, directions: Directions, fixed: Mapping[i
     Args:
         function: of column vectors, with results that are columns.
         directions: in which it changes.
-        fixed: changes of arguments by index that are the same always, a column for each direction. Those of the other
-            arguments are arguments behind them, in their order.
+        fixed: changes of arguments by index that are always the same, a column for each direction. Changes of the other
+            arguments are arguments behind these, in their order.
     """
     symbols = [ca.SX.sym(function.name_in(index), function.size1_in(index)) for index in range(function.n_in())]
     changes: list[Matrix] = []

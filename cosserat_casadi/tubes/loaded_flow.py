@@ -29,7 +29,7 @@ from cosserat_casadi.tubes.stages import Staged, composed
 from cosserat_casadi.tubes.tube_flow import Bending, FlowState
 
 TANGENT = ca.DM([0, 0, 1])
-"""Of the centre line, in the axes of the frame."""
+"""Tangent of the centre line, in the axes of the frame, 3×1."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
 
 @cache
 def loaded_stages(size: int, *, spread: bool, potential: bool) -> Staged:
-    """A step of a number of tubes that bear loads, in its stages; arguments are those of `loaded_step`."""
+    """A step of a number of tubes that bear loads, in its stages; it has the arguments of `loaded_step`."""
     state = ca.SX.sym("state", 2 * size + 12)
     before = ca.SX.sym("before")
     length = ca.SX.sym("length")

@@ -56,7 +56,7 @@ class LoadedTubeModel(TubeFunctions):
 
     @cached_property
     def without_loads(self) -> TubeModel:
-        """The same tubes with as many steps, without loads; of the inputs those of the loads have no effect."""
+        """The model of these tubes with as many steps, without loads; inputs of the loads have no effect."""
         return TubeModel(self.robot, self.steps)
 
     def begin(self, angles: FloatArray, inputs: FloatArray) -> FloatArray:
@@ -180,7 +180,7 @@ class LoadedTubeModel(TubeFunctions):
 
     @cached_property
     def _point_ranks(self) -> dict[int, ca.MX]:
-        """At which of the sorted places each of them acts."""
+        """Index, among the sorted places, of the place where each load beside the tips acts, by the load's number."""
         first = 2 * self.tube_count
         return {number: self._rank(first + index) for index, number in enumerate(self._point_loads)}
 
@@ -287,7 +287,7 @@ class LoadedTubeModel(TubeFunctions):
 def _with_load(
     load: TubeLoad, value: ca.MX, tube: int, tip: ca.MX, state: LoadedState, forces: _Forces
 ) -> tuple[LoadedState, _Forces]:
-    """The state at a tube's tip, and the forces, with those of one load.
+    """The state at a tube's tip, and the forces, with one load added.
 
     Args:
         load: the load.

@@ -98,13 +98,13 @@ class LoadedTangent:
         return replace(self, torques=self.torques + length * gained, turn=self.turn + frame @ change_of_arc)
 
     def picked_up(self, load: TubeLoad, value: Matrix, tube: int, state: LoadedState) -> LoadedTangent:
-        """At a tube's tip, where it takes up a load.
+        """The changes beyond a tube's tip, where it takes up a load.
 
         Args:
             load: the load.
             value: its force or moment, world axes, 3×1; zero where the tube does not end.
             tube: index of the tube.
-            state: there.
+            state: the state at the tip.
         """
         tangent = rotate(state.pose.quaternion, TANGENT)
         change = ca.MX.zeros(VECTOR, self.turn.size2())
@@ -128,7 +128,7 @@ def _rows_times(factors: Matrix, rows: Matrix) -> Matrix:
 def tangent_step(size: int, directions: int, *, spread: bool, follower: bool) -> ca.Function:
     """(state and changes, length, section) ↦ state and changes: a step of a number of tubes that bear loads.
 
-    Stacked are the state, (2 n + 12)×1, whose energy is not that of the loads, and the changes column after column.
+    Stacked are the state, (2 n + 12)×1, whose energy leaves out the loads, and the changes column after column.
 
     Args:
         size: number of tubes.

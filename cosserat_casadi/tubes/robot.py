@@ -137,8 +137,8 @@ class Robot(TubeNumbers[FloatArray]):
         """The inputs, shape (2 n + 3 m,).
 
         Args:
-            values: inputs by name, where those not named keep the scene's value, and a load may be named whole, such
-                as "push.force"; or all of them in order; None for those of the scene.
+            values: inputs by name, where inputs not named keep the scene's value, and a load may be named whole, such
+                as "push.force"; or all inputs in order; None for the inputs of the scene.
 
         Raises:
             SceneError: with every input that is unknown, no finite number, or out of its range.

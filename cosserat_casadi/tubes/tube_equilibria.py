@@ -64,7 +64,7 @@ GRIDS = {3: (8, 16, 32), 4: (6, 9, 12)}
 """Points along each angle of the grids of starts, by the number of tubes."""
 
 SAME = 1e-6
-"""Angles at the tips, rad, that differ by less are those of one equilibrium."""
+"""Angles at the tips, rad, that differ by less belong to one equilibrium."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -111,8 +111,8 @@ def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria
 
     Args:
         scene: a scene with tubes.
-        values: inputs by name, such as "inner.rotation" or "push.force", where those left out keep the scene's value;
-            or all of them, rotation and translation of each tube, rad and m, and the loads.
+        values: inputs by name, such as "inner.rotation" or "push.force", where inputs left out keep the scene's value;
+            or all inputs, rotation and translation of each tube, rad and m, and the loads.
 
     Raises:
         SceneError: the scene has no tubes or too many, or an input is unknown or out of its range.
@@ -151,7 +151,7 @@ def tubes_at_rest(
         stable: as in :func:`cosserat_casadi.solve`.
         estimate_error: of a model, whether its error is estimated, by the equilibrium with twice its steps.
         progress: not called: the search takes a moment.
-        report: likewise.
+        report: not called either.
 
     Raises:
         SceneError: a value is refused, or a stable equilibrium is wanted where the loads have no energy.
@@ -282,8 +282,8 @@ class _Reading:
 
     Attributes:
         angle: between the tips, rad.
-        missed: by how much the angle between the drives differs from that of the inputs, rad.
-        slope: of that over the angle.
+        missed: by how much the angle between the drives differs from the inputs' angle, rad.
+        slope: derivative of ``missed`` with the angle.
     """
 
     angle: float

@@ -67,7 +67,7 @@ class Bending:
 
     Attributes:
         torsion: GJ of every tube, n×1, N m².
-        moments: EI κ of the tubes that are curved here, zero of the others, n×1, N m.
+        moments: EI κ of the tubes that are curved here, zero for the rest, n×1, N m.
         bending: EI of all tubes that are here, 1×1, N m².
         own: Σ EI κ²/2 of the tubes that are curved here, 1×1, N.
     """
@@ -150,7 +150,7 @@ def twist_step(size: int) -> ca.Function:
 
 @cache
 def whole_stages(size: int) -> Staged:
-    """A step of a number of tubes with the frame and the energy, in its stages; arguments are those of `whole_step`."""
+    """A step of a number of tubes with the frame and the energy, in its stages; arguments are as in `whole_step`."""
     state = ca.SX.sym("state", 2 * size + 8)
     before = ca.SX.sym("before")
     length = ca.SX.sym("length")

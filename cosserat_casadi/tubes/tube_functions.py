@@ -39,9 +39,9 @@ NEWTON_STEPS = 30
 """Most steps of `equilibrium`."""
 
 RESOLVED = 64.0
-"""Residual that half of the steps may leave, over the tolerance, where all of them are called enough.
+"""Residual that half of the steps may leave, over the tolerance, where all steps are called enough.
 
-Steps are of order eight: those of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
+Steps are of order eight: steps of half the length leave 1/256 of it, and the tips follow by up to a few times that."""
 
 
 class TubeFunctions(WithParameters, Shown):
@@ -49,7 +49,7 @@ class TubeFunctions(WithParameters, Shown):
 
     Functions take the unknowns x, of which the first n are the angles at the tips of the tubes, and the inputs: the
     rotation and the translation of each tube, then the loads; behind the inputs the parameters, where the scene names
-    some. Those of a path have the names and arguments that they have in :class:`cosserat_casadi.Model`; the load factor
+    some. Functions of a path have their names and arguments in :class:`cosserat_casadi.Model`; the load factor
     multiplies all curvatures, so that 0 is straight tubes.
 
     Attributes:
@@ -83,7 +83,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def lengths(self) -> dict[str, float]:
-        """Length that the pose error of each tube is relative to, m: that of the longest one."""
+        """Length that the pose error of each tube is relative to, m: the length of the longest tube."""
         return dict.fromkeys(self.robot.names, float(self.robot.length.max()))
 
     @property
@@ -93,7 +93,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def resolution_words(self) -> list[str]:
-        """The same in words."""
+        """Steps of each piece, in words."""
         return [f"{self.steps} steps a piece"]
 
     @property
@@ -126,7 +126,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @abstractmethod
     def varied(self, x: FloatArray, inputs: FloatArray) -> TipVariations:
-        """How the configuration changes along the robot; where loads act, all of them have an energy."""
+        """How the configuration changes along the robot; where loads act, all loads have an energy."""
 
     @property
     @abstractmethod
@@ -180,7 +180,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @property
     def shape_unknowns(self) -> npt.NDArray[np.bool_]:
-        """Which unknowns are those of a shape, shape (size,): all."""
+        """Which unknowns belong to a shape, shape (size,): all."""
         return np.ones(self.size, dtype=bool)
 
     @property
@@ -224,7 +224,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def path_residual(self) -> ca.Function:
-        """(x, inputs, load_factor) ↦ residual of tubes whose curvatures are those of the scene times the factor."""
+        """(x, inputs, load_factor) ↦ residual of tubes with the curvatures of the scene times the factor."""
         return self._on_path("path_residual", {"residual": self._residual})
 
     @cached_property
@@ -279,7 +279,7 @@ class TubeFunctions(WithParameters, Shown):
     def energy(self) -> ca.Function:
         """(x, inputs) ↦ elastic energy of what stands out, and of torsion in the housing, J.
 
-        Less the work of the loads, where all of them have an energy: see :attr:`Robot.has_energy`.
+        The work of the loads is subtracted where all loads have an energy: see :attr:`Robot.has_energy`.
         """
         last = self._state(self._whole.ends[-1])
         twisting = ca.sum1(last.torques**2 * self._compliance) / 2
@@ -494,7 +494,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def _ends(self) -> list[tuple[ca.MX, ca.MX]]:
-        """Of every tube how far its tip, and the beginning of its curved part, stand out of the plate, m."""
+        """How far the tip of every tube, and the beginning of its curved part, stand out of the plate, m."""
         _, inputs, _ = self._arguments
         ends = []
         for index in range(self.tube_count):
@@ -507,7 +507,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def _ranks(self) -> list[ca.MX]:
-        """Of every tube at which of the sorted places its tip is, 1×1."""
+        """Index of the tip of every tube among the sorted places, 1×1 each."""
         return [self._rank(2 * index) for index in range(self.tube_count)]
 
     def _rank(self, own: int) -> ca.MX:
@@ -549,7 +549,7 @@ class TubeFunctions(WithParameters, Shown):
         return inside / as_matrix(self.robot.numbers.torsion)
 
     def _in_base(self, pose: Pose) -> Pose:
-        """A pose in base axes, where it is given in those of the tip's frame."""
+        """A pose in base axes, from the pose in the axes of the tip's frame."""
         return self._state(self._whole.ends[-1]).pose.seen(pose)
 
     def _tip_pose(self, index: int, plate: Matrix, reached: Matrix) -> Pose:

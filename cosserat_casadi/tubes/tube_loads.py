@@ -36,7 +36,7 @@ class TubeLoad:
 
     @property
     def has_energy(self) -> bool:
-        """Whether its work is that of a potential: a force that keeps its direction."""
+        """Whether the load has a potential: a force that keeps its direction does."""
         return not self.is_moment and not self.follower
 
     @property

@@ -72,7 +72,7 @@ class TubeModel(TubeFunctions):
 
     @cached_property
     def _whole(self) -> March:
-        """The same with the frame of the centre line and the energy."""
+        """Angles, torques, the frame of the centre line and the energy, from the tip on."""
         return self._marched(self._step, self._begun)
 
     def _marched(self, step: ca.Function, state: Matrix) -> March:

@@ -62,7 +62,7 @@ class TubeSolution(Equilibrium[TubeFunctions]):
     unknowns are the angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
     quaternion in world axes behind them, shape (n + 4,). The residual norm is the largest angle that the tubes miss
     their drives by, rad; distances in the error estimate are relative to the length that stands out. The iterations
-    are those of the search with this model; 0 at points of a path.
+    count the search with this model; 0 at points of a path.
     """
 
     @property
@@ -120,7 +120,7 @@ class TubeSolution(Equilibrium[TubeFunctions]):
         return f"it has {self.model.steps} steps a piece: allow more of them, or ask for a larger tolerance."
 
     def tip(self, name: str | None = None) -> NumericPose:
-        """Pose of a tube's tip in the world; without a name that of the tube that reaches farthest.
+        """Pose of a tube's tip in the world; without a name the tip of the tube that reaches farthest.
 
         Raises:
             SceneError: there is no such tube.

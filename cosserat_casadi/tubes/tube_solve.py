@@ -35,11 +35,11 @@ ENOUGH_STEPS = 32
 """Steps of a piece with which an equilibrium that has not been found is not looked for any more."""
 
 MOST_STEPS = 256
-"""Steps of a piece beyond which it gives up."""
+"""Steps of a piece beyond which a solve gives up."""
 
 
 def model_of(robot: Robot, steps: int) -> TubeFunctions:
-    """The model of a robot with a number of steps; without loads it has nothing of them."""
+    """The model of a robot with a number of steps: with the frame at the tip unknown where there are loads."""
     if robot.loads:
         return LoadedTubeModel(robot, steps)
     return TubeModel(robot, steps)
@@ -48,13 +48,13 @@ def model_of(robot: Robot, steps: int) -> TubeFunctions:
 def solve_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
     """Find the equilibrium that the tubes have when they are bent, at these inputs, from straight ones, then loaded.
 
-    It is the one that a robot has which was curved where it is; one that was turned there may be in another. Whether it
-    is stable it says itself; :func:`all_equilibria` finds the others.
+    A robot is in this equilibrium if it was curved where it is; a robot that was turned there may be in another. The
+    result says whether it is stable; :func:`all_equilibria` finds other equilibria.
 
     Args:
         scene: a scene with tubes.
-        values: inputs by name, such as "inner.rotation" or "push.force", where those left out keep the scene's value;
-            or all of them, rotation and translation of each tube, rad and m, and the loads.
+        values: inputs by name, such as "inner.rotation" or "push.force", where inputs left out keep the scene's value;
+            or all inputs, rotation and translation of each tube, rad and m, and the loads.
 
     Raises:
         SceneError: the scene has no tubes, or an input is unknown or out of its range.
@@ -78,10 +78,10 @@ class TubeModels:
 
 
 def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
-    """As :func:`solve_tubes`, for one set of inputs after the other.
+    """Solve as :func:`solve_tubes` does, with models that serve one set of inputs after another.
 
     Args:
-        models: of the robot.
+        models: models of the robot.
         at: all inputs, in their range.
     """
     found, error = doubled(
@@ -101,7 +101,7 @@ def doubled(
     tolerance: float,
     lost: Callable[[int, Found, Found], bool],
 ) -> tuple[Found, float | None]:
-    """The first of several results that differs from that of half of its steps by less than a tolerance.
+    """The first of several results that differs from the result of half the steps by less than a tolerance.
 
     Args:
         at: steps of a piece ↦ result.
@@ -111,7 +111,7 @@ def doubled(
         lost: (steps, coarse, fine) ↦ whether more steps are not worth trying.
 
     Returns:
-        The last result, and its difference from that of half of its steps.
+        The last result, and its difference from the result of half the steps.
     """
     coarse = at(steps)
     while True:
@@ -125,7 +125,7 @@ def doubled(
 
 
 def error_beside(solution: TubeSolution, finer: TubeSolution) -> float | None:
-    """The error of the tips of a solution beside a finer one; None where one of them is no equilibrium."""
+    """The error of the tips of a solution beside a finer one; None where either is no equilibrium."""
     return tip_error(solution, finer) if solution.converged and finer.converged else None
 
 

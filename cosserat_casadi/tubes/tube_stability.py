@@ -34,9 +34,9 @@ class TubeStability:
 
     Attributes:
         falling: independent directions in which the energy falls; None where the loads have no energy.
-        neutral: whether there is one more in which it stays the same: the robot is about to snap.
-        determinant: of the derivative of the drives' angles with those at the tips; 1 of tubes that do not twist, 0
-            where a robot snaps.
+        neutral: whether there is one more direction, in which the energy does not change: the robot is about to snap.
+        determinant: determinant of the derivative of the drives' angles with the angles at the tips; 1 of tubes that
+            do not twist, 0 where a robot snaps.
     """
 
     falling: int | None
@@ -85,7 +85,7 @@ def _falling(model: TubeFunctions, variations: TipVariations, inputs: FloatArray
 
 
 def _held(model: TubeFunctions, inputs: FloatArray, configuration: FloatArray, torques: FloatArray) -> FloatArray:
-    """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, n×n, scaled.
+    """Last pivot: stiffness of the robot at the plate beside the torsional stiffness in the housing, n×n, scaled.
 
     The plate holds the tangent. With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no
     compliance, and C⁻¹ no value: 1 + √C A √C has the same signs, and exists.

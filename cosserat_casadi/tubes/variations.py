@@ -23,8 +23,8 @@ class TipVariations:
     """Changes with m degrees of freedom of the tip, at k stations from the tip to the plate.
 
     Attributes:
-        configuration: of each station with that of the tip, shape (k, m, m), rad: turns of the tubes about the tangent,
-            then those of the tangent.
+        configuration: derivatives of the configuration of each station with the tip's, shape (k, m, m), rad: turns of
+            the tubes about the tangent, then turns of the tangent.
         at_plate: torques of the tubes at the plate, which are conjugate to their turns, shape (n, m), N m.
         of_steps: the configuration at the end of each step by its conjugates at the start, shape (k − 1, m, m), rad/(N
             m).
@@ -41,9 +41,9 @@ def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: Floa
     Args:
         size: number n of tubes.
         stations: stacked states, shape (2 n + 12, k).
-        along: their changes, stacked as those of `LoadedTangent`, with the angles at the tips and a turn of the frame
-            there, shape (2 n + 9, (n + 3) k).
-        of_steps: those at the end of each step with the torques and the moment at its start, shape
+        along: their changes, stacked as in `LoadedTangent`, with the angles at the tips and a turn of the frame there,
+            shape (2 n + 9, (n + 3) k).
+        of_steps: changes of the states at the end of each step with the torques and the moment at its start, shape
             (2 n + 9, (n + 3) (k − 1)).
     """
     height = len(along)
@@ -71,7 +71,7 @@ def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatAr
 
     Args:
         size: number n of tubes.
-        changes: stacked as those of `LoadedTangent`, shape (2 n + 9, m).
+        changes: changes of the state, stacked as in `LoadedTangent`, shape (2 n + 9, m).
         frame: rotation of the frame there, shape (3, 3).
 
     Returns:
