@@ -34,7 +34,7 @@ MOST_NODES = 400
 """Intervals of an element beyond which a rod too bent for them is given up."""
 
 MOST_REFINED = 2.0
-"""Largest factor on intervals that do not resolve a rod: on more of them it may be bent otherwise."""
+"""Largest factor on intervals that do not resolve a rod: on more intervals it may be bent otherwise."""
 
 NODES_MARGIN = 1.2
 """Factor on the intervals that would just resolve the rod as it is now."""

@@ -29,15 +29,15 @@ from cosserat_casadi.result import Shown
 LOG = logging.getLogger(__name__)
 
 SEED = 31
-"""Of the random points, so that a choice can be repeated."""
+"""Seed of the random points, so that a choice can be repeated."""
 
 SAMPLES = 16
 """Random corners that are solved, and random points too; as many fresh points are tried in the end."""
 
 SAMPLES_IN_CONTACT = 2
-"""The same where a solve takes seconds: in exact contact, where which contacts are closed is found anew at each point,
-and beside smooth obstacles so thin that they ask for many intervals. There neither the ends of each range alone are
-tried, nor does the worst point climb."""
+"""Random corners, random points and fresh points where a solve takes seconds: in exact contact, where which contacts
+are closed is found anew at each point, and beside smooth obstacles so thin that they ask for many intervals. There
+neither the ends of each range alone are tried, nor does the worst point climb."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,7 +83,7 @@ class Choice(Shown):
 
     @property
     def within_tolerance(self) -> bool | None:
-        """As ``met``; None where modes are fixed, and nobody asks for a tolerance."""
+        """Whether the tolerance is met; None where modes are fixed, and nobody asks for a tolerance."""
         return self.met if self.scene.accuracy.binds else None
 
 

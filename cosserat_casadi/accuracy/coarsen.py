@@ -1,4 +1,4 @@
-"""The cheapest discretisation whose tips stay within a bound of those of a reference solution.
+"""The cheapest discretisation whose tips stay within a bound of the tips of a reference solution.
 
 Modes go first: each strain component of each rod keeps as few as its effect on the tips allows, which a tail of
 coefficients does not tell. Then every rod gets the cheapest grid: intervals and order of the rotation integrator
@@ -29,7 +29,7 @@ TRANSPORTS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magn
 """Rotation integrators that may be the cheapest for bounds down to one, the likely one first."""
 
 WAVE_STEPS = (8, 1)
-"""Modes dropped at once where waves ask for many of them, one number after the other; else one at a time."""
+"""Modes dropped at once where waves ask for many modes, one number after the other; else one at a time."""
 
 MOST_TRIALS = 4
 """Most grids previewed for one rod and one integrator: each costs about a third of building a model."""
@@ -211,7 +211,7 @@ class Coarsening:
         return max(change_size(mode_shift), change_size(together))
 
     def _mode_weight(self, name: str, component: int) -> float:
-        """Weight of a mode: those of bending and torsion cost about twice those of shear and extension."""
+        """Weight of a mode: a mode of bending or torsion costs about twice a mode of shear or extension."""
         rod = self.preview.model.discrete.rods[name].properties
         turns_sections = rod.admitted[component] < 3
         return 2.0 if turns_sections else 1.0
@@ -234,7 +234,7 @@ class Coarsening:
 
 @dataclass
 class _GridSearch:
-    """Search for the grid of rods that are discretised alike, those of the others kept.
+    """Search for the grid of rods that are discretised alike; grids of other rods are kept.
 
     Attributes:
         coarsening: bound and preview.
@@ -319,7 +319,7 @@ class _GridSearch:
         return sufficient
 
     def _aimed(self, transport: str, nodes: int) -> int:
-        """Intervals that should just do: the change by the grid alone falls like a power of them, a high one."""
+        """Intervals that should just do: the change by the grid alone falls like a high power of their number."""
         power = POWERS[transport]
         excess = self._excess(transport, nodes)
         compared = [n for name, n in self._shifts if name == transport and n != nodes]
@@ -391,7 +391,7 @@ class _GridSearch:
 
 
 def _fewer(modes: Modes, names: tuple[str, ...], component: int, step: int) -> dict[str, tuple[int, ...]]:
-    """The same modes but for so many less of a component of some rods, which keeps its last one."""
+    """Modes with ``step`` modes less of a component of some rods, which keeps its last mode."""
     # Rods that are discretised alike have the same modes.
     counts = list(modes[names[0]])
     counts[component] = max(1, counts[component] - step)
@@ -400,7 +400,7 @@ def _fewer(modes: Modes, names: tuple[str, ...], component: int, step: int) -> d
 
 
 def _below_ceiling(modes: Modes, ceiling: int) -> dict[str, tuple[int, ...]]:
-    """The same modes, but no component with more than a ceiling."""
+    """Modes with no component above a ceiling."""
     lowered = {}
     for name, counts in modes.items():
         lowered[name] = tuple(min(m, ceiling) for m in counts)

@@ -98,7 +98,7 @@ class CommonModes:
     Attributes:
         cases: in the order in which they were made; at least one.
         progress: told how many solves are done.
-        settles: whether rods that snap to obstacles as loads grow are let settle there; those of the first case are.
+        settles: whether rods that snap to obstacles as loads grow are let settle there; in the first case they are.
     """
 
     cases: list[LoadCase]
@@ -124,7 +124,7 @@ class CommonModes:
     def error(self, answers: Answers, number: int) -> float:
         """Estimated error of a case, which is solved where it was not; -inf without an equilibrium.
 
-        That of a case whose error is well within its tolerance on fewer modes is a bound: it is not solved again.
+        A case whose error is well within its tolerance on fewer modes is not solved again: that error is a bound.
         """
         if number not in answers.solutions:
             if number in self._failed or number in self._hopeless:
@@ -234,7 +234,7 @@ class CommonModes:
         return solution
 
     def _start(self, answers: Answers, number: int, model: Model) -> Start:
-        """Where a solve begins: at the case's answer on fewer modes, else at that of the first case, else unloaded."""
+        """Where a solve begins: at the case's answer on fewer modes, else at the first case's, else unloaded."""
         case = self.cases[number]
         last = self._last.get(number)
         if last is not None:

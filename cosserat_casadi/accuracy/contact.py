@@ -28,7 +28,7 @@ LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
 """Modes per strain and element that are tried."""
 
 FINER_MODES = 3
-"""Modes that are added to those of the user to estimate their error."""
+"""Modes that are added to the user's to estimate their error."""
 
 MOST_FAILURES = 1
 """Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""

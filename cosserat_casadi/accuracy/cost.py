@@ -4,7 +4,7 @@ Counting the operations of a model takes longer than solving it, compiling it fa
 the products that the Jacobian is made of (rod/tangent.py). Length and time of the C, whose columns are computed four at
 a time (codegen/columns.py), are affine in few terms: intervals, products with constant matrices in a column, entries of
 the Jacobian. The code of columns is there once and runs for each group of four. benchmarks/compiled_cost.py fits the
-factors to compiled rods of every strain model, section and load, and tells how far they are off. Those of loops are
+factors to compiled rods of every strain model, section and load, and tells how far they are off. Factors of loops are
 fitted to the rods of benchmarks/code_limit.py, which prints their foreseen times.
 """
 
@@ -25,13 +25,14 @@ Functions of one interval are called: each call is one instruction.
 """
 
 STRAIGHT_BESIDE_INTERVALS = 9_000
-"""The same for what a scene of one rod computes beside its intervals, four of which are computed together.
+"""Instructions up to which code is straight-line that a scene of one rod computes beside its intervals.
 
-Loops take half as long again there, or twice: they gather what the intervals take and give.
+Four intervals are computed together. Loops take half as long again there, or twice: they gather what the intervals take
+and give.
 """
 
 STRAIGHT_IN_SHARES = 25_000
-"""The same for functions of each rod of an assembly, of which rods that compute alike share one.
+"""Instructions up to which a function of each rod of an assembly is straight-line code, shared by rods that are alike.
 
 Six legs in loops take half as long again, and their C is longer (docs/theory.md).
 """
@@ -140,7 +141,7 @@ class Operations:
 
     @property
     def all(self) -> float:
-        """Their sum."""
+        """Operations of all kinds together."""
         return self.intervals + self.structure + self.follower + self.couple
 
 

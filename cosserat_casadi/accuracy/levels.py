@@ -45,7 +45,7 @@ VERIFIED_WAVES = (48, 64, 85, 113, 150)
 """Further ones for scenes that put waves along their rods."""
 
 SHORT = 0.25
-"""Length of an element over that of its rod, up to which it is short: it sees less of a rod, and needs fewer modes."""
+"""Length of an element over its rod's, up to which it is short: it sees less of the rod, and needs fewer modes."""
 
 SPARE_NODES = 2
 """Intervals of a verified level beyond the number that the modes and the turn of a rod need."""
@@ -192,11 +192,11 @@ class Level:
         return replace(above, index=min(above.index, self.index + MOST_LEVELS))
 
     def with_min_nodes(self, nodes: int) -> Level:
-        """The same modes on at least so many intervals."""
+        """This level on ``nodes`` intervals at least."""
         return replace(self, min_nodes=nodes)
 
     def with_finer_grid(self) -> Level | None:
-        """The same modes on more intervals; None where the grid is given up."""
+        """This level on more intervals; None where the grid is given up."""
         if self.grid_factor >= MOST_GRID_FACTOR:
             return None
         return replace(self, grid_factor=self.grid_factor * GRID_FACTOR)

@@ -40,7 +40,7 @@ def node_residual(solution: Solution) -> float:
 
 
 def _stress_beyond_hooke(solution: Solution, name: str) -> FloatArray:
-    """Stress of the material at the nodes beyond that of its Hooke tensor, shape (nodes, 6), N m and N."""
+    """Stress of the material at the nodes beyond its Hooke tensor's, shape (nodes, 6), N m and N."""
     discrete_rod = solution.model.discrete.rods[name]
     law = discrete_rod.properties.beyond_hooke
     X = known(discrete_rod.grid.nodes)

@@ -101,7 +101,7 @@ class CaseRanges:
         return np.flatnonzero(self.lower < self.upper)
 
     def where_still(self, others: CaseRanges) -> CaseRanges:
-        """These ranges, with those of others where an entry keeps its value."""
+        """These ranges, with the range of others where an entry keeps its value."""
         still = self.lower == self.upper
         lower = np.where(still, others.lower, self.lower)
         upper = np.where(still, others.upper, self.upper)

@@ -78,10 +78,10 @@ MOST_FAILURES = 2
 """Levels without an equilibrium after which the next one ends the search."""
 
 FINER_MODES = 4
-"""Modes that are added to those of the user to estimate their error."""
+"""Modes that are added to the user's to estimate their error."""
 
 FINER_NODES = 10
-"""Intervals that are added to those of the user to estimate their error."""
+"""Intervals that are added to the user's to estimate their error."""
 
 
 @overload
@@ -142,7 +142,7 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
     are, and only the error is estimated.
 
     A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one. Concentric tubes
-    are straight at first, become curved where they are, and are loaded then; see :func:`all_equilibria` for the others.
+    are straight at first, become curved where they are, and are loaded then; :func:`all_equilibria` finds the rest.
 
     Args:
         subject: a validated scene, or a model of it: of rods, or of concentric tubes.
@@ -154,9 +154,9 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
         report: receives the discretisation of rods, in words; of a scene.
         parameters: of a model, by name or stacked, as :meth:`Model.at` takes them; by default the scene's.
         start: of a model, like all that follow: where to start; by default the unloaded rod, or straight tubes. From a
-            solution of the same model, continuation follows the inputs from those of the solution to the wanted ones,
-            and so stays on its branch. Other parameters are taken at once and, where that fails, followed together with
-            the inputs. Of a scene with obstacles, the contacts of the solution are tried first. From unknowns of shape
+            solution of the same model, continuation follows the inputs from the solution's to the wanted ones, and so
+            stays on its branch. Other parameters are taken at once and, where that fails, followed together with the
+            inputs. Of a scene with obstacles, the contacts of the solution are tried first. From unknowns of shape
             (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
         method: of rods, "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two
             start at the full load and may find another branch, or none.
@@ -189,10 +189,10 @@ def solve_rods(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Solution:
-    """As :func:`solve`, of a scene of rods.
+    """Equilibrium of a scene of rods, as :func:`solve` describes it.
 
     Raises:
-        SceneError: likewise, and where the scene has tubes.
+        SceneError: as :func:`solve` raises it, and where the scene has tubes.
     """
     refuse_tubes(scene)
     refuse_held_by_contact(scene)

@@ -122,7 +122,7 @@ class Resolution:
 
     @cached_property
     def shape_error(self) -> float:
-        """Error of all sections, those between nodes included; no smaller than that of the tips."""
+        """Error of all sections, sections between nodes included; no smaller than the error of the tips."""
         between = HIDDEN_SAFETY * change_size(self._look.shapes)
         return max(self.modes_error, between) + self.grid_error
 

@@ -1,4 +1,4 @@
-"""One scene at one set of inputs, solved on one discretisation after the other: what all of them share.
+"""A scene at one set of inputs, solved on one discretisation after the other: what all these solves share.
 
 See docs/theory.md, sections 9 and 10.
 """
@@ -35,7 +35,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 LOG = logging.getLogger(__name__)
 
 TIGHT = 1e-6
-"""Tolerance below which a reference solution takes the rotation integrator of eighth order, else that of sixth."""
+"""Tolerance below which a reference solution takes the rotation integrator of eighth order, else of sixth."""
 
 SLOW_MODES = 7
 """Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
@@ -111,7 +111,7 @@ class SceneSolver:
 
     @property
     def wave_modes(self) -> int:
-        """The same where they are waves, 0 where all that the scene puts along its rods varies slowly."""
+        """``signal_modes`` where the scene puts waves along its rods, 0 where all signals vary slowly."""
         if self.signal_modes > SLOW_MODES:
             return self.signal_modes
         return 0
@@ -140,14 +140,14 @@ class SceneSolver:
         return solution
 
     def _counted(self, solution: Solution) -> Solution:
-        """The same solution; its iterations are counted, and the log tells of it."""
+        """Count the iterations of a solution, and log it; the solution itself."""
         self.iterations += solution.iterations
         sizes = {name: (chosen.modes, chosen.nodes) for name, chosen in solution.model.discretisation.items()}
         LOG.info("modes and intervals %s: %s, %d iterations", sizes, solution.outcome.name, solution.iterations)
         return solution
 
     def relax(self, solution: Solution) -> Solution:
-        """A stable solution where one is wanted and can be found, else the same.
+        """A stable solution where one is wanted and can be found, else the given solution.
 
         A held rod is always wanted stable: springs of the solver, not loads of the scene, lead to its supports.
         """

@@ -16,9 +16,9 @@ class Verified:
     Attributes:
         ranges: ``column=low:high`` of inputs and parameters; all else has the scene's value.
         solves: points of the ranges that were solved.
-        error_estimate: the largest of their estimates; None where none has an equilibrium.
-        without_equilibrium: how many of them have no equilibrium.
-        within: whether the error is within the tolerance at all the others; None where no tolerance is asked for.
+        error_estimate: largest error estimate of these points; None where no point has an equilibrium.
+        without_equilibrium: how many points have no equilibrium.
+        within: whether the error is within the tolerance at all points that have; None where none is asked for.
         locked: names of the inputs that move nothing on this discretisation, and would on more modes.
     """
 

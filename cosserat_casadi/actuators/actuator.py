@@ -30,7 +30,7 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         kind: the word of the scene format.
         effort: name of the effort, an input of the record.
         conjugate: name of the quantity that the effort works on.
-        conjugate_unit: SI unit of that.
+        conjugate_unit: SI unit of that quantity.
         energy_sign: 1 where the energy is effort times quantity, as of a tension; −1 where the effort does that much
             work on the rod, as a pressure does.
         drawn_as: a thin line with a knob at its end, or a broad translucent one.

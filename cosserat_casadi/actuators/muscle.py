@@ -38,7 +38,7 @@ class MuscleActuator(Actuator[scenes.Muscle]):
         return _work(actuator, grid, coefficients((actuator.profile,)))
 
     def worked_on(self, actuator: scenes.Muscle, grid: Grid, values: Mapping[str, Matrix]) -> StrainSum:
-        """The same, with the profile of the inputs."""
+        """The work of a unit of activation with the profile among the inputs, 1×1, J; by default the record's."""
         profile = values["profile"]
         if profile.is_constant():
             return self.quantity(actuator, grid)

@@ -22,7 +22,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 
 def held_along(coordinate: Coordinate, normal: FloatArray | None) -> HeldDirections:
-    """All directions that a section can move in, that of a coordinate last among displacements or rotations.
+    """All directions that a section can move in, the coordinate's last among displacements or rotations.
 
     Args:
         coordinate: in the axes of the section.

@@ -133,7 +133,7 @@ class HeldPose:
 
     @property
     def axes(self) -> Matrix | None:
-        """The same as a matrix, 3×3."""
+        """Rotation that takes the directions of :class:`HeldDirections` to the held ones, 3×3; None without a turn."""
         return None if self.turn is None else quaternion_to_matrix(self.turn)
 
     def in_frame(self, poses: ConstraintPoses) -> Pose:

@@ -33,7 +33,7 @@ class TipHolder(Kind, ABC, Generic[RecordType]):
 
         Args:
             record: the record of the scene.
-            rotation: turns the axes of the tip, as the record orients it, into those of the world or of the body,
+            rotation: turns the axes of the tip, as the record orients it, into the axes of the world or of the body,
                 shape (3, 3); the identity where the record leaves the orientation free.
         """
 

@@ -339,7 +339,7 @@ def change_with_following(solution: Solution, balance: RicherBalance, following:
 def richer_unknowns(
     solution: Solution, known: FloatArray | float = 0.0, missing: FloatArray | float = 0.0
 ) -> FloatArray:
-    """Unknowns of the richer model: those of the answer with a correction, and missing coordinates."""
+    """Unknowns of the richer model: the answer's with a correction, and missing coordinates."""
     richer = solution.model.discrete.richer
     unknowns = np.zeros(richer.discrete.size)
     unknowns[richer.known] = solution.x + known
@@ -367,7 +367,7 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
 
 
 def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
-    """A correction with the largest change of a watched pose or length; infinite where one of them is not finite."""
+    """A correction with the largest change of a watched pose or length; infinite where one is not finite."""
     poses = richer_balance(solution, known, missing).poses
     change = change_size(poses.change_from(watched_at(solution, solution.x)))
     return Correction(known, missing, change, contracts)
@@ -432,6 +432,6 @@ def _base_wrench_in_units(solution: Solution, rod: DiscreteRod) -> tuple[FloatAr
 
 
 def _relative_change(values: FloatArray, difference: FloatArray, least: float = NO_WRENCH) -> float:
-    """Size of a difference relative to that of the values, or to the least size that counts."""
+    """Size of a difference over the size of the values, or over the least size that counts."""
     size = max(float(np.linalg.norm(values)), least)
     return float(np.linalg.norm(difference)) / size

@@ -1,4 +1,4 @@
-"""From where a method stopped to a solution: one test of residual, resolution and stability for all methods.
+"""A solution from where a method stopped: one test of residual, resolution and stability for all methods.
 
 See docs/theory.md, section 9 for residual and stability, section 10 for resolution.
 """

@@ -2,8 +2,8 @@
 
 Layers push by a law F(g/w) of the gap over the width. Thinner ones with the same law, the stiffness growing as 1/w, let
 a rod that is pressed alike have a gap that is less in proportion: to first order the answer moves in proportion to the
-width. So its derivative with the logarithm of all widths is how far it is from that of no width. It follows from the
-equations at the answer, dx = −J⁻¹ ∂r/∂(log w) by the implicit function theorem, without a solve.
+width. So its derivative with the logarithm of all widths is how far it is from the answer of no width. It follows from
+the equations at the answer, dx = −J⁻¹ ∂r/∂(log w) by the implicit function theorem, without a solve.
 """
 
 from __future__ import annotations

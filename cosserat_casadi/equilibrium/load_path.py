@@ -105,7 +105,7 @@ def input_path(
         model: what to solve.
         start: unknowns at or near the equilibrium at t = 0, shape (model.size,).
         before: stacked inputs at t = 0, shape (model.inputs.size,).
-        after: stacked inputs at t = 1, likewise.
+        after: stacked inputs at t = 1, shape (model.inputs.size,).
         parameters: of a model that has them, at t = 0 and 1, shape (model.parameters.size,) each.
     """
     change = after - before

@@ -34,9 +34,9 @@ def with_estimate(
     Args:
         coarse: the solution.
         fine: the finer one.
-        factor: on the distance of their poses and cables.
+        factor: factor on the distance of their poses and cables.
         fine_error: error of the finer one, added.
-        fine_shape_error: error of its shape, added to that of the whole shape.
+        fine_shape_error: error of the finer one's shape, added to the error of the whole shape.
     """
     tip_distance = pose_distance(coarse, fine)
     watched_distance = max(tip_distance, cable_distance(coarse, fine))
@@ -74,7 +74,7 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
 
 
 def cable_distance(first: Solution, second: Solution) -> float:
-    """Largest difference of the lengths of cables, relative to those of their rods."""
+    """Largest difference of the lengths of cables, over the lengths of their rods."""
     changes = [0.0]
     for name, rod in watched_cables(first.model.discrete).items():
         _, first_length, _ = first.model.actuator[name](first.x, first.inputs)
@@ -101,11 +101,11 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
     """Unknowns of another model of the same scene: the coefficients that exist, zeros for the rest.
 
     Args:
-        solution: on some model.
-        model: the other one, finer more often than not, with the same elements.
+        solution: a solution of some model.
+        model: the other model, finer more often than not, with the same elements.
 
     Returns:
-        shape (model.size,).
+        the unknowns, shape (model.size,).
     """
     discrete = solution.model.discrete
     blocks = []

@@ -50,7 +50,7 @@ SHORTEST = 2.0**-9
 """Share of a step below which no part is halved: it counts as barred."""
 
 REMEMBERED = 16
-"""Shares of a way of parameters whose places are remembered: all cases ask for the same."""
+"""Shares of a way of parameters whose places are remembered: all cases ask for the same shares."""
 
 ROUGHLY = 8
 """Sections of which one is looked at where many states follow each other: rods are nearly straight between them."""
@@ -60,9 +60,9 @@ class _Way(NamedTuple):
     """A straight way of sections or of a body.
 
     Attributes:
-        start: positions, shape (k, 3), m.
-        end: positions, likewise.
-        bend: how far they are off it in the middle of the step, m.
+        start: first positions, shape (k, 3), m.
+        end: last positions, shape (k, 3), m.
+        bend: how far sections are off the straight way in the middle of the step, m.
     """
 
     start: FloatArray
@@ -114,13 +114,13 @@ class SmoothBarriers:
         inputs: tuple[FloatArray, FloatArray],
         places: PlacesAt | None = None,
     ) -> bool:
-        """Whether a rod or body is deep inside one on the way between two shapes, and at neither of its ends.
+        """Whether a rod or body is deep inside a bar or ball on the way between two shapes, and at neither of its ends.
 
         Args:
             before: unknowns at the start, shape (model.size,).
-            after: unknowns at the end, likewise.
+            after: unknowns at the end, shape (model.size,).
             inputs: stacked inputs at start and end.
-            places: of rods and bodies on the way; by default those of this model.
+            places: places of rods and bodies on the way; by default this model's.
         """
         last = self.model.inputs.nearer(*inputs)
 
@@ -309,7 +309,7 @@ def places_along(model: Model, parameters: tuple[FloatArray, FloatArray]) -> Pla
 
 
 def places_between(earlier: SmoothBarriers, later: SmoothBarriers) -> PlacesAt:
-    """Places that go in straight lines from those of one model to those of another, between which nothing is known."""
+    """Places on straight lines from places in one model to places in another, between which nothing is known."""
 
     def places(share: float, x: FloatArray, inputs: FloatArray) -> list[FloatArray]:
         both = zip(earlier.places(x, inputs), later.places(x, inputs), strict=True)
@@ -329,7 +329,7 @@ def _thin_obstacles(scene: scenes.Scene) -> list[scenes.ObstacleRecord]:
 
 
 def are_one(x: FloatArray, other: FloatArray) -> bool:
-    """Whether the unknowns of two equilibria at the same inputs are those of one."""
+    """Whether two vectors of unknowns at the same inputs are one equilibrium."""
     return bool(np.linalg.norm(x - other) <= SAME * (1 + np.linalg.norm(x)))
 
 

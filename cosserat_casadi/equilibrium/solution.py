@@ -73,7 +73,7 @@ class Contact:
         obstacle: name of the obstacle, or of the rod that presses.
         owner: name of the rod, or of the body, that touches.
         start: abscissa X at which contact begins; 0 of a body.
-        end: abscissa at which it ends; the same for a point.
+        end: abscissa at which it ends; ``start`` for a point.
         force: resultant on the rod, world axes, shape (3,), N.
         ends: force at the point, or at both ends of a line, along the normals there, N; none where contact is smooth.
         kind: "point" or "line"; "smooth" where the obstacle has a width.
@@ -173,7 +173,7 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
         return self.judged_error <= accuracy.tolerance
 
     def unresolved(self) -> Self:
-        """The same unknowns, as an equilibrium of the discrete model alone."""
+        """These unknowns, as an equilibrium of the discrete model alone."""
         return replace(self, outcome=Outcome.UNRESOLVED, message=Outcome.UNRESOLVED.value)
 
 
@@ -181,16 +181,15 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
 class Solution(Equilibrium[Model]):
     """The end of a solve of rods; an equilibrium only where ``converged`` says so.
 
-    The residual norm is that of the dimensionless residual, relative. The iterations of a scene are those on all
-    discretisations that were tried. The error estimate is that of the poses of the tips, as distance over the rod
-    length and as angle in rad, and of the lengths of cables over the rod length; of held rods at sections between the
-    ends too.
+    The residual norm is the relative norm of the dimensionless residual. The iterations of a scene count all
+    discretisations that were tried. The error estimate bounds the poses of the tips, as distance over the rod length
+    and as angle in rad, and the lengths of cables over the rod length; of held rods sections between the ends too.
 
     Attributes:
         smallest_eigenvalue: of the second variation, in units of EI/ℓ of the scene's own numbers, whatever values
             parameters have, and in exact contact with these values; None where loads have no potential.
         stable: whether every admissible variation costs energy; None where that has no meaning.
-        shape_error_estimate: the error estimate over all sections, those between nodes included.
+        shape_error_estimate: the error estimate over all sections, sections between nodes included.
         wrench_error_estimate: estimated relative error of the wrenches of bases, supports and joints, and of tensions
             that are unknown; None if not estimated.
         contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
@@ -206,9 +205,9 @@ class Solution(Equilibrium[Model]):
     def layer_error_estimate(self) -> float | None:
         """Estimated change of tips and bodies to the equilibrium whose contacts have no widths.
 
-        Its unit is that of ``error_estimate``, which does not contain it: that is of the scene as it is written, with
-        its widths. No tolerance binds it. None where the solution is no equilibrium, in a scene without smooth contact,
-        and where friction remembers a path. It is computed from the Jacobian when it is first read.
+        It has the unit of ``error_estimate``, which does not contain it but judges the scene as it is written, with its
+        widths. No tolerance binds it. None where the solution is no equilibrium, in a scene without smooth contact, and
+        where friction remembers a path. It is computed from the Jacobian when it is first read.
         """
         # The module imports this one.
         from cosserat_casadi.equilibrium.layer_error import layer_error
@@ -226,7 +225,7 @@ class Solution(Equilibrium[Model]):
         return self.shape_error_estimate
 
     def unresolved(self) -> Self:
-        """The same unknowns, as an equilibrium of the discrete model alone, whose stability says nothing of the rod."""
+        """These unknowns, as an equilibrium of the discrete model alone, whose stability says nothing of the rod."""
         return replace(super().unresolved(), stable=None)
 
     @property
@@ -350,8 +349,8 @@ class _NodalFields(NamedTuple):
         position: shape (3, nodes), m.
         quaternion: world_Q_section, shape (4, nodes).
         wrench: internal wrench in the sections' frames, shape (6, nodes), N m and N.
-        base_force: of the clamp on the rod, shape (3, 1), N.
-        base_moment: likewise, N m.
+        base_force: force of the clamp on the rod, shape (3, 1), N.
+        base_moment: moment of the clamp on the rod, shape (3, 1), N m.
     """
 
     position: FloatArray

@@ -166,7 +166,7 @@ def solve(
     """Equilibrium of a model on its discretisation, as the public ``solve`` describes it.
 
     Raises:
-        SceneError, SolveError, ValueError: likewise.
+        SceneError, SolveError, ValueError: as the public ``solve`` raises them.
     """
     model = model.at(parameters)
     limits = settings or continuation_limits(model)
@@ -339,7 +339,7 @@ def is_behind(model: Model, x: FloatArray, inputs: FloatArray) -> bool | None:
 def _settled_on_obstacles(
     solution: Solution, limits: ContinuationSettings, progress: Progress | None = None
 ) -> Solution:
-    """The equilibrium that a rod snaps to where its load path stalled on soft obstacles, past none of them."""
+    """The equilibrium that a rod snaps to where its load path stalled on soft obstacles, past no obstacle."""
     model = solution.model
     if not SmoothBarriers(model).any or not can_relax(model) or not model.has_potential(solution.inputs):
         return solution
@@ -347,7 +347,7 @@ def _settled_on_obstacles(
 
 
 def _continuation(task: _Task) -> _End:
-    """From a solution along its inputs, from unknowns by Newton, else along the load path."""
+    """End of a solve from a solution along its inputs, from unknowns by Newton, else along the load path."""
     if isinstance(task.start, Solution):
         nearer = task.model.inputs.nearer(task.start.inputs, task.inputs)
         path = input_path(task.model, task.start.x, task.start.inputs, nearer)

@@ -21,7 +21,7 @@ RIGID = 1e4
 """Stiffness of a cable or a stop, in units of EI/ℓ, above which it counts as one that does not yield."""
 
 DEPENDENT = 1e-12
-"""A singular value of the constraints below this share of the largest says that one of them repeats others."""
+"""A singular value of the constraints below this share of the largest says that one constraint repeats others."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ class BeyondLimit(NamedTuple):
 
     @property
     def word(self) -> str:
-        """The name of an outcome: those of solves, paths and motions have it alike."""
+        """Name of the outcome, which solves, paths and motions share."""
         return {"path": "PATH_VANISHED", "plane": "OUT_OF_PLANE"}.get(self.margin.kind, "BEYOND_MATERIAL")
 
     @property

@@ -22,7 +22,7 @@ from cosserat_casadi.scene.input_fields import InputField
 
 
 class ContactPoint(ObstacleLoadRecord):
-    """An obstacle that touches one section of a rod, or a body; radius and thickness are those of a disk."""
+    """An obstacle that touches one section of a rod, or a body; radius and thickness belong to a disk."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N", 1, lower=0.0)}
 

@@ -42,7 +42,7 @@ class FlowLoad(Load[scenes.Flow]):
         return load.acts_on_rod(rod)
 
     def wrench(self, load: scenes.Flow, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-        """Force (N/m) and moment (N m/m) in world axes; the moment is that of the added mass in motion."""
+        """Force (N/m) and moment (N m/m) in world axes; the moment comes from the added mass in motion."""
         force: Matrix = ca.DM(3, 1)
         moment: Matrix = ca.DM(3, 1)
         velocity = section.velocity - values["velocity"]
@@ -67,7 +67,7 @@ class FlowLoad(Load[scenes.Flow]):
         return force, moment
 
     def profiles(self, load: scenes.Flow, rod: object, X: Numbers, columns: int) -> FloatArray:
-        """One all along the rod: its sizes are data of the sections."""
+        """Factors on the columns of the wrench, 1 all along the rod: sizes of the rod are data of the sections."""
         return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Flow, site: Site) -> Numbers:

@@ -37,7 +37,7 @@ class FoundationLoad(Load[scenes.Foundation]):
         return ca.dot(values["stiffness"], displacement**2) / 2
 
     def profiles(self, load: scenes.Foundation, rod: object, X: Numbers, columns: int) -> FloatArray:
-        """One all along the span."""
+        """Factors on the columns of the wrench, 1 all along the span, shape (columns, len(X))."""
         return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Foundation, site: Site) -> Numbers:

@@ -165,7 +165,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     Attributes:
         record: the record of the scene, whose word, inputs and units are those of the load.
         kind: the word of the scene format.
-        per_mass: whether its force is one per mass, which acts on masses that are fixed to sections as well.
+        per_mass: whether its force is per mass, and so acts on masses that are fixed to sections as well.
         nodal: name of an input that holds numbers of each node of the rod; empty for none.
     """
 
@@ -182,7 +182,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes.
 
-        By default they are minus the derivatives of :meth:`energy`, or of a load without one those of the scene.
+        By default they are minus the derivatives of :meth:`energy`; for a load without an energy, those of the scene.
 
         Returns:
             force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j
@@ -269,9 +269,9 @@ class Load(Kind, ABC, Generic[RecordType]):
         Args:
             load: the load as the scene has it.
             label: its name in the legend; empty where the legend names it already.
-            position: of the k sections it is drawn at, world axes, shape (3, k), m.
-            force: on them, world axes, shape (3, k), N or N/m.
-            moment: likewise, N m or N m/m.
+            position: positions of the k sections it is drawn at, world axes, shape (3, k), m.
+            force: force on these sections, world axes, shape (3, k), N or N/m.
+            moment: moment on these sections, world axes, shape (3, k), N m or N m/m.
         """
         if self.abscissa(load) is not None:
             return self.point_arrows(label, position, force, moment)
@@ -338,7 +338,7 @@ def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers
 
 
 def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Matrix:
-    """The same where some numbers are expressions; zeros are not stored."""
+    """Three components as one 3×k matrix, where some numbers are expressions; zeros are not stored."""
     rows = [component if isinstance(component, tuple) else (component,) for component in components]
     longest = max(len(row) for row in rows)
     padded = [(*row, *[0.0] * (longest - len(row))) for row in rows]

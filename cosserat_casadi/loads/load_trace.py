@@ -20,13 +20,13 @@ from cosserat_casadi.scene.records import Entry, Record
 KERNEL_ARGUMENTS = ["position", "rotation", "parameters", "data"]
 
 REMEMBERED = 64
-"""Kernels that are kept: those of the loads of some scenes, each a few kilobytes."""
+"""Kernels that are kept: enough for the loads of some scenes, each a few kilobytes."""
 
 Patterns = tuple[tuple[str, tuple[int, ...]], ...]
 """Values by name with their sparsity patterns as CasADi compresses them."""
 
 NO_RATES: Mapping[str, Matrix] = MappingProxyType({})
-"""Of a kernel at rest."""
+"""Rates of a kernel at rest: none."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class TracedLoad:
     Attributes:
         member: the kind of load.
         load: the load as the scene has it.
-        kernel: its wrench at rest in world axes; data are the profiles of force and moment, then those of
+        kernel: its wrench at rest in world axes; data are the profiles of force and moment, then the numbers of
             :meth:`Load.data`.
         moving: its wrench in motion, where it depends on rates; None for one that does not know of motion.
         columns: number of profiles of the force and of the moment.
@@ -247,7 +247,7 @@ def has_potential(
 
 
 def expressions_in(record: Any) -> dict[str, Matrix]:
-    """Expressions in a record by their paths, but for those of its inputs."""
+    """Expressions in a record by their paths, but for expressions of its inputs."""
     found: dict[str, Matrix] = {}
     # What stands for a record in another program has none.
     if not isinstance(record, Entry):

@@ -50,7 +50,7 @@ class MagnetLoad(Load[scenes.Magnet]):
         return -ca.dot(self._moment(load, section, values), field)
 
     def profiles(self, load: scenes.Magnet, rod: object, X: Numbers, columns: int) -> FloatArray:
-        """One: what varies along the rod is its magnetisation."""
+        """Factors on the columns of the wrench, 1 all along the rod: its magnetisation, which varies, is data."""
         return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Magnet, site: Site) -> Numbers:

@@ -41,7 +41,7 @@ class ObstacleLoad(Load[ObstacleRecordType]):
         return body
 
     def profiles(self, load: ObstacleRecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
-        """One all along the rod: what varies are data of the sections."""
+        """Factors on the columns of the wrench, 1 all along the rod: numbers that vary are data of the sections."""
         return np.ones((columns, X.shape[0]))
 
 

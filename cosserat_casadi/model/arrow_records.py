@@ -35,10 +35,10 @@ class DrawnLoad:
         member: the kind of load.
         load: the load as the scene has it.
         label: its name in the legend; empty where the legend names it already.
-        on_body: whether it acts on a body, as that of one section.
-        position: of the k sections, world axes, 3×k, m.
-        force: on them, world axes, 3×k, N or N/m.
-        moment: likewise, N m or N m/m.
+        on_body: whether it acts on a body, as on one section.
+        position: positions of the k sections, world axes, 3×k, m.
+        force: force on these sections, world axes, 3×k, N or N/m.
+        moment: moment on these sections, world axes, 3×k, N m or N m/m.
     """
 
     member: Load[Any]
@@ -71,7 +71,7 @@ class LoadArrows:
         discrete: the scene.
         inputs: the stacked inputs.
         rod_poses: poses of sections, from a rod's name and abscissae.
-        body_pose: pose of a body, from its name, as that of one section.
+        body_pose: pose of a body, from its name, as the pose of one section.
     """
 
     discrete: DiscreteScene

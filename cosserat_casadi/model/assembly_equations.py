@@ -533,7 +533,7 @@ class BlockMatrix:
     """A square matrix made of blocks; blocks in the same rows and columns are added.
 
     Attributes:
-        ends: last row of each block row, plus one; the same for columns.
+        ends: last row of each block row, plus one; block columns end alike.
         entries: blocks by the first of their rows and the first of their columns.
     """
 

@@ -74,7 +74,8 @@ class BorneLoad:
     def with_motions(self, frame: FrameName) -> Iterator[tuple[FrameName, Matrix]]:
         """Derivatives of the load's wrench on a frame with the motions of frames, 6×6 each.
 
-        Of the body all of them; of the base of the rod that with the body, for the rod itself passes on the rest.
+        Of the wrench on the body all derivatives; of the wrench on the base of the rod the derivative with the body,
+        for the rod itself passes on the rest.
         """
         if frame == self.body:
             yield self.body, self._wrench_with_body
@@ -149,13 +150,13 @@ class BorneLoad:
 
     @cached_property
     def _about_body(self) -> Matrix:
-        """From wrenches about the base to those about the origin of the body, M − o × F, 6×6."""
+        """Matrix from wrenches about the base to wrenches about the origin of the body, M − o × F, 6×6."""
         moment_rows = ca.horzcat(ca.DM.eye(3), -hat(self._origin))
         force_rows = ca.horzcat(ca.DM(3, 3), ca.DM.eye(3))
         return ca.vertcat(moment_rows, force_rows)
 
     @cached_property
     def _to_world(self) -> Matrix:
-        """From the axes of the base to those of the world, 6×6."""
+        """Rotation of wrenches from the axes of the base into the axes of the world, 6×6."""
         rotation = self.system.base(self.rod).rotation
         return ca.diagcat(rotation, rotation)

@@ -114,7 +114,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         return self.scene.rubs and self.with_memory.inputs.memory is not None
 
     def with_flows(self, x: FloatArray) -> FloatArray:
-        """Unknowns of :attr:`in_motion` at rest: those of this model, then flows, shape (in_motion.size,)."""
+        """Unknowns of :attr:`in_motion` at rest: unknowns of this model, then flows, shape (in_motion.size,)."""
         return np.concatenate([x, np.zeros(self.in_motion.size - self.size)])
 
     @cached_property
@@ -144,7 +144,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @property
     def shape_unknowns(self) -> npt.NDArray[np.bool_]:
-        """Which unknowns are those of a shape, shape (size,): strains and poses, no forces."""
+        """Which unknowns belong to a shape, shape (size,): strains and poses, no forces."""
         return self.discrete.unknowns.differential
 
     @property
@@ -225,7 +225,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether loads and actuators derive from a potential at these inputs, so that stability has a meaning.
 
-        It depends on which inputs are zero, and on nothing else of them: the answer to each such pattern is kept.
+        It depends on which inputs are zero, and on nothing else: the answer to each such pattern is kept.
         """
         bound = self.at()
         known: dict[bytes, bool] = bound.__dict__.setdefault("_potential", {})
@@ -270,7 +270,7 @@ def check_axes(nominal: DiscreteScene, parameters: ParameterLayout) -> None:
     """Refuse axes as parameters that decide which directions other joints hold.
 
     Raises:
-        SceneError: with all of them.
+        SceneError: with all such axes.
     """
     problems = []
     decisive = decisive_axes(nominal.unloaded)

@@ -42,7 +42,7 @@ NODES = 10
 """A discretisation that can bend every way a rod can."""
 
 SEED = 20250711
-"""Of the random shape."""
+"""Seed of the random shape."""
 
 RANK = 1e-8
 """Share of the largest singular value below which one counts as zero."""

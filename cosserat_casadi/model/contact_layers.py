@@ -34,7 +34,7 @@ LOOSEST_NODES = 1.5
 farther apart a rod sinks in between them, and its shape hangs on where they are."""
 
 USUAL_NODES = 12
-"""Intervals of an element up to which nodes see a layer: those of five modes."""
+"""Intervals of an element up to which nodes see a layer: as many as five modes take."""
 
 SECTION_SPACING = 0.5
 """Distance of the sections at which a thinner layer is summed over half of the stretch that it presses, on the fewest
@@ -48,10 +48,10 @@ LOOSEST_SECTIONS = 0.75
 they are farther apart, the stiffness that they give the layer hangs on where they are."""
 
 FEWEST_NODES = 8
-"""Intervals that are called so: those of three modes. On more intervals sections are as much closer."""
+"""Fewest intervals of an element: as many as three modes take. On more intervals sections are as much closer."""
 
 MOST_LAYER_NODES = 60
-"""Most intervals that layers alone ask for; those of thinner layers wait until the grid is refined."""
+"""Most intervals that layers alone ask for; intervals for thinner layers wait until the grid is refined."""
 
 NARROW = 0.2
 """Share of an element from an end that a load asks for within which contact asks for none."""
@@ -112,7 +112,7 @@ def _stiffness(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> float:
 
 
 def _body_stiffness(obstacle: scenes.ObstacleRecord, body: scenes.Body, rods: Mapping[str, DiscreteRod]) -> float:
-    """Stiffness of an obstacle for a body, N/m: the scene's, or that of a rod as long as the body is thick."""
+    """Stiffness of an obstacle for a body, N/m: the scene's, or as for a rod as long as the body is thick."""
     assert obstacle.width is not None
     if obstacle.stiffness is not None:
         return obstacle.stiffness * 2 * _radius(body)
@@ -246,7 +246,7 @@ def inexact_beside(scene: scenes.Scene) -> float:
 
 
 def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:
-    """Ends that loads ask for, and those of contact that are not next to one of them."""
+    """Element ends that loads ask for, and ends that contact asks for where no end of a load is near."""
     if not further:
         return asked_for
     nearest = NARROW / (len(further) - 1)

@@ -212,12 +212,12 @@ def _sections(name: str, rod: DiscreteRod, spacing: float) -> int:
 class PairHistory:
     """The history of friction of a pair: where sections were at the last point of a path, and how far dragged.
 
-    The way of two sections past each other is that of the points that touch since the last point of the path, and how
-    far the section of the first rod was dragged then. So a section that comes to touch another one keeps its drag.
+    The way of two sections past each other is the way of the points that touch since the last point of the path, and
+    how far the section of the first rod was dragged then. So a section that comes to touch another one keeps its drag.
 
     Attributes:
         drag: how far the sections of the first rod are dragged, 3×k, m, world axes.
-        poses: of each rod at the nodes of its grid, POSE×M, world axes; zeros before anything is known.
+        poses: poses of each rod at the nodes of its grid, POSE×M, world axes; zeros before anything is known.
     """
 
     drag: Matrix
@@ -225,12 +225,12 @@ class PairHistory:
 
     @classmethod
     def of_column(cls, column: Matrix, pair: ContactPair, grids: Mapping[str, Grid]) -> PairHistory:
-        """From the input, whose sections may be others than those of the pair are now.
+        """The history that an input holds, whose sections may be others than the pair has now.
 
         Args:
             column: the input, h×1.
             pair: the pair.
-            grids: of the rods, when it was remembered.
+            grids: grids of the rods when the history was remembered.
         """
         poses = {}
         for name in dict.fromkeys(pair.rods):
@@ -241,12 +241,12 @@ class PairHistory:
 
     @property
     def column(self) -> Matrix:
-        """As the input, h×1."""
+        """The history as an input holds it, h×1."""
         return ca.vertcat(*[ca.vec(poses) for poses in self.poses.values()], ca.vec(self.drag))
 
     @property
     def is_known(self) -> Matrix:
-        """One where there is a history, zero before there is one, 1×1: rotations are none then."""
+        """1 where there is a history, 0 before there is one, when rotations are zeros; 1×1."""
         return ca.sumsqr(next(iter(self.poses.values()))[3:, 0]) / 3
 
     def drag_at(self, coordinates: FloatArray) -> Matrix:

@@ -145,7 +145,7 @@ class DiscreteScene:
         parameters: the parameters that its expressions are of.
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
         moving: whether it is for a motion, in which stress that relaxes has flows.
-        memory: grids of the rods at whose nodes loads remember sections along a path; None for those of this scene.
+        memory: grids of the rods at whose nodes loads remember sections along a path; None for the scene's own grids.
         layers: widths of smooth contact over those of the scene.
         fewest_sections: least sections of each element at which thin layers are summed, by the name of the load.
     """
@@ -178,12 +178,12 @@ class DiscreteScene:
 
     @property
     def in_motion(self) -> DiscreteScene:
-        """The same scene for a motion."""
+        """This scene for a motion."""
         scaling = None if self.scaling is None else self.scaling.in_motion
         return replace(self, scaling=scaling, moving=True)
 
     def told_as(self, scene: scenes.Scene) -> DiscreteScene:
-        """The same constants for a scene that differs in what no equation reads, as :meth:`Scene.of_equations`."""
+        """The constants of this scene for a scene that no equation tells from it, as :meth:`Scene.of_equations`."""
         told = replace(self, scene=scene)
         # They follow from the places of frames, which take time to find.
         assert self.unknowns, "a scene has unknowns"
@@ -274,7 +274,7 @@ class DiscreteScene:
 
     @cached_property
     def with_memory(self) -> DiscreteScene:
-        """The same scene, in which loads and pairs of rods that remember sections have an input for it."""
+        """This scene with an input of memory for every load and pair of rods that remembers sections."""
         entries = list(self.layout.entries)
         for load in remembering(self.loads):
             numbers = EFFECTS[load.kind].remembers(load)
@@ -302,7 +302,7 @@ class DiscreteScene:
         return bool(self.pairs) or any(isinstance(load, ContactLayer) for load in self.loads)
 
     def with_layers(self, ratio: float) -> DiscreteScene:
-        """The same scene with other widths, which push as hard where gaps are zero."""
+        """This scene with widths of smooth contact times a ratio; it pushes as hard where gaps are zero."""
         return replace(self, layers=ratio)
 
     @cached_property
@@ -487,7 +487,7 @@ class DiscreteScene:
 
     @cached_property
     def richer(self) -> Richer:
-        """The same scene with modes and intervals added, on which the error of an answer shows."""
+        """This scene with modes and intervals added, on which the error of an answer shows."""
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
         discretisation = {
@@ -513,7 +513,7 @@ class DiscreteScene:
 
 @dataclass(frozen=True)
 class Richer:
-    """A scene with modes and intervals added to those of another, and how their unknowns correspond.
+    """A scene with more modes and intervals than another, and how the unknowns of both correspond.
 
     Attributes:
         coarse: the scene whose answers are judged.
@@ -660,11 +660,11 @@ def discrete_scene(
 def with_numbers(
     nominal: DiscreteScene, scene: scenes.Scene, parameters: ParameterLayout = NO_PARAMETERS
 ) -> DiscreteScene:
-    """A scene with other numbers, or expressions, under the scaling and the grids of another.
+    """A scene with other numbers, or expressions, under the scaling and the grids of a nominal scene.
 
     Args:
         nominal: the scene that scales the equations.
-        scene: the same with other numbers.
+        scene: the scene with other numbers.
         parameters: what its expressions are of.
     """
     rods = {}

@@ -31,7 +31,7 @@ NODES_ABOVE_MODES = 3
 """Intervals beyond the modes of a strain on which the balance of these modes is exact enough for an error."""
 
 NODES_ABOVE_MODES_IN_CONTACT = 8
-"""The same where obstacles press on a few nodes: forces that act on so short a part of a rod need more of them."""
+"""Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""
 
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""

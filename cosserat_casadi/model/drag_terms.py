@@ -131,7 +131,7 @@ class RodDrag(Drag):
 
     @property
     def dissipated_power(self) -> Matrix:
-        """Power that the drag takes, 1×1, W: that of its forces along the motion that the body sees."""
+        """Power that the drag takes, 1×1, W: the power of its forces along the motion that the body sees."""
         force, moment = self.sections.drag
         assert self.load.motion is not None, "a drag is one of motion"
         velocity, spin = map(self.sections.at_sections, (self.load.motion.velocity, self.load.motion.angular_velocity))

@@ -32,7 +32,7 @@ At 1e-12 a rod with a load at each is still solved to its tolerance.
 
 
 def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
-    """Abscissae of a rod at which an element must end, in the order of the scene; several may be the same."""
+    """Abscissae of a rod at which an element must end, in the order of the scene; several may coincide."""
     places: list[Scalar] = []
     for record in scene.causes:
         member = EFFECTS[record.kind]
@@ -77,7 +77,7 @@ def moved_ends(
 
     Args:
         nominal: the scene that the elements were made for.
-        scene: the same with other numbers.
+        scene: the scene with other numbers.
         rod: name of the rod.
         breaks: where its elements end in the nominal scene.
     """
@@ -97,7 +97,7 @@ def unmovable(name: str, nominal: scenes.Scene, scene: scenes.Scene) -> Iterator
     Args:
         name: of the parameter.
         nominal: the scene with its own numbers.
-        scene: the same with symbols for those of this parameter alone.
+        scene: the scene with symbols for the numbers of this parameter alone.
     """
     for rod in nominal.rods:
         before = places_on(nominal, rod.name)
@@ -145,7 +145,7 @@ def moving_ends(
 
     Args:
         nominal: the scene with its own numbers.
-        scene: the same with entries of the symbol.
+        scene: the scene with entries of the symbol.
         symbol: p.
         names: parameters that move places, by rods.
     """

@@ -264,7 +264,7 @@ class UnloadedScene:
         return index, np.eye(3) if self.records[rod].base.rod is not None else self.base(rod).rotation
 
     def _base_keeps_plane(self, rod: str) -> bool:
-        """Whether the joint at a base keeps its rod in the x–z plane of the base, as that of its body is kept."""
+        """Whether the joint at a base keeps its rod in the x–z plane of the base, as the body's plane is kept."""
         found = self.base_joint(rod)
         if found is not None:
             joint = self.scene.joints[found[0]]
@@ -309,7 +309,7 @@ class UnloadedScene:
         return all(sine <= FLAT for sine in sines)
 
     def body_frame(self, name: str) -> FloatingFrame:
-        """A body's frame in its mean pose over the unloaded rods, in units of the stiffest and the longest of them."""
+        """A body's frame in its mean pose over the unloaded rods, in units of the stiffest and the longest rod."""
         if name not in self._bodies:
             (body,) = [body for body in self.scene.bodies if body.name == name]
             self._bodies[name] = self._new_body_frame(body)
@@ -488,8 +488,8 @@ def _turned(closed: NumericPose, joint: scenes.Joint, rod: scenes.Rod) -> Numeri
 
     Args:
         closed: the base with the axes of the joint, world pose.
-        joint: it.
-        rod: whose base it is; with the default orientation, that of the world, it begins as the body points.
+        joint: the joint.
+        rod: the rod; with the default orientation, the world's, it begins as the body points.
     """
     kind = JOINT_KINDS[joint.kind]
     said = rod.base.tangent is not None or rod.base.quaternion != scenes.Base().quaternion

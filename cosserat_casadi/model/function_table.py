@@ -32,7 +32,7 @@ ARGUMENT_UNITS: dict[str, str] = {
     "v": "1/s",
     "a": "1/s²",
 }
-"""Units of the arguments that have one; "inputs" stands for those of the stacked inputs, so "parameters"."""
+"""Units of the arguments that have one; "inputs" stands for the units of the stacked inputs, so "parameters"."""
 
 SCALAR_ARGUMENTS = frozenset({"X", "load_factor", "load_factor_rate"})
 """Arguments that are one number whatever the scene: functions in C take them by value."""

@@ -38,7 +38,7 @@ class Compliance:
 
 
 def smoothing_at(first: float, last: float, load_factor: LoadFactor) -> Matrix:
-    """Smoothing of a corner: falls from what the unloaded scene has to that of the scene."""
+    """Smoothing of a corner, 1×1: falls from ``first + last`` in the unloaded scene to ``last`` in the scene."""
     if load_factor is None:
         return ca.DM(last)
     return last + (1 - load_factor) * first

@@ -203,7 +203,7 @@ def _rod_value(rod: scenes.Rod, field: str) -> FloatArray:
 
 
 def _axes(free: scenes.FreeInput) -> str:
-    """Axes of an input: those of the record's ``frame`` where the field is declared to follow it."""
+    """Axes of an input: the axes of the record's ``frame`` where the field is declared to follow it."""
     if free.declared.components == 1:
         return "none"
     if free.declared.axes == "section":
@@ -244,7 +244,7 @@ def input_values(layout: InputLayout, record: scenes.LoadRecord | scenes.Actuato
 def input_value(
     layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator | scenes.JointRecord, field: str, inputs: Matrix
 ) -> Matrix | None:
-    """One input of a load, an actuator or a joint; None where it is zero for good."""
+    """An input of a load, an actuator or a joint; None where it is zero for good."""
     entries = layout.of_load(record.name or "", field)
     default = scene_value(record, field)
     if entries is None:

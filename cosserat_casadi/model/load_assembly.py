@@ -39,8 +39,8 @@ class RodBase:
     """Pose of a rod's base in the world, or as a body sees it.
 
     Attributes:
-        position: 3×1, world axes, or those of the body, m.
-        base_R_world: 3×3, turns world coordinates, or those of the body, into those of the base.
+        position: 3×1, axes of the world or of the body, m.
+        base_R_world: 3×3, turns coordinates of the world, or of the body, into coordinates of the base.
     """
 
     position: Matrix
@@ -136,7 +136,7 @@ class RodLoads:
         return values
 
     def site(self, load: scenes.LoadRecord) -> Site:
-        """Sections of the rod that a load acts on, with its numbers of them."""
+        """Sections of the rod that a load acts on, with the load's numbers of these sections."""
         return replace(site_of(self.discrete, self.rod, load), nodal=self._nodal(load))
 
     def _nodal(self, load: scenes.LoadRecord) -> Matrix | None:
@@ -206,7 +206,7 @@ class RodLoads:
 
 
 def site_of(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
-    """Sections of a rod that a load acts on: one, those of the nodes of its span, or closer ones."""
+    """Sections of a rod that a load acts on: one section, sections at the nodes of its span, or closer ones."""
     discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
     member = EFFECTS[load.kind]

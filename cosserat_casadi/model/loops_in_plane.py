@@ -78,7 +78,7 @@ def closing_joints(unloaded: UnloadedScene) -> dict[int, FloatArray]:
 
 
 def _normals(links: list[_Link]) -> Iterator[FloatArray]:
-    """Unit vectors along the axes of hinges between bodies, world axes, those of one line once."""
+    """Unit vectors along the axes of hinges between bodies, world axes; hinges on one line give one vector."""
     found: list[FloatArray] = []
     for link in links:
         rotations = link.held.rotations

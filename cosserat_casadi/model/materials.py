@@ -1,4 +1,4 @@
-"""Laws of materials: the energy of a section beyond that of its Hooke tensor, from the record of the material.
+"""Laws of materials: the energy of a section beyond its Hooke tensor's, from the record of the material.
 
 A member is one class: it gives :meth:`Law.beyond_hooke`. Residual, Jacobian, stability, motion and C follow from the
 energy. The Hooke tensor stays that of Young's modulus; it scales the equations. See docs/theory.md, section 6.
@@ -94,7 +94,7 @@ class Law(Kind, ABC, Generic[RecordType]):
 
     @abstractmethod
     def beyond_hooke(self, material: RecordType, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
-        """Energy beyond that of the Hooke tensor; None of a linear rod.
+        """Energy of a section beyond the Hooke tensor's; None for a linear rod.
 
         Raises:
             SceneError: the law does not fit the section of the rod.
@@ -113,7 +113,7 @@ class LinearLaw(Law[records.LinearMaterial]):
     record = records.LinearMaterial
 
     def beyond_hooke(self, material: records.LinearMaterial, of_rod: LawOfRod) -> None:
-        """None."""
+        """Return None: a linear material has no energy beyond the Hooke tensor's."""
         return
 
 
@@ -165,7 +165,7 @@ class TabulatedLaw(Law[records.TabulatedMaterial]):
     record = records.TabulatedMaterial
 
     def beyond_hooke(self, material: records.TabulatedMaterial, of_rod: LawOfRod) -> EnergyBeyondHooke | None:
-        """Energy of every curve less that of the Hooke tensor."""
+        """Energy of every curve less the Hooke tensor's."""
         if material.table.bending is not None:
             _refuse_unless_round(of_rod.rod, "table.bending")
         curves = {}
@@ -334,7 +334,7 @@ class NeoHookeanLaw(RubberLaw[records.NeoHookean]):
         return [material.youngs_modulus]
 
     def energy(self, stretch: Matrix, coefficients: Matrix) -> Matrix:
-        """With μ = E/3."""
+        """Energy of a fibre per volume, with μ = E/3, 1×1, J/m³."""
         return coefficients[0] / 6 * _first_invariant(stretch)
 
 

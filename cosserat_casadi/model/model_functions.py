@@ -162,7 +162,7 @@ class ModelFunctions:
         For each tendon whose path can change the length per length of the rod that it has left where it has least: at
         zero the rod has pressed it to nothing. Then for each joint or support of rods in a plane, where inputs or
         parameters may take it out of the plane. Then for each rod whose material is not linear, and for each chamber
-        whose area grows, how far it is from where the law ends. None where none of them is there.
+        whose area grows, how far it is from where the law ends. None for a scene without any such thing.
         """
         margins = strain_margins(written.system)
         return [ca.vertcat(*margins.values())] if margins else None
@@ -210,9 +210,9 @@ class ModelFunctions:
     def richer_balance(self, written: Expressions) -> list[Matrix]:
         """(x, correction, missing, inputs) ↦ the balance with modes and intervals added at a corrected answer.
 
-        One below the other, at x + correction and the missing coordinates: elastic steps of the unknowns and of the
-        coordinates of the missing modes, the residual in the unknowns, and the watched poses and lengths, as the next
-        function gives them. See docs/theory.md, section 10.
+        It stacks, at x + correction and the missing coordinates: elastic steps of the unknowns and of the coordinates
+        of the missing modes, the residual in the unknowns, and the watched poses and lengths, as the next function
+        gives them. See docs/theory.md, section 10.
         """
         richer = written.discrete.richer
         corrected = richer.joined(written["x"] + written["correction"], written["missing"])
@@ -445,7 +445,7 @@ def resolution_index(written: Expressions) -> Matrix:
 
 
 def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
-    """Generalised force of loads and actuators, and base wrench in world axes, of one rod without the others."""
+    """Generalised force of loads and actuators, and base wrench in world axes, of one rod alone."""
     rod = written.discrete.rods[written.owner]
     arguments = Arguments(written["q"], written["inputs"])
     rotation = quaternion_to_matrix(written["base_quaternion"])
@@ -476,8 +476,8 @@ def _section_in_world(written: Expressions, rod: str, node: int) -> Pose:
 def _section_derivatives(written: Expressions, rod: str, node: int, carried: Pose | None = None) -> list[Matrix]:
     """Derivatives of the pose of a section, or of a body that it carries at this pose in its axes, with all symbols.
 
-    From the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base
-    adds those of its pose.
+    They follow from the variations of the rod's fields: δr of the section, and δQ = ½ (0, δθ) ⊗ Q. A floating base
+    adds the derivatives with its pose.
     """
     discrete = written.discrete
     section = _section_in_world(written, rod, node)

@@ -63,14 +63,14 @@ class MotionEnergy:
 
     @cached_property
     def load_is_dead(self) -> FloatArray:
-        """One for every load whose energy is told, else zero, shape (loads,): dead forces and smooth contact."""
+        """1 for every load whose energy is told, a dead force or smooth contact, else 0; shape (loads,)."""
         discrete = self.system.discrete
         flags = [isinstance(load, ContactLayer) or is_dead_force(discrete, load) for load in self._loads]
         return np.asarray(flags, dtype=float)
 
     @cached_property
     def of_loads(self) -> Matrix:
-        """Energy of each load, (loads)×1, J: −Σ f·r of a dead force, that of smooth contact, zero of any other."""
+        """Energy of each load, (loads)×1, J: −Σ f·r for a dead force, stored for smooth contact, else zero."""
         energies = []
         for load, dead in zip(self._loads, self.load_is_dead, strict=True):
             energy = ca.DM(1, 1)

@@ -36,7 +36,7 @@ WIDTH = "give each {width}; or solve the scene, or leave them out"
 """Remedy where contact that is exact is not looked for."""
 
 RELAXED = "take relaxed_contact(model) for the model; or give each {width}"
-"""The same in problems at rest."""
+"""Remedy where contact that is exact is not looked for in a problem at rest."""
 
 SUGGESTED = 5e-3
 """Width over the length of the shortest rod: a thinner layer takes more modes and shorter steps of a load path."""

@@ -72,7 +72,7 @@ def is_damped(scene: scenes.Scene) -> bool:
 
 
 def without_damping(scene: scenes.Scene) -> scenes.Scene:
-    """The scene without damping and friction, and without the parameters that were of them."""
+    """The scene without damping and friction, and without parameters for these."""
     rods = tuple(rod.model_copy(update={"damping": None}) for rod in scene.rods)
     obstacles = tuple(obstacle.model_copy(update={"damping": 0.0, "friction": 0.0}) for obstacle in scene.obstacles)
     contacts = tuple(contact.model_copy(update={"friction": 0.0}) for contact in scene.rod_contacts)

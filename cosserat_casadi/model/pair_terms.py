@@ -137,8 +137,8 @@ class ContactSide:
         """Load on the nodes that does the work of forces and moments on the sections, per length, base axes.
 
         Args:
-            force: on the sections, 3×S, N, world axes.
-            moment: likewise, N m.
+            force: force on the sections, 3×S, N, world axes.
+            moment: moment on the sections, 3×S, N m, world axes.
         """
         lengths = ca.repmat(as_matrix(self.discrete.node_lengths).T, 3, 1)
         per_length = [

@@ -31,7 +31,7 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
     """The parameters of a model, stacked into one vector p.
 
     Attributes:
-        moving: element ends that some of them move.
+        moving: element ends that some parameters move.
     """
 
     moving: tuple[MovingEnds, ...] = ()
@@ -66,7 +66,7 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
         return [(entry, span) for entry, span in self if entry.keys[-1] == "quaternion" and entry.size == 4]
 
     def between(self, first: FloatArray, last: FloatArray, share: float) -> FloatArray:
-        """Parameters on the straight line between two sets of them, quaternions of unit length, as a scene has them."""
+        """Parameters on the straight line between two stacks, quaternions of unit length, as a scene has them."""
         p = (1.0 - share) * first + share * last
         for _, span in self._turns:
             p[span] /= max(float(np.linalg.norm(p[span])), float(np.finfo(float).tiny))
@@ -111,7 +111,7 @@ def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
     """The parameters that a scene names.
 
     Raises:
-        SceneError: one of them would move a place that elements cannot follow.
+        SceneError: a parameter would move a place that elements cannot follow.
     """
     layout = ParameterLayout(tuple(scene.named_parameters()))
     problems: list[Problem] = []
@@ -150,8 +150,8 @@ class WithParameters(ABC):
         Unknowns keep their meaning: they are counted in units of the scene's numbers.
 
         Args:
-            values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
-                (parameters.size,).
+            values: parameters by name, where parameters not named keep the scene's values; or all parameters stacked,
+                shape (parameters.size,).
 
         Raises:
             SceneError: a name is unknown, the scene refuses a value, or a load cannot be where it is then.

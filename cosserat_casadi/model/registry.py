@@ -47,5 +47,5 @@ for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad, ContactLayerLo
 
 
 def remembering(loads: Iterable[LoadRecord]) -> list[Any]:
-    """Loads that remember the sections of their ``rod``: those of an ``obstacle`` that rubs."""
+    """Loads that remember the sections of their ``rod``: loads of an ``obstacle`` that rubs."""
     return [load for load in loads if EFFECTS[load.kind].remembers(load)]

@@ -63,7 +63,7 @@ class RidingBody:
 
     @cached_property
     def in_section(self) -> Pose:
-        """Its pose in the axes of the section."""
+        """Pose of the body in the axes of the section."""
         orientation = unit_quaternion(self.joint.orientation or IDENTITY.quaternion.tolist())
         held = written_pose(as_vector(self.joint.position), orientation)
         return (held.pose if isinstance(held, NumericPose) else held).inverse

@@ -127,7 +127,7 @@ class SceneActuators:
         )
 
     def _among_unknowns(self, rod: str, columns: Matrix) -> Matrix:
-        """Columns on the coordinates of one rod, among those of all unknowns."""
+        """Columns on the coordinates of one rod as columns on all unknowns, zero elsewhere."""
         entries = self.discrete.unknowns.strain(rod)
         count = columns.shape[1]
         zeros = type(columns)

@@ -140,12 +140,12 @@ def written_constraints(
 ) -> list[PlacedConstraint]:
     """Constraints of a scene with other numbers, or expressions, in the places that the scene gives.
 
-    They hold the directions that those of the nominal scene hold, in its scaling.
+    They hold the directions that constraints of the nominal scene hold, in its scaling.
 
     Args:
         placed: the constraints of the nominal scene.
-        nominal: that scene.
-        scene: the same with other numbers.
+        nominal: the nominal scene.
+        scene: the scene with other numbers.
     """
     after = _given_places(scene)
     # Sections of carriers and of joints move along their rods; supports hold tips.
@@ -298,7 +298,7 @@ def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
 
 
 def _base_path(scene: scenes.Scene, index: int) -> str:
-    """Path of the table that says how the base of a rod is held: that of a joint, or that of the rod."""
+    """Path of the table that says how the base of a rod is held: the table of a joint, or of the rod."""
     joint = scene.base_joints.get(scene.rods[index].name)
     return f"rods[{index}].base" if joint is None else f"joints[{joint}]"
 
@@ -467,10 +467,10 @@ def _with_coordinate(
     """A joint with its coordinate, where something acts along it.
 
     Args:
-        placed: the constraint without it.
+        placed: the constraint without the coordinate.
         unloaded: the scene.
         index: place of the joint in the scene's list.
-        rotation: turns the axes of the section into those of the joint's axis, shape (3, 3).
+        rotation: turns the axes of the section into the axes of the joint, shape (3, 3).
         normal: unit normal of the plane, in the axes of the section, that its rod stays in; None of a rod in space.
 
     Raises:

@@ -79,7 +79,7 @@ class SceneEquations:
 def by_friction(system: System, arguments: Sequence[Matrix]) -> list[Matrix]:
     """Derivatives of the residual with arguments by the change of friction between rods, and of drag on bodies.
 
-    The equations are linear in it, and at fixed friction their derivatives are those of any dead load.
+    The equations are linear in friction and drag, and at fixed friction their derivatives are as for any dead load.
     """
     frictions = [friction for terms in system.rubbing for friction in terms.frictions]
     loads = ca.vertcat(*map(ca.vec, frictions))

@@ -157,7 +157,7 @@ class SceneMotionEquations:
         ]
 
     def _to_unknowns(self, rod: str, base: FrameName) -> Jet:
-        """From the unknowns of a rod and of its base to strains and the motion of the base in its axes, with rates."""
+        """Jet from the unknowns of a rod and its base to strains and the motion of the base in its axes."""
         base_R_world = self.system.frame(base).rotation.T
         moved = self.system.frame_motions[base].motion_jet(base_R_world)
         count = self.system.discrete.rods[rod].size

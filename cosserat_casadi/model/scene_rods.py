@@ -75,7 +75,7 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
 
 
 def fixed_masses(scene: scenes.Scene, rod: str) -> tuple[FixedMass, ...]:
-    """Masses of the disks on a rod, those of solid cylinders."""
+    """Masses of the disks on a rod, as of solid cylinders."""
     masses = []
     for row in scene.disks:
         if row.rod != rod or is_zero(row.mass):

@@ -64,7 +64,7 @@ class SectionPoses:
 
     @cached_property
     def by_unknowns(self) -> Matrix:
-        """∂[position; quaternion]/∂x of one section after the other, 7k×size, where they are written in symbols x."""
+        """∂[position; quaternion]/∂x of one section after another, 7k×size, where they are written in symbols x."""
         discrete = self.system.discrete
         floats = discrete.unloaded.floating_base(self.rod) is not None
         literal = discrete.rods[self.rod].discretisation.transport == "permuted"

@@ -121,11 +121,11 @@ class CircleSection(CrossSection[scenes.Circle]):
     record = scenes.Circle
 
     def shape(self, sizes: Sizes) -> SectionShape:
-        """From its radius."""
+        """The shape of a circle of this radius."""
         return section.circle(sizes["radius"])
 
     def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
-        """Of a tube without bore."""
+        """Quadrature points over the circle, as over a tube without bore."""
         return _round_fibres(sizes["radius"], 0.0 * sizes["radius"])
 
 
@@ -137,11 +137,11 @@ class AnnulusSection(CrossSection[scenes.Annulus]):
     record = scenes.Annulus
 
     def shape(self, sizes: Sizes) -> SectionShape:
-        """From its radii."""
+        """The shape of an annulus of these radii."""
         return section.annulus(sizes["outer_radius"], sizes["inner_radius"])
 
     def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:
-        """Between its radii."""
+        """Quadrature points between the two radii."""
         return _round_fibres(sizes["outer_radius"], sizes["inner_radius"])
 
 
@@ -153,7 +153,7 @@ class RectangleSection(CrossSection[scenes.Rectangle]):
     record = scenes.Rectangle
 
     def shape(self, sizes: Sizes) -> SectionShape:
-        """From its width along x and its height along y."""
+        """The shape of a rectangle of this width along x and this height along y."""
         return section.rectangle(sizes["width"], sizes["height"])
 
     def fibres(self, sizes: Mapping[str, Matrix]) -> list[Fibre]:

@@ -23,7 +23,7 @@ class StackedEntry(Protocol):
 
     @property
     def name(self) -> str:
-        """As the scene and the command line spell it."""
+        """Name of the value, as the scene and the command line spell it."""
 
     @property
     def default(self) -> FloatArray:
@@ -44,7 +44,7 @@ class StackedLayout(Generic[EntryType]):
     entries: tuple[EntryType, ...]
 
     what: ClassVar[str]
-    """One of them in words, with its article, and several."""
+    """Such a value in words, with its article; ``several`` is its plural."""
 
     several: ClassVar[str]
 
@@ -114,14 +114,14 @@ class StackedLayout(Generic[EntryType]):
             yield Problem(entry.name, f"must be finite, got {value.tolist()}")
 
     def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:
-        """A problem for every name that is none of them."""
+        """A problem for every name that no value has."""
         known = ", ".join(self.names) or "none"
         for name in given:
             if name not in self.names:
                 yield Problem(name, f"is not {self.what} of this model", f"its {self.several} are {known}")
 
     def split(self, stacked: npt.ArrayLike) -> dict[str, FloatArray]:
-        """Values by name from all of them stacked, shape (size,).
+        """Values by name from the stacked values, shape (size,).
 
         Raises:
             SceneError: there are more or fewer.

@@ -46,7 +46,7 @@ class StrainMargin(NamedTuple):
 
 
 def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
-    """Margins where they are least, 1×1 each: first those of paths, then those of planes, then those of laws.
+    """Margins where they are least, 1×1 each: first margins of paths, then of planes, then of laws.
 
     Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a joint in the plane
     of its rods one less the square of its distance from it, over BESIDE; none where neither inputs nor parameters move
@@ -94,7 +94,7 @@ def _plane_margins(system: System) -> dict[StrainMargin, Matrix]:
 
 
 def _with_tilts_of_a_line(gap: Matrix, held: HeldDirections) -> Matrix:
-    """A gap whose rotations out of the plane are those of a hinge's axis: turned by half a turn it is the same line.
+    """A gap whose rotations out of the plane tilt a hinge's axis: turned by half a turn the axis is the same line.
 
     The gap has 2 sin(θ/2) of the angle θ by which the axis is tilted: times cos(θ/2) it is sin θ.
     """

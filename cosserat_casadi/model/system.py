@@ -48,7 +48,7 @@ from cosserat_casadi.rod.viscosity import Viscosity
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench, WrenchAt
 
 DRIVE_GROWTH = 6
-"""Power of the load factor by which drives of joints move: by turns of them at which their constraints are rigid."""
+"""Power of the load factor by which drives of joints move: they turn most where their constraints are rigid."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +56,10 @@ class MotionArguments:
     """Rates of the unknowns and of the inputs of a scene in motion.
 
     Attributes:
-        v: rates of the unknowns, 1/s; those of multipliers and tensions are not read.
-        a: their second derivatives, 1/s².
-        inputs_rate: rates of the stacked inputs, of which those of bases and lengths are read.
-        inputs_acceleration: their second derivatives.
+        v: rates of the unknowns, 1/s; rates of multipliers and tensions are not read.
+        a: second derivatives of the unknowns, 1/s².
+        inputs_rate: rates of the stacked inputs; only rates of bases and lengths are read.
+        inputs_acceleration: second derivatives of the stacked inputs.
     """
 
     v: Matrix
@@ -123,7 +123,7 @@ class System:
         return {name: Tangent(igm, in_loops, given=self.columns.get(name)) for name, igm in self.rods.items()}
 
     def pose_variations(self, rod: str) -> Tangent:
-        """Variations of a rod's sections, without those of what acts on it."""
+        """Variations of a rod's sections, without variations of what acts on it."""
         return Tangent(InverseGeometricModel(Statics(self.shapes[rod], ())), turns=self.turns.get(rod))
 
     @cached_property
@@ -188,7 +188,7 @@ class System:
         return inertias
 
     def inertia_of(self, rod: str) -> RodInertia:
-        """Inertia of a rod in motion, be it that of a rod without mass, which stores nothing."""
+        """Inertia of a rod in motion; a rod without mass stores nothing."""
         if rod in self.inertias:
             return self.inertias[rod]
         motion = self.motions[rod]

@@ -41,7 +41,7 @@ class SystemFunctions(OfScene, Protocol):
 
     @property
     def resolution_words(self) -> list[str]:
-        """The same in words."""
+        """How finely the system is resolved, in words."""
 
     @property
     def step_weights(self) -> FloatArray:
@@ -53,7 +53,7 @@ class SystemFunctions(OfScene, Protocol):
 
     @property
     def hessian_is_cheap(self) -> bool:
-        """Whether an optimiser is faster with exact second derivatives than with estimates of them."""
+        """Whether an optimiser is faster with exact second derivatives than with estimated ones."""
 
     def at(self, values: Any = None) -> Self:
         """The system with its parameters fixed."""

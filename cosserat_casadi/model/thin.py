@@ -44,7 +44,8 @@ def first_places(discrete: DiscreteScene) -> tuple[dict[Moved, int], list[int]]:
 def places(system: System) -> Matrix | None:
     """Positions of what may pass through something thin, 3×…, m: of nodes, disks and bodies, then of sections of pairs.
 
-    None where there is nothing thin. Those before obstacles are in the axes of these, those of pairs in the world's.
+    None where there is nothing thin. Positions before obstacles are in the axes of the obstacles, positions of sections
+    of pairs in world axes.
     """
     discrete = system.discrete
     before = {moved_by(discrete, layer): layer for layer in thin_layers(discrete)}

@@ -26,7 +26,7 @@ def unloaded_response(
     """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
 
     The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
-    lengths and bases of rods are inputs, or those of loads that depend on poses, it is the map's linear part at the
+    lengths and bases of rods are inputs, or numbers of loads that depend on poses, it is the map's linear part at the
     scene's own values.
 
     Args:
@@ -71,7 +71,7 @@ def unloaded_response(
 
 
 def parametric_response(written: Expressions) -> Matrix:
-    """The same where numbers of the scene are parameters: a linear system for each p."""
+    """dx/dλ of the unloaded scene, size×1, where its numbers are parameters: a linear system for each p."""
     discrete = written.discrete
     load_factor = ca.MX.sym("load_factor")
     if not discrete.size:

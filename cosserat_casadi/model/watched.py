@@ -30,7 +30,7 @@ POSE_SIZE = 7
 """Numbers of a position and a quaternion."""
 
 EVERY = 4
-"""Of these sections every so many are watched where the whole shape must be right."""
+"""Stride through these sections to the ones that are watched where the whole shape must be right."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Watched:
     """Watched poses and lengths of an equilibrium, in symbols or in numbers.
 
     Attributes:
-        positions: of sections over the lengths of their rods, then of bodies over the lengths of theirs, 3×k.
-        quaternions: world_Q_section of the same, 4×k; of unit length.
-        cables: lengths of cables over those of their rods, 1×c.
+        positions: positions of sections, then of bodies, over the lengths of their rods, 3×k.
+        quaternions: world_Q_section of these sections and bodies, 4×k; of unit length.
+        cables: lengths of cables over the lengths of their rods, 1×c.
     """
 
     positions: Matrix
@@ -55,12 +55,12 @@ class Watched:
 
 @dataclass(frozen=True)
 class WatchedNumbers:
-    """The same in numbers.
+    """Watched poses and lengths of an equilibrium, in numbers.
 
     Attributes:
         positions: of sections and bodies over lengths, shape (k, 3).
         quaternions: world_Q_section, shape (k, 4).
-        cables: lengths of cables over those of their rods, shape (c,).
+        cables: lengths of cables over the lengths of their rods, shape (c,).
     """
 
     positions: FloatArray
@@ -69,13 +69,13 @@ class WatchedNumbers:
 
     @classmethod
     def of_column(cls, column: FloatArray, cables: int) -> WatchedNumbers:
-        """From a column of so many cables as :attr:`Watched.column`."""
+        """Watched numbers from a :attr:`Watched.column` with this number of cables."""
         posed = (len(column) - cables) // POSE_SIZE
         positions, quaternions, lengths = np.split(column, [3 * posed, POSE_SIZE * posed])
         return cls(positions.reshape(-1, 3), quaternions.reshape(-1, 4), lengths)
 
     def moved(self, before: WatchedNumbers, after: WatchedNumbers) -> WatchedNumbers:
-        """Moved as far as leads from one to the other, to first order: quaternions are not of unit length then."""
+        """These numbers moved by the change from one to another, to first order: quaternions lose their unit length."""
         return WatchedNumbers(
             self.positions + (after.positions - before.positions),
             self.quaternions + (after.quaternions - before.quaternions),

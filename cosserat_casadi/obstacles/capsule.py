@@ -41,7 +41,7 @@ def capsule_net(start: FloatArray, end: FloatArray, radius: float) -> FloatArray
 
     Args:
         start: centre of one half ball, shape (3,), m.
-        end: centre of the other; the same for a ball.
+        end: centre of the other half ball, shape (3,), m; ``start`` for a whole ball.
         radius: of bar and balls, m.
     """
     axis = end - start

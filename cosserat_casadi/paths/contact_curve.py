@@ -69,11 +69,11 @@ class Arrangement:
     """One arrangement of contacts while an input grows.
 
     Attributes:
-        equations: of its contacts; their inputs are those at load factor 0.
-        change: stacked inputs of the scene at load factor 1 less those at 0.
+        equations: equations with its contacts, at the inputs of load factor 0.
+        change: stacked inputs of the scene at load factor 1 less inputs at 0.
         potential: whether all loads have a potential along the path.
         settings: limits of the curve.
-        near: z where it begins, or nearly so.
+        near: z where the arrangement begins, or nearly so.
         load_factor: λ there.
     """
 
@@ -139,7 +139,7 @@ class Arrangement:
 
     @cached_property
     def curve(self) -> Curve:
-        """Its equations in y, scaled; the start of its path is not read."""
+        """The curve of the scaled equations in y; the start of its path is not read."""
         equations = self.equations
         scale, rows = self._scales
         path = Path(
@@ -341,7 +341,7 @@ class Arrangement:
         return in_axes_of(self.bodies(z, load_factor)[obstacle.body], positions)
 
     def poses(self, z: FloatArray, load_factor: float, X: npt.ArrayLike, rod: str) -> SolvedPoses:
-        """Pose of the section at one abscissa X, or poses at an array of them, shape (k,)."""
+        """Pose of the section at one abscissa X, or poses at an array of abscissae, shape (k,)."""
         nodes = self._nodes(z, load_factor)[rod]
         breaks = self.equations.nominal.model.discretisation[rod].breaks
         intervals = self.equations.nominal.model.discrete.rods[rod].grid.intervals

@@ -215,7 +215,7 @@ class Travel:
         self.outcome = PathOutcome.MAX_STEPS
 
     def _follow(self, first: ArcPoint, guard: Guard, progress: Progress | None) -> None:
-        """One arrangement, until the path or a margin ends it."""
+        """Follow one arrangement until the path or a margin ends it."""
         curve = guard.arrangement.curve
         traced = Trace([first])
         step = self.settings.first

@@ -1,4 +1,4 @@
-"""From one arrangement of contacts to the next, where a margin vanishes: who touches, lets go, lies down or slides.
+"""Transitions between arrangements of contacts where a margin vanishes: who touches, lets go, lies down or slides.
 
 Each change has one arrangement on either side that share the equilibrium between them. Where both are regular there,
 the next one is met at the same load factor. A line begins without length and a place leaves the tip without distance,
@@ -152,7 +152,7 @@ def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Tra
 
 
 def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Transition:
-    """A contact with one place more to be sought, met where it is a little away from the others, or from the tip."""
+    """Transition to a contact with one more place to seek, met a little away from its other place, or from the tip."""
     following = ContactState.of([*others, new])
     number = _number(following, new)
     pair = (new.owner, new.obstacle)
@@ -199,7 +199,7 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
 
 
 def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Transition:
-    """The same change, with seams in lines where loads act."""
+    """This transition with seams in lines where loads act."""
     opens = tuple((touch.split(sections[touch.owner]), number, factor) for touch, number, factor in change.opens)
     return replace(change, state=change.state.split(sections), opens=opens)
 

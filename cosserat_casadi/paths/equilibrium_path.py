@@ -1,4 +1,4 @@
-"""Equilibria along one input as data: points, events, stability, and what may be asked of them."""
+"""Equilibria along one input as data: points, events, stability, and what may be asked of a path."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class PathContact:
         obstacle: name of the obstacle.
         owner: name of the rod, or of the body, that touches.
         start: abscissa X at which it begins; 0 of a body.
-        end: abscissa at which it ends; the same for a point.
+        end: abscissa at which it ends; ``start`` for a point.
         kind: "point" or "line".
         ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
         of_body: whether it is a body that touches.
@@ -106,14 +106,14 @@ class InputPath(Result, Generic[ModelType, EventType]):
         model: the model.
         name: the input that is followed.
         base: stacked inputs at factor 0, shape (model.inputs.size,).
-        change: stacked inputs at factor 1 less those at factor 0, shape (model.inputs.size,).
+        change: stacked inputs at factor 1 less ``base``, shape (model.inputs.size,).
         outcome: how the path ended.
         message: a sentence for the user.
         factor: share of the way at each of k points in the order of travel, shape (k,).
         x: unknowns, shape (k, model.size).
         events: limit points and bifurcations in the order of travel.
         error_estimate: estimated error of where the events lie, relative, and of the poses and lengths of cables
-            there, at both ends and between, as that of an equilibrium; None if not estimated.
+            there, at both ends and between, as of an equilibrium; None if not estimated.
     """
 
     model: ModelType
@@ -188,14 +188,14 @@ class InputPath(Result, Generic[ModelType, EventType]):
 
 
 def tested_stability(points: Iterable[ArcPoint]) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """Smallest eigenvalue of the second variation at points of a curve, and whether each of them is neutral."""
+    """Smallest eigenvalue of the second variation at points of a curve, and whether each point is neutral."""
     tests = [stability_of(point.spectrum) for point in points]
     eigenvalues = np.array([test.smallest_eigenvalue for test in tests])
     return eigenvalues, np.array([test.neutral for test in tests], dtype=np.bool_)
 
 
 def path_events(traced: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:
-    """The events of a trace as those of a path.
+    """The events of a trace as events of a path.
 
     Args:
         traced: the computed part of the curve.
@@ -216,9 +216,10 @@ class EquilibriumPath(InputPath[Model, PathEvent]):
     """Equilibria of rods along one of their inputs, which grows from zero, or from where it is told to begin.
 
     Attributes:
-        smallest_eigenvalue: of the second variation in units of EI/ℓ, those of a :class:`Solution`, shape (k,); None
+        smallest_eigenvalue: of the second variation in units of EI/ℓ, as of a :class:`Solution`, shape (k,); None
             where loads have no potential.
-        neutral: whether a variation costs no energy while none releases any, shape (k,); None likewise.
+        neutral: whether a variation costs no energy while none releases any, shape (k,); None where loads have no
+            potential.
         branch: index of the first point on the branch that was switched to; None on the first path.
     """
 

@@ -115,7 +115,7 @@ class _Followed:
 
         Args:
             traced: the computed part of the curve.
-            message: a sentence for the user; by default that of the outcome.
+            message: a sentence for the user; by default the outcome's.
         """
         outcome = traced.outcome or PathOutcome.MAX_STEPS
         # Without a point there are no rows, but columns all the same.
@@ -260,7 +260,7 @@ def _followed(
     values: Mapping[str, npt.ArrayLike] | None,
     first: EquilibriumPath | None = None,
 ) -> _Followed:
-    """The input to follow, its value checked with the others.
+    """The input to follow, its value checked together with the values of other inputs.
 
     Raises:
         SceneError: the input is unknown, or a value is refused.

@@ -1,7 +1,7 @@
 """Paths with friction: one input grows in increments, and a history of the rods goes along.
 
 Friction at rest is known only from the way that led there. The path begins at the equilibrium without friction. In each
-increment the history is that of the point before, so that it ends at an equilibrium of known loads; there it is brought
+increment the history is as at the point before, so that it ends at an equilibrium of known loads; there it is brought
 up to date. Between two points friction goes from the one state to the other: implicit Euler of Coulomb's law.
 """
 
@@ -80,7 +80,7 @@ class _Point:
 
 
 def _equilibrium(model: Model, inputs: FloatArray, before: list[Solution], longest: float) -> Solution | None:
-    """Equilibrium next to that of the last point of a path; None where none is found.
+    """Equilibrium next to the last point of a path; None where none is found.
 
     Newton's method begins where the last increment leads to, for sections that slip go on as they did, then at the last
     point, whose sections are at the brink. Where many sections go from sticking to slipping it may find neither: the
@@ -139,7 +139,7 @@ def follow_friction_path(
         base: stacked inputs at factor 0, without history.
         change: their increments at factor 1.
         first: a path from whose end this one goes on; by default nothing rubs at factor 0.
-        settings: limits, of which those of the load factor and of the length of a step are used.
+        settings: limits; only limits of the load factor and of the length of a step are used.
         progress: receives the factor reached.
     """
     memory = model.inputs.memory

@@ -76,8 +76,8 @@ class TubeEvent:
 class TubePath(InputPath[TubeFunctions, TubeEvent]):
     """Equilibria of concentric tubes along one input, from the value that it has to another.
 
-    The error of the events is that of the input's values there, relative to its way; that of the tips is found at
-    points between events too.
+    The error estimate covers the input's values at events, relative to its way, and the tips, at points between events
+    too.
     """
 
     @property
@@ -126,7 +126,7 @@ def _unit_of(robot: Robot, name: str) -> str:
 
 
 def usual_limits(robot: Robot, name: str) -> ArcSettings:
-    """Limits of a path over an input: those of a translation, or those of a rotation or a load."""
+    """Limits of a path over an input: limits for a translation, or limits for a rotation or a load."""
     return SLIDING if _unit_of(robot, name) == "m" else TURNING
 
 
@@ -148,7 +148,7 @@ def follow_tubes(
         to: its value at the end, in its unit.
         values: where the path begins, as in :func:`solve_tubes`.
         first: an equilibrium of the same tubes and loads to begin at instead, such as one of another path.
-        settings: limits; by default those of a rotation and a load, or those of a translation.
+        settings: limits; by default the limits for a rotation and a load, or for a translation.
         progress: receives the largest share of the way.
 
     Raises:
@@ -236,8 +236,8 @@ def _followed(
         name: of the input.
         start: inputs at factor 0.
         end: inputs at factor 1.
-        at_start: an equilibrium to begin at; None for that of a solve.
-        limits: of the path; None for those of the kind of the input.
+        at_start: an equilibrium to begin at; None for the equilibrium of a solve.
+        limits: limits of the path; None for the limits of the kind of the input.
         progress: receives the largest share of the way.
     """
     first = solve_at(model, start) if at_start is None else solution_near(model, start, at_start.x)

@@ -1,1 +1,1 @@
-"""One Cosserat rod: sections, strain, kinematics, statics."""
+"""A Cosserat rod: sections, strain, kinematics, statics."""

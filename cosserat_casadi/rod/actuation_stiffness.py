@@ -13,7 +13,7 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 def actuation_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> Matrix | None:
     """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts and of the material, n×n; None where it vanishes.
 
-    Without the part of frozen wrenches, which is that of the loads.
+    The part of frozen wrenches is left out: it is in the stiffness of the loads.
     """
     parts = []
     curved = _curvature_stiffness(igm)
@@ -60,7 +60,7 @@ def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:
 
 
 def _curvature_block(igm: InverseGeometricModel, a: int, b: int) -> Matrix:
-    """Rows of the coordinates of strain a, columns of those of strain b."""
+    """Block of the stiffness in the coordinates of strain a, rows, and of strain b, columns."""
     # Efforts first add their rows at the nodes: one product with Φ for all of them.
     rows = []
     for effort, conjugate in igm.strain_functions:

@@ -62,12 +62,12 @@ class Cable(Conjugate):
 
     @property
     def mean_share(self) -> Matrix | None:
-        """Mean of the tension along the course relative to that at its base, 1×1; None where it is the same."""
+        """Mean tension along the course over the tension at its base, 1×1; None where the tension is uniform."""
         return None
 
     @property
     def mean_share_gradient(self) -> Matrix | None:
-        """Its derivative with q, n×1; None where it is the same."""
+        """Derivative of the mean share with q, n×1; None where the tension is uniform."""
         return None
 
 

@@ -49,7 +49,7 @@ class InverseGeometricModel:
     def pulled(self) -> Statics:
         """The rod under its loads, and under efforts that act as wrenches on sections, of which none reaches the base.
 
-        The internal wrench of :attr:`statics` is that of the rod and its tendons together.
+        The internal wrench of :attr:`statics` belongs to the rod and its tendons together.
         """
         parts = [(effort, conjugate.wrench) for effort, conjugate in self.efforts if conjugate.wrench is not None]
         if not parts:
@@ -93,7 +93,7 @@ class InverseGeometricModel:
 
     @cached_property
     def energy_beyond_hooke(self) -> Conjugate | None:
-        """Elastic energy beyond that of the Hooke tensor, J, at this shape; None of a rod that is linear."""
+        """Elastic energy beyond the Hooke tensor's, J, at this shape; None for a rod that is linear."""
         return energy_beyond_hooke(self.shape)
 
     @cached_property
@@ -107,7 +107,7 @@ class InverseGeometricModel:
     def further_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what stands beside the linear stress, report (2.16); None if nothing does.
 
-        The stress of actuators, and that of the material beyond Hooke's law.
+        Λ_ad is the stress of actuators, and the stress of the material beyond Hooke's law.
         """
         pulls = [(effort, conjugate.pull) for effort, conjugate in self.strain_functions if conjugate.wrench is None]
         return summed([effort / self.rod.energy_unit * pull for effort, pull in pulls])

@@ -31,7 +31,7 @@ def material_margin(shape: Shape) -> Matrix | None:
 
 
 def stress_beyond_hooke(law: EnergyBeyondHooke, data_size: int) -> ca.Function:
-    """The function (change of strains 6×1, data) ↦ stress beyond that of the Hooke tensor, 6×1, N m and N."""
+    """The function (change of strains 6×1, data) ↦ stress beyond the Hooke tensor's, 6×1, N m and N."""
     change = ca.SX.sym("change", 6)
     data = ca.SX.sym("data", data_size)
     gradient = ca.jacobian(law.density(change, data), change).T

@@ -107,6 +107,6 @@ class MotionLoad:
         return by_position, 2 * theta.rate - spin @ theta.value, theta.value
 
     def _undamped(self, acceleration: Matrix, velocity: Matrix) -> Matrix:
-        """The variation of an acceleration, from that of r̈ + α ṙ, which inertia sees, and that of the velocity ṙ."""
+        """Variation of an acceleration, from variations of r̈ + α ṙ, which inertia sees, and of the velocity ṙ."""
         mass_damping = self.tangent.motion.rod.properties.mass_damping
         return acceleration if mass_damping is None else acceleration - mass_damping * velocity

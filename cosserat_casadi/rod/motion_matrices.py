@@ -41,7 +41,7 @@ class MotionMatrices:
         return self.stiffness, self.damping, self.mass
 
     def along(self, jet: Jet) -> MotionMatrices:
-        """The same in other coordinates u with δz = P δu: the jet of P, n×k. Forces at fixed z̈ are left out.
+        """These matrices in other coordinates u with δz = P δu, given the jet of P, n×k; forces at fixed z̈ left out.
 
         The second derivative of y is Y(P ü + 2 Ṗ u̇ + P̈ u): each order of the jet meets the one above.
         """

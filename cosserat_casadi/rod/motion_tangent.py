@@ -105,7 +105,7 @@ class MotionTangent:
         return np.flatnonzero(section_of_node > 0).tolist()
 
     def _at_turning_nodes(self, sections: Matrix) -> Matrix:
-        """Variations at the nodes that turn, 3m×k, from those of the sections beyond the base; stacked."""
+        """Variations at the nodes that turn, 3m×k, from variations of the sections beyond the base; stacked."""
         nodes = self.tangent.rod.grid.size
         components = ca.vertsplit(self.tangent.at_nodes(sections), nodes)
         if len(self._nodes) == nodes:
@@ -132,9 +132,9 @@ class MotionTangent:
 
     @cached_property
     def _stretch(self) -> MotionMatrices | None:
-        """The same by the other columns, at all nodes: ℓ d δΓ along directors that turn; None without any.
+        """Derivatives of ẗ at all nodes by linear strains: ℓ d δΓ along directors that turn; None without such strains.
 
-        With a floating base there is one more row for each component: its shift.
+        A floating base adds a row to each component, and its shift as columns.
         """
         rod = self.tangent.rod
         fields: dict[str, list[Matrix]] = {"mass": [], "damping": [], "stiffness": []}
@@ -161,7 +161,7 @@ class MotionTangent:
         return MotionMatrices(**{word: ca.horzcat(*columns) for word, columns in fields.items()})
 
     def _with_shift_row(self, rows: Matrix) -> Matrix:
-        """One component at the nodes, with a row for the shift of a floating base, that it does not have."""
+        """One component at the nodes, with a row of zeros for the shift of a floating base."""
         if not self.floating:
             return rows
         return ca.vertcat(rows, ca.DM(1, rows.shape[1]))
@@ -170,7 +170,7 @@ class MotionTangent:
     def _gram(self) -> Numbers:
         """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift.
 
-        In units of :attr:`_mass`: so it is the same for uniform rods of any length and density.
+        It is in units of :attr:`_mass`, so that uniform rods of any length and density have the same.
         """
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
@@ -195,7 +195,7 @@ class MotionTangent:
 
     @property
     def _largest_mass(self) -> float:
-        """Of any node, kg/m; one for a rod without mass, and where masses are expressions."""
+        """Largest mass of a node, kg/m; 1 for a rod without mass, and where masses are expressions."""
         mass = self._node_mass
         if is_symbolic(mass):
             return 1.0
@@ -240,7 +240,7 @@ class MotionTangent:
         return 0 if self._stretch is None else int(self._stretch.mass.shape[1])
 
     def _at_all_nodes(self, rows: Matrix) -> Matrix:
-        """Rows of the nodes that turn among those of all nodes, 3M×k, zero at the others."""
+        """Rows of the nodes that turn among rows of all nodes, 3M×k, zero at nodes that do not turn."""
         count = len(self._nodes)
         pattern = ca.Sparsity.triplet(self.tangent.rod.grid.size, count, self._nodes, list(range(count)))
         places = ca.DM(pattern, 1.0)
@@ -291,21 +291,21 @@ class MotionTangent:
 
     @cached_property
     def _left_of_turning(self) -> Matrix:
-        """Θ, times the ratio of the lengths: a longer rod has more mass."""
+        """Rotations Θ times the ratio of the lengths: a longer rod has more mass."""
         if self.motion.shape.ratio is None:
             return self.rotation.value
         return self.motion.shape.ratio * self.rotation.value
 
     @cached_property
     def _others_on_turning(self) -> Matrix:
-        """Rows of the other columns, as they pull at accelerations of the nodes that turn."""
+        """Rows of the linear strains and the shift, as they pull at accelerations of the nodes that turn."""
         assert self._stretch is not None, "asked for with other columns"
         pulled = self._pulled(self._nodes, None, self._stretch.mass)
         return (self._mass * self.inertia.ratio) * pulled.T
 
     @cached_property
     def _others_on_others(self) -> Matrix:
-        """The same, at accelerations of all nodes."""
+        """Rows of the linear strains and the shift, as they pull at accelerations of all nodes."""
         assert self._stretch is not None, "asked for with other columns"
         pulled = self._pulled(None, None, self._stretch.mass)
         return (self._mass * self.inertia.ratio) * pulled.T

@@ -42,7 +42,7 @@ class LoadedSections:
 
     @cached_property
     def nodes(self) -> list[int]:
-        """Nodes of the loaded sections: one, or those of the span."""
+        """Nodes of the loaded sections: one node, or all nodes of the span."""
         assert self.load.sections is None, "they lie between nodes"
         grid = self.shape.rod.grid
         at = self.load.at
@@ -69,7 +69,7 @@ class LoadedSections:
         return variation if self.everywhere else ca.vertcat(*[part[self.nodes, :] for part in parts])
 
     def moved(self, tangents: Matrix) -> Matrix:
-        """Variations of positions at the loaded sections, 3k×n, from those of the tangents at the nodes, 3M×n."""
+        """Variations of positions at the loaded sections, 3k×n, from variations of tangents at the nodes, 3M×n."""
         grid = self.shape.rod.grid
         parts = ca.vertsplit(tangents, grid.size)
         if self.load.sections is not None:

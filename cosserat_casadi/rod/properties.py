@@ -34,7 +34,7 @@ Field = Callable[[Numbers], Numbers]
 
 @dataclass(frozen=True)
 class EnergyBeyondHooke:
-    """Elastic energy of a section beyond that of its Hooke tensor: the law of a material that is not linear.
+    """Elastic energy of a section beyond its Hooke tensor's: the law of a material that is not linear.
 
     Attributes:
         density: change of the strains ξ − ξ⁰, 6×1, and data, d×1 ↦ energy per length, 1×1, J/m; zero with its gradient
@@ -104,7 +104,7 @@ class RodProperties:
         mass_damping: α of forces −α times the momentum of the sections, 1/s; None where there are none.
         area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
         diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
-        plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
+        plane_sections: whether rotary inertia belongs to plane sections: the polar moment is the sum of the other two.
         ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
         nominal: the rod with the numbers that scale the equations; None where this record holds them itself.
         fixed_masses: masses that are fixed to sections.

@@ -134,7 +134,7 @@ class Reaction:
 
 
 def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
-    """Variations of the forces and of the moments, 3k×n each, from those of both."""
+    """Variations of the forces and of the moments, 3k×n each, from a variation of both, 6k×n."""
     half = variation.shape[0] // 2
     forces, moments = ca.vertsplit(variation, half)
     return forces, moments

@@ -44,7 +44,7 @@ class FrameMotion:
             check_shape(name, getattr(self, name), 3, 1)
 
     def in_axes(self, axes_R_world: Matrix) -> FrameMotion:
-        """The same motion with coordinates in other axes, 3×3."""
+        """This motion with coordinates in other axes, which a rotation, 3×3, leads to."""
         return FrameMotion(
             velocity=axes_R_world @ self.velocity,
             angular_velocity=axes_R_world @ self.angular_velocity,
@@ -88,7 +88,7 @@ class StrainRates:
     ratio_acceleration: Ratio = None
 
     def damped(self, rate: Scalar) -> StrainRates:
-        """The rates with q̈ + α q̇ in the place of q̈, and likewise of the length, with α in 1/s."""
+        """The rates with q̈ + α q̇ in the place of q̈, and so for the ratio of the length, with α in 1/s."""
         by_ratio = self.ratio_acceleration
         if self.ratio_rate is not None and by_ratio is not None:
             by_ratio = by_ratio + rate * self.ratio_rate
@@ -286,7 +286,7 @@ class RodMotion:
         return self._integrated(self.base.acceleration, self.tangent_acceleration)
 
     def undamped(self, rate: str) -> Matrix:
-        """One of the rates of the nodes as others than the rod's own inertia see it, 3×M: without damping by mass."""
+        """A rate of the nodes as forces other than the rod's own inertia see it, 3×M: without damping by mass."""
         field: Matrix = getattr(self, rate)
         damping = self.rod.properties.mass_damping
         if damping is None or rate not in VELOCITIES:
@@ -341,7 +341,7 @@ class RodMotion:
         return total
 
     def _integrated(self, base: Matrix, rate: Matrix) -> Matrix:
-        """Field of the positions from that of the base, 3×1, and that of the tangents, 3×M."""
+        """A field of positions, 3×M, from its value at the base, 3×1, and the same field of the tangents, 3×M."""
         grid = self.rod.grid
         return ca.repmat(base, 1, grid.size) + grid.integrated(rate)
 

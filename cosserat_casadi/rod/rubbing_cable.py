@@ -73,12 +73,12 @@ class RubbingCable(RoutedCable):
 
     @property
     def conservative(self) -> bool:
-        """Its force is no gradient."""
+        """False: the force of a cable that rubs is no gradient."""
         return False
 
     @cached_property
     def shares(self) -> Matrix:
-        """Tension along the course relative to that at its base, exp(−μ p φ), 1×k."""
+        """Tension along the course over the tension at its base, exp(−μ p φ), 1×k."""
         shares: Matrix = ca.exp(-self.friction * self.turn)
         return shares
 
@@ -219,7 +219,7 @@ class RubbingCable(RoutedCable):
         return ca.horzcat(*columns)
 
     def _turning_rates(self, c: int) -> tuple[Rows, Rows]:
-        """∂u/∂ξ_c = (∂t/∂ξ_c)' + ℓ K × ∂t/∂ξ_c + ℓ ∂K/∂ξ_c × t: the term to differentiate, and the others."""
+        """∂u/∂ξ_c = (∂t/∂ξ_c)' + ℓ K × ∂t/∂ξ_c + ℓ ∂K/∂ξ_c × t: the term to differentiate, and the other terms."""
         direction_rate = self._direction_rate(c)
         turned = _crossed(self._curvature, direction_rate)
         if c >= 3:
@@ -245,7 +245,7 @@ class RubbingCable(RoutedCable):
         return x, y, z
 
     def _along(self, row: Row) -> Row:
-        """Derivative of a component of t with X, 1×k; that of a cable parallel to the rod has none."""
+        """Derivative of a component of t with X, 1×k; None for a cable parallel to the rod."""
         if row is None or self.is_parallel:
             return None
         return row @ self._differentiate.T
@@ -279,7 +279,7 @@ class RubbingCable(RoutedCable):
         return [node + 1 for node in self._left_nodes]
 
     def _picked(self, nodes: Sequence[int]) -> ca.DM:
-        """Matrix from values at the nodes of the routing to those at some of them, len(nodes)×k."""
+        """Matrix from values at the k nodes of the routing to values at some nodes, len(nodes)×k."""
         return _sparse(np.eye(len(self.routing.nodes))[nodes])
 
     @property
@@ -322,8 +322,8 @@ def _gauss_points(intervals: int) -> tuple[FloatArray, FloatArray]:
 def _missed_by_gauss(components: int) -> ca.Function:
     """(u₀, u₁) ↦ ∫₀¹ √(|u|² + ε²) ds less its Gauss sum for u = u₀ + s (u₁ − u₀), and the derivatives with both.
 
-    With e₀, e₁ the values of the root at both ends, q their sum, L = |u₁ − u₀| and σ = (e₁ − e₀)/L it is that of the
-    potential of a straight segment,
+    With e₀, e₁ the values of the root at both ends, q their sum, L = |u₁ − u₀| and σ = (e₁ − e₀)/L the integral is, as
+    in the potential of a straight segment,
 
         ∫ = q/4 [1 + σ² + (1 − σ²)(1 − c²) artanh(c)/c],    c = L/q.
 

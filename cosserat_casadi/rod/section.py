@@ -109,7 +109,7 @@ def hooke(shape: SectionShape, youngs_modulus: Scalar, shear_modulus: Scalar, sh
         shear_correction: k, factor on the shear stiffnesses.
 
     Returns:
-        shape (len, 6): N m² for the first three columns, N for the others.
+        shape (len, 6): N m² for the first three columns, N for the last three.
     """
     bending_x = youngs_modulus * shape.second_moment_x
     bending_y = youngs_modulus * shape.second_moment_y

@@ -26,14 +26,14 @@ ARGUMENTS = ["position", "rotation", "base_position", "base_rotation", "paramete
 class SectionKernel:
     """A small function of one section, its derivative, and its energy where it has one.
 
-    All functions have the arguments :data:`ARGUMENTS`: position (3×1, m) and rotation (3×3) of the section in
-    the axes of the base, those of the base in the world, the run-time parameters and the numbers of this section.
+    All functions have the arguments :data:`ARGUMENTS`: position (3×1, m) and rotation (3×3) of the section in the axes
+    of the base, position and rotation of the base in the world, the run-time parameters and the section's numbers.
 
     Attributes:
         world_wrench: (position, rotation, parameters, data) ↦ (force, moment), world axes, 3×1 each.
         world_energy: the same arguments ↦ energy, J or J/m; None for a wrench that is no derivative of an energy.
-        rates: those of :data:`RATES` that follow as arguments, 3×1 each, in the motion of a section that the wrench
-            depends on.
+        rates: names among :data:`RATES` of arguments that follow, 3×1 each, for a wrench that depends on the motion of
+            the section.
     """
 
     world_wrench: ca.Function

@@ -78,7 +78,7 @@ def _per_reference_length(rod: DiscreteRod, diagonal: Field, element: int, X: Fl
 
 
 def _symbolic_section_matrix(rod: DiscreteRod, by_element: Sequence[Numbers]) -> Numbers:
-    """The same where the coefficients are expressions: its entries are linear in them."""
+    """The section matrix where coefficients are expressions; its entries are linear in the coefficients."""
     points = [_gauss_points(rod, e) for e in range(rod.grid.elements)]
     element = np.repeat(np.arange(rod.grid.elements), [len(X) for X, _ in points])
     X = np.concatenate([X for X, _ in points])

@@ -122,19 +122,19 @@ class Statics:
 
     @property
     def held_force(self) -> Matrix:
-        """Force of what holds the base on the rod, base frame, 3×1, N: with that of a joint there."""
+        """Force of what holds the base on the rod, base frame, 3×1, N: with the force of a joint there."""
         joints = [wrench.force for wrench in self._at_base if wrench.force is not None]
         return sum(joints, self.base_force)
 
     @property
     def held_moment(self) -> Matrix:
-        """Moment of what holds the base on the rod, base frame, 3×1, N m: with that of a joint there."""
+        """Moment of what holds the base on the rod, base frame, 3×1, N m: with the moment of a joint there."""
         joints = [wrench.moment for wrench in self._at_base if wrench.moment is not None]
         return sum(joints, self.base_moment)
 
     @property
     def _at_base(self) -> list[WrenchAt]:
-        """Wrenches on the base section, which pass through no other: those of a joint that holds the base."""
+        """Wrenches on the base section, which pass through no other: from a joint that holds the base."""
         return [wrench for wrench in self.fixed_wrenches if isinstance(wrench, WrenchAt) and is_zero(wrench.at)]
 
     @cached_property

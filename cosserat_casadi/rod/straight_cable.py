@@ -131,7 +131,7 @@ class StraightCable(Cable):
         return self._work_of(self._results[2].T)
 
     def curvature(self, a: int, b: int) -> None:
-        """None: strains between two holes act together, not node by node."""
+        """Return None: strains between two holes act together, not node by node."""
         return
 
     @cached_property
@@ -156,12 +156,12 @@ class StraightCable(Cable):
 
     @property
     def mean_share(self) -> Matrix | None:
-        """Mean of the tension along the course relative to that at its base, 1×1; None where it is the same."""
+        """Mean tension along the course over the tension at its base, 1×1; None where the tension is uniform."""
         return None if self.conservative else self._results[4]
 
     @cached_property
     def mean_share_gradient(self) -> Matrix | None:
-        """Its derivative with q, n×1; None where it is the same."""
+        """Derivative of the mean share with q, n×1; None where the tension is uniform."""
         return None if self.conservative else self._work_of(self._results[5].T)
 
     def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:

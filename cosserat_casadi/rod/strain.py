@@ -57,7 +57,7 @@ Ratio: TypeAlias = Matrix | None
 
 
 def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
-    """A density per length of the rod as one per reference length; the same where the length of the rod is fixed."""
+    """A density per length of the rod as a density per reference length; unchanged where the length is fixed."""
     if ratio is None:
         return value
     return value * ratio
@@ -169,7 +169,8 @@ class DiscreteRod:
     def turn_matrix(self) -> FoldedMatrix:
         """Matrix from q to the Taylor coefficients of the turns of all intervals, stacked by components.
 
-        The intervals of an element mirror each other: every mode enters the sum or the difference of two of them alone.
+        The intervals of an element mirror each other: every mode enters only the sum or the difference of two mirrored
+        intervals.
         """
         count = len(self.grid.left_ends)
         rows = [np.zeros((0, self.size))]
@@ -356,7 +357,10 @@ class DiscreteRod:
         return known(each_times(values, self.grid.rates_in(element)))
 
     def _moved_intrinsic_turn(self) -> Matrix:
-        """The same where element ends are expressions: the unloaded curvature is sampled where its elements are."""
+        """Taylor coefficients of the unloaded turn, (size, intervals), rad, where element ends are expressions.
+
+        The unloaded curvature is sampled where its elements are.
+        """
         rows: list[Matrix] = []
         turns = [self._turn_of_samples(len(own)) for own in self.properties.intrinsic[:3]]
         for order in range(self.taylor_count):

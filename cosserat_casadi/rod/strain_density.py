@@ -146,7 +146,7 @@ class StrainDensityOnRod(Conjugate):
 
 
 def energy_beyond_hooke(shape: Shape) -> StrainDensityOnRod | None:
-    """Elastic energy of a rod beyond that of its Hooke tensor, J; None of a rod that is linear."""
+    """Elastic energy of a rod beyond its Hooke tensor's, J; None for a rod that is linear."""
     rod = shape.rod
     law = rod.properties.beyond_hooke
     if law is None:

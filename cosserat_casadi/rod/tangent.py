@@ -134,7 +134,7 @@ class Tangent:
         return Columns(section_rotation, self._angular_product, linear, following)
 
     def under(self, load: LoadedSections) -> Tangent:
-        """The same variations of the same shape where one load that depends on poses acts alone."""
+        """This tangent of this shape where one load that depends on poses acts alone."""
         model = InverseGeometricModel(Statics(self.shape, (), (load,)))
         if not self.kernels.axes:
             return Tangent(model, self.in_loops)
@@ -183,7 +183,7 @@ class Tangent:
         return self.at_nodes(self.section_rotation)
 
     def at_nodes(self, sections: Matrix) -> Matrix:
-        """Variations at the nodes, 3M×k, from those of the sections beyond the base, which has none; stacked."""
+        """Variations at the nodes, 3M×k, from variations of the sections beyond the base, which has none; stacked."""
         # Both nodes at a break turn with their one section; the base does not turn.
         section_of_node = np.asarray(self.rod.grid.section_of_node).tolist()
         parts = []
@@ -481,6 +481,6 @@ def _mirrored(matrix: Matrix) -> Matrix:
 
 
 def _with_base(part: Matrix) -> Matrix:
-    """Variations of the distinct sections, the base, which does not vary, before the others."""
+    """Variations of all distinct sections: the base, which does not vary, comes first."""
     base = ca.DM(1, part.shape[1])
     return ca.vertcat(base, part)

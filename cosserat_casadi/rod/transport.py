@@ -92,7 +92,7 @@ class IntervalKernels:
     def pull(self) -> ca.Function:
         """The map (turn, omega, factors, rotation, moment) ↦ (R T ∂Ω/∂turn)ᵀ moment: generalised moment of an interval.
 
-        ``omega`` and ``factors`` are those of :attr:`increment`, ``rotation`` is the matrix R of the section at which
+        ``omega`` and ``factors`` are results of :attr:`increment`, ``rotation`` is the matrix R of the section at which
         the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
         """
         a = self.symbols

@@ -74,7 +74,7 @@ class SeenMotion:
     angular_velocity: Matrix
 
     def undamped(self, rate: str) -> Matrix:
-        """One of the rates, as :meth:`RodMotion.undamped`: damping in proportion to mass changes no velocity."""
+        """A rate of the nodes, 3×M, as :meth:`RodMotion.undamped`: damping by mass changes no velocity."""
         field: Matrix = getattr(self, rate)
         return field
 
@@ -87,8 +87,8 @@ class PoseWrench:
         at: abscissa X of the section, an element end of the grid; None for a wrench per metre of undeformed length.
         span: abscissae X between which a wrench per metre acts, element ends of the grid.
         kernel: force and moment as a function of a section's pose.
-        base_position: position of the rod's base in the axes that the kernel is written in, the world's or those of the
-            body that bears the wrench, 3×1, m.
+        base_position: position of the rod's base in the axes that the kernel is written in, the world's or the axes of
+            the body that bears the wrench, 3×1, m.
         base_rotation: rotation from the base into these axes, 3×3.
         parameters: what the kernel depends on at run time, p×1.
         data: numbers of the load at its sections, such as values of profiles, shape (d, k).

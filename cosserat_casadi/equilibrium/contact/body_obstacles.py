@@ -29,7 +29,7 @@ def seen_directions(solution: Solution, obstacle: scenes.ObstacleRecord, directi
 
 
 def world_directions(solution: Solution, obstacle: scenes.ObstacleRecord, directions: FloatArray) -> FloatArray:
-    """Directions in the axes that an obstacle is given in, shape (k, 3), in those of the world."""
+    """Directions in world axes, shape (k, 3), from directions in the axes that an obstacle is given in."""
     if obstacle.body is None:
         return directions
     return np.asarray(directions @ solution.body(obstacle.body).rotation.T)

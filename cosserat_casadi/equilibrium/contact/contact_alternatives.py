@@ -48,7 +48,7 @@ def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
 
 
 def _across(state: ContactState, sections: Mapping[str, Sequence[float]]) -> Iterator[ContactState]:
-    """The same contacts with one place on the other side of a section with a load next to it, the nearest first."""
+    """Contacts with one place moved to the other side of a section with a load next to it, the nearest first."""
     crossings: list[tuple[float, ContactState]] = []
     places = state.places
     rods = [touch.owner for touch in state.touches for _ in touch.moving]

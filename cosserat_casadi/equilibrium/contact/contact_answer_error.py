@@ -59,9 +59,9 @@ def same_contacts(first: Solution, second: Solution) -> bool:
 
 
 def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
-    """A solution with its distance to a finer one: that of poses, of places of contact, or of forces, the largest.
+    """A solution with its distance to a finer one, the largest over poses, places of contact and forces.
 
-    Forces count relative to EI/ℓ² or to the largest one, whichever is more. Of contacts that are not alike the whole
+    Forces count over EI/ℓ² or over the largest force, whichever is more. Of contacts that are not alike the whole
     force is compared, and where they begin and end. Depth of the finer one in obstacles, and pull, count too: in the
     same contacts neither solution tells of other contacts that should be there.
     """

@@ -1,7 +1,7 @@
 """Equations of rods and bodies in known contact: balance, no gap where they touch, no slope where contact moves.
 
 Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
-are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a line gives the same at
+are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a line gives both at
 its ends, and the moments of d − ρ with the polynomials of its force. Where a load acts inside a line its force per
 length is split: the section takes a point force and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
 end at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept.
@@ -62,7 +62,7 @@ class Grids:
     rods: Mapping[str, Discretisation]
 
     def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
-        """One for every rod of a scene, with elements that end where its loads say."""
+        """Discretisation of every rod of a scene, by name, with elements that end where its loads say."""
         return {name: replace(own, breaks=element_ends(scene, name)) for name, own in self.rods.items()}
 
     def bending_modes(self, scene: scenes.Scene) -> dict[str, int]:
@@ -144,12 +144,12 @@ class Placed:
         return self.inputs_moved(self.given, forces)
 
     def inputs_moved(self, given: FloatArray, forces: FloatArray) -> FloatArray:
-        """The same for other stacked inputs of the scene, or for m directions, each with as many columns."""
+        """Stacked inputs of the model for other inputs of the scene and other forces, or for m columns of changes."""
         by_given, by_forces = self._spread
         return np.asarray(by_given @ given + by_forces @ forces)
 
     def written_inputs(self, given: Matrix, forces: Matrix) -> Matrix:
-        """The same as expressions of the stacked inputs of the scene too."""
+        """Stacked inputs of the model as expressions of the stacked inputs of the scene and of forces without unit."""
         by_given, by_forces = self._spread
         return ca.sparsify(ca.DM(by_given)) @ given + ca.sparsify(ca.DM(by_forces)) @ forces
 
@@ -226,7 +226,7 @@ class Written:
 
     @property
     def jacobian(self) -> Matrix:
-        """Its derivative with the unknowns: that of the balance with x is written out; what contacts add is small."""
+        """Derivative of the residual with the unknowns; the balance's with x is written out, contacts add little."""
         _, f, p = self.unknowns
         balance = self._balance.residual
         by_forces = ca.jacobian(balance, f)
@@ -236,7 +236,7 @@ class Written:
         return ca.vertcat(of_balance, ca.horzcat(self._gaps_by_unknowns(by_forces), *gaps_by_others))
 
     def _gaps_by_unknowns(self, by_forces: Matrix) -> Matrix:
-        """Derivative of the gaps with x. A force does work on its gap alone: one is the derivative of the other.
+        """Derivative of the gaps with x. A force does work on its gap alone: the gap's derivative with x is its pull.
 
         Args:
             by_forces: derivative of the balance with the forces.
@@ -291,7 +291,7 @@ class ContactEquations:
     theta: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def at(self, given: FloatArray, theta: FloatArray) -> ContactEquations:
-        """The same equations, with functions that are written once, for other inputs and parameters."""
+        """These equations, with functions that are written once, for other inputs and parameters."""
         # What all of them share is written before it is handed on.
         assert self._functions and self._by_arguments and self.parameters is not None
         other = replace(self, given=given, theta=theta)
@@ -345,7 +345,7 @@ class ContactEquations:
 
     @cached_property
     def _moving(self) -> tuple[Model, ContactState]:
-        """The model whose parameters are the places of contact, then those of the scene; contacts at these places."""
+        """The model whose parameters are the places of contact, then the scene's; and contacts at these places."""
         count = len(self.state.places)
         parameters = BehindPlaces(self.parameters.entries, self.parameters.moving, count)
         p = parameters.symbol
@@ -368,7 +368,7 @@ class ContactEquations:
 
     @property
     def model(self) -> Model:
-        """The model whose parameters are the places of contact, then those of the scene: what measures rods."""
+        """The model whose parameters are the places of contact, then the scene's: what measures rods."""
         return self._moving[0]
 
     def arguments(self, z: FloatArray, given: FloatArray | None = None) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -513,5 +513,5 @@ class ContactEquations:
 
     @property
     def equations(self) -> Equations:
-        """As Newton's method takes them."""
+        """The equations as Newton's method takes them: residual and Jacobian of z."""
         return Equations(lambda z: self.residual(z, self.given), lambda z: self.jacobian(z, self.given))

@@ -76,8 +76,8 @@ class ContactEquilibrium:
     Attributes:
         placed: the model with elements that end at the contacts.
         x: unknowns.
-        forces: of the contacts, without unit.
-        solution: the same as a solution, not judged yet.
+        forces: forces of the contacts, without unit.
+        solution: this equilibrium as a solution, not judged yet.
     """
 
     placed: Placed
@@ -229,7 +229,7 @@ class Penetrated:
     of_body: bool = False
 
     def joined(self, other: Penetrated) -> Penetrated:
-        """One stretch from the start of the first to the end of the last."""
+        """This stretch and another as one, from the start of the first to the end of the last."""
         deeper = self if self.depth >= other.depth else other
         return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
 
@@ -346,7 +346,7 @@ class Settling:
         return self.solved_from(equations, equations.start_near(near))
 
     def solved_from(self, equations: ContactEquations, start: FloatArray) -> FloatArray | None:
-        """The same from a start z."""
+        """Unknowns, forces and places that solve equations, from a start z; None where none are found."""
         self.squeezed = None
         if len(equations.state.places):
             z, solved, taken = sought(equations, start, self.newton)
@@ -491,7 +491,7 @@ def _sides(touch: Touch, lifted: float, reach: float) -> tuple[Touch, Touch]:
 
 
 def _opened(touch: Touch, lifted: float) -> Iterator[tuple[Touch, ...]]:
-    """Both sides of a line that rises around a section inside it; of a short side a point, or nothing."""
+    """Both sides of a line that rises around a section inside it; a short side is a point, or left out."""
     before = lifted - touch.start
     after = touch.end - lifted
     if not before > 0.0 < after:

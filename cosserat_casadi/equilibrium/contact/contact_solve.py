@@ -59,8 +59,8 @@ def solve_contact(
         grids: modes and nodes of every element.
         values: inputs by name.
         start: a solution of the same rods and obstacles whose contacts are tried first, where that takes no rod through
-            an obstacle; by default, and else, those of the unloaded rods under growing loads.
-        contacts: tried first from the start; by default the contacts of that.
+            an obstacle; by default, and else, contacts of the unloaded rods under growing loads.
+        contacts: contacts that are tried first from the start; by default the contacts of the start.
         newton: limits of the solve of each state.
         progress: told the share of the load path that is done.
         unmet_before: error that contacts left on coarser modes; where more modes mend it, contacts that hold to the
@@ -103,7 +103,7 @@ def solve_contact(
 def settled_near(
     settling: Settling, start: Solution, contacts: ContactState | None = None, unmet_before: float = 0.0
 ) -> ContactEquilibrium | None:
-    """The equilibrium to which contacts lead, those of a solution if none are named, from its shape.
+    """The equilibrium to which contacts lead, from the shape of a solution; by default the contacts of the solution.
 
     None where none holds, or rods would pass through. See :func:`solve_contact`.
     """

@@ -43,7 +43,7 @@ class Touch:
         obstacle: name of the obstacle.
         owner: name of the rod, or of the body, that touches.
         start: abscissa X at which contact begins; 0 for a body.
-        end: abscissa at which it ends; the same for a point.
+        end: abscissa at which it ends; ``start`` for a point.
         is_line: whether a stretch lies on the obstacle.
         of_body: whether it is a body that touches.
         seams: abscissae inside a line where the force per length may jump, base to tip; they are not sought.
@@ -136,7 +136,7 @@ class Touch:
         return "line" if self.is_line else "point"
 
     def moved(self, places: Sequence[Place]) -> Touch:
-        """The same contact at other places, one for each that is sought."""
+        """This contact at other places, one for each place that is sought."""
         if self.of_body:
             return self
         ends = [*places, TIP]
@@ -146,7 +146,7 @@ class Touch:
         return replace(self, start=ends[0], end=ends[-1])
 
     def split(self, sections: Sequence[float]) -> Touch:
-        """The same contact with seams at those sections that are inside it, and no place on a section.
+        """This contact with seams at the sections that are inside it, and no place on a section.
 
         Args:
             sections: abscissae at which loads make the shear force, or its rate, jump.
@@ -197,7 +197,7 @@ class ContactState:
     """All contacts of a scene.
 
     Attributes:
-        touches: sorted by rod and abscissa, those of bodies last.
+        touches: the contacts, sorted by rod and abscissa, contacts of bodies last.
     """
 
     touches: tuple[Touch, ...]
@@ -216,12 +216,12 @@ class ContactState:
         )
 
     def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
-        """The same contacts with seams at the sections of each rod, by name, that are inside them."""
+        """These contacts with seams at the sections of each rod, by name, that are inside them."""
         touches = [touch if touch.of_body else touch.split(sections[touch.owner]) for touch in self.touches]
         return ContactState(tuple(touches))
 
     def reseamed(self, places: Mapping[str, Mapping[float, Place]]) -> ContactState:
-        """The same contacts with seams at other places, by the places of each rod, by name: numbers, or expressions."""
+        """These contacts with seams at other places, by the places of each rod, by name: numbers, or expressions."""
         touches = []
         for touch in self.touches:
             moved = places.get(touch.owner, {})
@@ -238,7 +238,7 @@ class ContactState:
         return [touch for touch in self.touches if touch.owner == rod and not touch.of_body]
 
     def at(self, places: Sequence[Place]) -> ContactState:
-        """The same contacts at other places: numbers, or expressions."""
+        """These contacts at other places: numbers, or expressions."""
         touches = []
         first = 0
         for touch in self.touches:
@@ -363,19 +363,19 @@ def without_contacts(scene: scenes.Scene) -> scenes.Scene:
 
 
 def given_names(model: SystemFunctions) -> list[str]:
-    """Names of a model's inputs, but for the forces of contacts, which follow from the others."""
+    """Names of a model's inputs, but for the forces of contacts, which follow from these."""
     names = {load.name for load in contact_loads(model.scene)}
     return [entry.name for entry, _ in model.inputs if entry.owner not in names]
 
 
 def given_entries(model: SystemFunctions) -> npt.NDArray[np.int64]:
-    """Their indices in the stacked inputs."""
+    """Indices of a model's inputs in its stacked inputs, but for the forces of contacts."""
     entries = np.arange(model.inputs.size)
     return np.concatenate([entries[:0], *(entries[model.inputs.slices[name]] for name in given_names(model))])
 
 
 def given_inputs(model: SystemFunctions, inputs: FloatArray) -> FloatArray:
-    """Stacked inputs of a scene, from those of a model of it that may have the forces of contacts too."""
+    """Stacked inputs of a scene, from stacked inputs of a model of it, which may hold the forces of contacts too."""
     return inputs[given_entries(model)]
 
 

@@ -90,12 +90,12 @@ class Barriers:
         return {rod: LookedAt(self.model, rod) for rod, _ in self.watched}
 
     def _deepest(self, rod: str, obstacle: scenes.ObstacleRecord) -> float:
-        """Depth that is admitted, relative to the length of the rod."""
+        """Depth of a rod in an obstacle that is admitted, over the length of the rod."""
         radius = obstacle.thickness / 2
         return MIDDLE * radius / self.model.discrete.rods[rod].properties.length
 
     def _deepest_ball(self, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
-        """The same of a body, whose centre may come as near to the middle."""
+        """Depth of a body in an obstacle that is admitted, over the body's length: its centre stays off the middle."""
         radii = obstacle.thickness / 2 + inner_radius(body)
         return MIDDLE * radii / self.model.discrete.body_frame(body.name).length
 

@@ -109,7 +109,7 @@ class Pressure:
 
 
 def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
-    """The scene with cushions for obstacles, on coarse elements; those of rods may be raised at each node.
+    """The scene with cushions for obstacles, on coarse elements; cushions of rods may be raised at each node.
 
     Args:
         scene: without contacts.

@@ -23,7 +23,7 @@ def distance_from(obstacle: scenes.ObstacleRecord) -> ca.Function:
 
 @lru_cache(maxsize=64)
 def _distances_from(obstacle: scenes.ObstacleRecord, count: int) -> ca.Function:
-    """So many points ↦ their distances."""
+    """Points, 3×count ↦ their distances from an obstacle, 1×count, m."""
     return distance_from(obstacle).map(count)
 
 
@@ -35,7 +35,7 @@ def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
 
 @lru_cache(maxsize=64)
 def surface_at_once(obstacle: scenes.ObstacleRecord) -> ca.Function:
-    """Point ↦ the results of :func:`surface`, one after the other, as one of 13 numbers."""
+    """Point ↦ the results of :func:`surface`, stacked, 13×1."""
     point = ca.SX.sym("point", 3)
     parts = surface(obstacle).expand().call([point])
     return ca.Function("surface", [point], [ca.cse(ca.vertcat(*(ca.densify(ca.vec(part)) for part in parts)))])
@@ -80,7 +80,7 @@ def distance_along(
 
 
 def along_curve(parts: Sequence[FloatArray], first: FloatArray, second: FloatArray) -> DistanceAlong:
-    """The same from the results of :func:`surface`, matrices."""
+    """Distance of a curve from an obstacle at one of its points, from the results of :func:`surface`, as matrices."""
     distance, gradient, curvature = parts
     normal = gradient[:, 0]
     slope = float(normal @ first)

@@ -161,10 +161,10 @@ def ball_is_inside_between(
         obstacle: the obstacle.
         radius: of the ball, m.
         length: what depths are relative to, m.
-        start: position, shape (3,), or those of several ways, shape (ways, 3), m.
-        end: another, likewise.
+        start: first position, shape (3,), or first positions of several ways, shape (ways, 3), m.
+        end: last position, of the shape of ``start``, m.
         deepest: depth on the way up to which it is not inside, at most :data:`MIDDLE` of the way to the middle.
-        bend: how far the way may be off the straight one, m, or that of each way, shape (ways,).
+        bend: how far the way, or each way, may be off the straight one, m; a number, or shape (ways,).
     """
     admitted = float(admitted_depth(obstacle, length, deepest, radius))
     # A stretch without length.
@@ -187,9 +187,9 @@ def is_inside_between(
     Args:
         obstacle: the obstacle.
         properties: of the rod.
-        start: positions at the abscissae SECTIONS, in the axes of the obstacle, shape (k, 3), m; or those of
-            several ways, shape (ways, k, 3).
-        end: others, likewise.
+        start: first positions at the abscissae SECTIONS, in the axes of the obstacle, shape (k, 3), m; or first
+            positions of several ways, shape (ways, k, 3).
+        end: last positions, of the shape of ``start``, m.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside, at most
             :data:`MIDDLE` of the way of its thinnest section to the middle.
         every: step from one of SECTIONS to the next one of the positions.
@@ -230,11 +230,11 @@ def _sinking(
 
     Args:
         gaps_at: gaps, m, at positions of shape (k, 3) with their abscissae.
-        start: positions at X, between which the rod is straight, those of one way after another, shape (…, 3), m.
-        end: others, likewise.
+        start: first positions at X, between which the rod is straight, one way after another, shape (…, 3), m.
+        end: last positions, of the shape of ``start``, m.
         X: abscissae, shape (k,).
         admitted: depth, m.
-        off: how far the rod may be off the straight lines between its sections, m, or that of each way, shape (ways,).
+        off: how far the rod may be off the straight lines between its sections, m, on all ways or on each, (ways,).
     """
     start, end = start.reshape(-1, 3), end.reshape(-1, 3)
     sections = len(X)

@@ -29,10 +29,10 @@ class PressingContacts:
 
     Attributes:
         held: gradients of the gaps that stay zero, shape (k, n).
-        held_by_inputs: their derivatives with the inputs, shape (k, m).
+        held_by_inputs: derivatives of these gaps with the inputs, shape (k, m).
         stiffness: added to the derivative of the residual with the unknowns, shape (n, n).
-        stiffness_by_inputs: added to that with the inputs, shape (n, m).
-        given: indices of the inputs of the scene; the others are forces of the contacts.
+        stiffness_by_inputs: added to the derivative of the residual with the inputs, shape (n, m).
+        given: indices of the inputs of the scene; the other inputs are forces of the contacts.
     """
 
     held: FloatArray

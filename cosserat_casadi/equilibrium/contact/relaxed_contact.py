@@ -72,7 +72,7 @@ class RelaxedContact:
 
     @property
     def inputs(self) -> InputLayout:
-        """Names, order and default values of the inputs: those of the model."""
+        """Names, order and default values of the inputs, which are the model's."""
         return self.model.inputs
 
     @property
@@ -82,7 +82,7 @@ class RelaxedContact:
 
     @property
     def parameters(self) -> BehindPlaces:
-        """The smoothing and the abscissae, of which the scene has no names: their number."""
+        """Layout of the smoothing and the abscissae, for which the scene has no names."""
         return BehindPlaces((), places=len(self.defaults))
 
     @property
@@ -97,7 +97,7 @@ class RelaxedContact:
 
     @cached_property
     def jacobian(self) -> ca.Function:
-        """(z, inputs, p) ↦ their derivative with z, and the residual."""
+        """(z, inputs, p) ↦ derivative of the residual with z, and the residual."""
         return self._function("jacobian", self._written.jacobian, self._written.residual)
 
     @cached_property
@@ -117,23 +117,23 @@ class RelaxedContact:
 
     @cached_property
     def body(self) -> dict[str, ca.Function]:
-        """The same of bodies."""
+        """(z, inputs, p) ↦ position, m, quaternion and rotation of a body, by body."""
         return {name: self._pose(pose) for name, pose in self.equations.model.body.items()}
 
     @cached_property
     def tip_jacobian(self) -> dict[str, ca.Function]:
-        """(z, inputs, p) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with each of them, by rod."""
+        """(z, inputs, p) ↦ derivatives of the tip's position and quaternion, 7×…, with each argument, by rod."""
         return {name: self._slopes(pose) for name, pose in self.tip.items()}
 
     @cached_property
     def body_jacobian(self) -> dict[str, ca.Function]:
-        """The same of bodies."""
+        """(z, inputs, p) ↦ derivatives of a body's position and quaternion, 7×…, with each argument, by body."""
         return {name: self._slopes(pose) for name, pose in self.body.items()}
 
     def near(self, solution: Solution, p: npt.ArrayLike | None = None) -> FloatArray:
         """Unknowns and forces in relaxed balance near an equilibrium of the scene, at its inputs, shape (size,).
 
-        Newton's method goes there; where it does not end the shape is that of the equilibrium.
+        Newton's method goes there; where it does not end, unknowns and forces of the equilibrium are returned.
 
         Args:
             solution: an equilibrium of :attr:`model`, or of another model of the scene.
@@ -156,7 +156,7 @@ class RelaxedContact:
         return relaxed.x if relaxed.outcome is Outcome.CONVERGED else start
 
     def solution(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
-        """The shape of unknowns of a problem, not judged, whose contacts are those of all sections."""
+        """The shape of unknowns of a problem, not judged, with a contact at every section."""
         return self._equilibrium(z, inputs, p)[0]
 
     def exact(self, z: FloatArray, inputs: FloatArray, p: FloatArray) -> Solution:
@@ -280,7 +280,7 @@ class _Written:
 def _nearest(sections: list[float], places: list[float], loads: Sequence[float]) -> list[float]:
     """Move to each place the nearest section; both ascend, and sections keep their order.
 
-    Elements end at loads, so that a section stays between the same two of them.
+    Elements end at loads, so that a section stays between the same two loads.
     """
     stretches = [bisect(loads, section) for section in sections]
     moved = dict[int, float]()
@@ -314,7 +314,7 @@ def _pressing(state: ContactState, forces: FloatArray, least: float) -> ContactS
 
 
 def _as_one(run: Sequence[tuple[Touch, float]]) -> Touch:
-    """One contact of neighbours that press."""
+    """The one contact that neighbours which press are taken for: a point, or a line."""
     first, last = run[0][0], run[-1][0]
     if first.of_body or len(run) == 1:
         return first
@@ -327,7 +327,7 @@ def _as_one(run: Sequence[tuple[Touch, float]]) -> Touch:
 def relaxed_contact(
     model: Model, sections: int = SECTIONS, *, modes: int = MODES, nodes: int = NODES
 ) -> RelaxedContact:
-    """The model of a scene in exact contact for an optimisation problem, whose equations are the same in all contacts.
+    """The model of a scene in exact contact for an optimisation problem, with one set of equations for all contacts.
 
     Args:
         model: a model of a scene with obstacles without a width; parameters have its values.
