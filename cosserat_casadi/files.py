@@ -175,10 +175,10 @@ def sources_hash(folder: Path | None = None) -> str | None:
     """A hash of the sources of the package.
 
     Args:
-        folder: with the sources; by default that of the package.
+        folder: folder with the sources; by default the package's.
 
     Returns:
-        None where a file has changed since the package was imported, or where there are no files.
+        the hash; None where a file has changed since the package was imported, or where there are no files.
     """
     root = os.fspath(folder or Path(__file__).parent)
     # The package's own module stands above all others, so that none imports it.

@@ -15,7 +15,7 @@ class Shown:
         return text
 
     def __str__(self) -> str:
-        """As ``repr``: pydantic would print every field of a scene."""
+        """The short ``repr``: pydantic would print every field of a scene."""
         return repr(self)
 
     def _repr_html_(self) -> str:
@@ -52,7 +52,7 @@ class Result(Shown):
         """The arrays of a motion over time, or of a sweep over its grid, with named axes and units.
 
         A motion has the axis ``time``; of each rod its sections have the axis ``<rod>.X``. A sweep over every
-        combination of its columns has an axis for each of them, any other sweep the axis ``row``.
+        combination of its columns has an axis for each column, any other sweep the axis ``row``.
 
         Returns:
             xarray.Dataset.
@@ -113,5 +113,5 @@ class Result(Shown):
 
 
 def _presentation() -> Any:
-    """The module that presents results, loaded when the first of them is shown."""
+    """The module that presents results, loaded when the first result is shown."""
     return import_module("cosserat_casadi.results.presentation")

@@ -45,7 +45,7 @@ def load_command(name: str) -> Any:
 
 
 class CommandGroup(TyperGroup):
-    """All commands: known by name and line until one of them is run."""
+    """All commands: known by name and line until a command is run."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)

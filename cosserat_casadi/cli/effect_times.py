@@ -27,7 +27,7 @@ MotionCost = dict[str, tuple[Count, float]]
 """Scalar operations of functions of a model, and best times of a call in CasADi's virtual machine, µs, by name."""
 
 FUNCTIONS = ("residual", "jacobian", "inverse_dynamics", "dynamics_jacobian")
-"""Functions of a model that are timed: residual of statics, that with its Jacobian, and the same of a motion."""
+"""Functions of a model that are timed: residual, then residual with Jacobian, of statics and of a motion."""
 
 
 LABELS = {
@@ -45,7 +45,7 @@ OF_DAMPING = "  of which damping"
 def motion_costs(*models: Model) -> list[MotionCost]:
     """Operations and times of models built for a motion, in their order.
 
-    They are timed in turn, and the best of several turns counts: what else the machine does comes to all of them.
+    Models are timed in turn, and the best of several turns counts: what else the machine does slows all models.
     """
     turns = [[_motion_times(model) for model in models] for _ in range(TURNS)]
     costs = []

@@ -31,7 +31,7 @@ GRACE = 0.7
 """Time that a command has after a signal to end by itself, s."""
 
 LONG_GRACE = 30.0
-"""The same for a command that writes partial results, such as the beginning of a motion."""
+"""Time for a command that writes partial results, such as the beginning of a motion, to end after a signal, s."""
 
 LOOKS = 0.05
 """Time between two looks at whether it is over, s."""

@@ -52,7 +52,7 @@ def prepare_streams() -> None:
     """Let standard output and standard error take all that a command says.
 
     Letters that their encoding lacks become plain ones, what standard error cannot take is dropped, and a width of no
-    columns is that of a pipe.
+    columns is taken for a pipe's.
     """
     codecs.register_error(HANDLER, _plain_letters)
     _open_missing_streams()

@@ -194,7 +194,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):  # type: ignore
         return self._observation(tip), reward, False, truncated, self._info(tip, "")
 
     def _begun(self, inputs: FloatArray, target: FloatArray) -> _Episode:
-        """At rest, in the equilibrium of some inputs."""
+        """An episode that begins at rest, in the equilibrium of some inputs."""
         found = self.library.solve(inputs)
         state = self.library.rest(inputs, found.x) if found.converged else None
         if state is None:

@@ -55,13 +55,13 @@ TWIST_AND_SHEAR = frozenset({2, 3, 4})
 """Numbers of the torsion and of the shears, by which a channel grows longer than its volume over its area."""
 
 STIFF = 1e3
-"""Stiffness of a drive, or of a cable of given length, over that of the rod that it moves."""
+"""Stiffness of a drive, or of a cable of given length, over the stiffness of the rod that it moves."""
 
 CARRIAGE = 1e-2
-"""Mass of what slides or turns to close a loop, over that of rods and bodies: a weld is as soft as that is light."""
+"""Mass of what slides or turns to close a loop, over the mass of rods and bodies: the lighter, the softer a weld."""
 
 LEAST = 1e-9
-"""Least mass, over that of all rods; least moments of inertia, over the mass and the square of the longest rod."""
+"""Least mass, over the mass of all rods; least moments of inertia, over this mass and the square of the longest rod."""
 
 LEAST_MOVED = 2e-15
 """Least mass and moments of inertia of what moves, kg and kg m²: MuJoCo refuses half of that."""

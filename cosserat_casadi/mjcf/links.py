@@ -1,8 +1,8 @@
 """A rod as a chain of rigid links, by the midpoint rule.
 
 Nodes cut the rod into pieces; a link belongs to each node and reaches to the middles of the two pieces that meet there.
-The strain of a piece is that of the joint in its middle, which has the stiffness of the piece: H/h, h its length. A
-strain that is a field becomes its value in the middle of each piece, so that shapes and frequencies are off by h².
+The joint in the middle of a piece has the strain of the piece, and its stiffness: H/h, h its length. A strain that is a
+field becomes its value in the middle of each piece, so that shapes and frequencies are off by h².
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ class RodPiece:
     Attributes:
         middle: pose of the section in its middle, world axes, unloaded.
         length: m.
-        stiffness: of the joint by strain, shape (6,), N m/rad and N/m.
-        damping: likewise, N m s/rad and N s/m.
+        stiffness: stiffness of the joint by strain, shape (6,), N m/rad and N/m.
+        damping: damping of the joint by strain, shape (6,), N m s/rad and N s/m.
     """
 
     middle: NumericPose

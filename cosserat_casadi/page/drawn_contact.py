@@ -30,7 +30,7 @@ ALONG_LINE = 25
 
 
 ITERATIONS, PARTS = 20 * TRACK_ITERATIONS, 20 * TRACK_PARTS
-"""Most Newton steps, and parts of the way of the inputs, for one move of a slider: those of a solve in C."""
+"""Most Newton steps, and parts of the way of the inputs, for one move of a slider: as many as for a solve in C."""
 
 
 def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
@@ -39,7 +39,7 @@ def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
     Args:
         model: of the scene without contacts.
         cases: stacked inputs, a row for each case, shape (k, m), further columns are not read: the library knows the
-            arrangements that are met on the way to each of them that has an equilibrium, one after the other.
+            arrangements that are met on the way to each case that has an equilibrium, one after the other.
 
     Raises:
         ExportError: C does not know what the scene has, or its contacts.
@@ -72,7 +72,7 @@ def contact_page_files(model: Model, cases: FloatArray) -> dict[str, str]:
 
 
 def ends_of_sliders(model: Model, moved: Sequence[Slider]) -> FloatArray:
-    """Stacked inputs with one slider at an end and the others at the scene's own values, shape (2 k, m)."""
+    """Stacked inputs with one slider at an end and all other inputs at the scene's own values, shape (2 k, m)."""
     cases = np.tile(model.pack(), (2 * len(moved), 1))
     for row, slider in enumerate(moved):
         cases[2 * row, slider.index] = slider.least

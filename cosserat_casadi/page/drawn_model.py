@@ -104,8 +104,8 @@ def drawn_parts(system: System, loaded: DiscreteScene | None = None, inputs: Mat
 
     Args:
         system: of the equilibrium.
-        loaded: the scene whose loads are drawn; by default that of the system, which in contact has more.
-        inputs: its stacked inputs.
+        loaded: the scene whose loads are drawn; by default the system's, which has more loads in contact.
+        inputs: stacked inputs of ``loaded``.
     """
     picture = _Picture(system, loaded or system.discrete, system.arguments.inputs if inputs is None else inputs)
     scene = system.discrete.scene

@@ -48,7 +48,7 @@ def export_page(
         file: path of the page.
         asked: ranges of the sliders; by default the ranges that modes are chosen for.
         load_cases: stacked inputs, a row for each case, shape (k, m): the page of a scene in exact contact knows the
-            arrangements of contacts that are met on the way to each of them; by default, to both ends of every slider.
+            arrangements of contacts that are met on the way to each case; by default, to both ends of every slider.
 
     Raises:
         ExportError: there is no compiler for WebAssembly, the page would be larger than a page may be, or C does not

@@ -45,8 +45,8 @@ def page_facts(solution: Solution, model: Model | None = None, asked: Given | No
 
     Args:
         solution: the equilibrium at the scene's own inputs.
-        model: the model whose inputs are moved; by default that of the solution, which is another one where contacts
-            were found for it.
+        model: the model whose inputs are moved; by default the solution's, which is another model where contacts were
+            found for it.
         asked: ranges of the sliders; by default the ranges that modes are chosen for.
     """
     model = solution.model if model is None else model
@@ -151,7 +151,7 @@ def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
 def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodShapes) -> dict[str, Any]:
     """A net of points on the surface of an obstacle, rows of points, m; an endless surface is shown about the rods.
 
-    That of an obstacle on a body is in the axes of the body.
+    The net of an obstacle on a body is in the axes of the body.
     """
     (near,) = seen_positions(solution, obstacle, shapes.points.mean(axis=0)[None])
     mesh = SURFACES[obstacle.kind].mesh(obstacle, near, shapes.size)

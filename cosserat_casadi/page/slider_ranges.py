@@ -37,8 +37,8 @@ class Slider:
 def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
     """A slider for each entry of the stacked inputs, in their order.
 
-    Its ends are those of the range that modes are chosen for; an entry that keeps its value there has the range that it
-    has in a scene whose modes are not chosen yet.
+    It covers the range that modes are chosen for; an entry that keeps its value there has the range that it has in a
+    scene whose modes are not chosen yet.
 
     Args:
         model: whose inputs are moved.
@@ -62,7 +62,7 @@ def sliders(model: Model, asked: Given | None = None) -> list[Slider]:
 
 
 def movable(model: SystemFunctions) -> list[str]:
-    """Inputs that dragging the tip moves: inputs with bounds, else those of actuators and of tubes, else all."""
+    """Inputs that dragging the tip moves: inputs with bounds, else inputs of actuators and of tubes, else all."""
     bounded = {bound.input for bound in model.scene.bounds}
     drives = {owner.name for owner in (*model.scene.actuators, *model.scene.tubes)}
     of_drives = {entry.name for entry, _ in model.inputs if entry.owner in drives and not entry.of_rod}

@@ -35,7 +35,7 @@ STYLES = {
 """Forces at a point, moments, forces per length. Arrows are scaled within their own sort."""
 
 MOST_LINE_ARROWS = 24
-"""Arrows of forces per length from which on some are left out, evenly: those of many rods hide the rods."""
+"""Arrows of forces per length from which on some are left out, evenly: arrows of many rods hide the rods."""
 
 
 def lies_in_plane(arrow: Arrow, normal: int) -> bool:

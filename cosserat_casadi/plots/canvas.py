@@ -22,7 +22,7 @@ TICKS = 5
 """Most intervals between the ticks of the longest axis in space; of shorter ones there are fewer."""
 
 LABEL_HEIGHT = 0.05
-"""Of the name of the vertical axis above its end, relative to the longest side."""
+"""Height of the name of the vertical axis above its end, over the longest side."""
 
 LABEL_DISTANCE = 9.0
 """Between the numbers of an axis in space and its name, points: nearer they stand on each other."""
@@ -224,7 +224,7 @@ class Canvas:
         )
 
     def _clear_corner(self, limits: FloatArray, room: float) -> None:
-        """Leave out the first ticks of y where those of x end beside them, at the front corner of the box.
+        """Leave out the first ticks of y where ticks of x end beside them, at the front corner of the box.
 
         Args:
             limits: of the axes, a row each, shape (3, 2), m.

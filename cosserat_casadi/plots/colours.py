@@ -1,4 +1,4 @@
-"""Colours and markers of figures; those of one set stay apart for colour-blind readers too."""
+"""Colours and markers of figures; colours of one set stay apart for colour-blind readers too."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ROD_MARKERS = ("", "o", "^", "s", "D", "v")
 """Marks along the rods of each round of colours."""
 
 ACTUATORS = ("#cc8800", "#884488", "#aa4444", "#aa66ee", "#aaaacc", "#0000ee")
-"""Colours of actuators, apart from those of the rods in which they run."""
+"""Colours of actuators, apart from colours of the rods in which they run."""
 
 BODIES = "#777777"
 DISKS = ("#777777", "#44aa99", "#aa4499", "#bb8844")

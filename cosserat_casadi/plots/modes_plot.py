@@ -1,4 +1,4 @@
-"""The figure of modes, one panel each, and the animation of one of them.
+"""The figure of modes, one panel each, and the animation of one mode.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -57,7 +57,7 @@ PERIOD_FRAMES = 50
 """Frames of one period of an animation."""
 
 BELOW = 0.2
-"""Room for the labels of the lowest panels, which reach out of them in space, inches."""
+"""Room for the labels of the lowest panels, which reach out of the panels in space, inches."""
 
 
 def plot_modes(modes: Modes) -> Any:

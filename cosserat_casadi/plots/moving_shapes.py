@@ -57,7 +57,7 @@ class MovingShapes:
         return float(extents.max())
 
     def outline_style(self, name: str) -> dict[str, Any]:
-        """Colour of an outline; that of a body without extent is a dot."""
+        """Style of an outline: its colour; a body without extent is a dot."""
         style: dict[str, Any] = {"color": self.colours[name]}
         if np.ptp(self.outlines[name][0], axis=0).max() <= FLAT * self.size:
             style |= {"marker": "o", "markersize": 7}

@@ -1,4 +1,4 @@
-"""The figure of a path: load against the displacement of the tips, of a held rod that of a section between.
+"""The figure of a path: load against the displacement of the tips, for a held rod of a section between its ends.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -36,7 +36,7 @@ MARKERS = {
 """Marker of each kind of event."""
 
 WORDS = {"limit": "limit point", "bifurcation": "bifurcation", **CONTACT_WORDS}
-"""Its words."""
+"""Words for each kind of event."""
 
 STABLE = 0
 UNSTABLE = 1

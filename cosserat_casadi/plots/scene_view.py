@@ -1,4 +1,4 @@
-"""From where a scene or a motion is looked at: in space, or across the plane that holds all of it."""
+"""The view of a scene or a motion: in space, or across the plane that holds all of it."""
 
 from __future__ import annotations
 

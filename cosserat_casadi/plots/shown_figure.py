@@ -7,7 +7,7 @@ import io
 from matplotlib.figure import Figure
 
 RESOLUTION = 72
-"""Of a figure in a notebook, dots per inch."""
+"""Resolution of a figure in a notebook, dots per inch."""
 
 
 class ShownFigure(Figure):  # type: ignore[misc]  # matplotlib is not checked

@@ -18,7 +18,7 @@ COLUMNS = 3
 """Panels in a row."""
 
 HEIGHT = 0.38
-"""Of a bar, where inputs are one apart."""
+"""Height of a bar, where inputs are 1 apart."""
 
 
 def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:

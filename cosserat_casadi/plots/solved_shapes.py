@@ -18,8 +18,8 @@ class RodShapes:
     """Centre lines at SAMPLES, in world axes.
 
     Attributes:
-        deformed: by rod, shape (len(SAMPLES), 3), m.
-        unloaded: likewise, without loads.
+        deformed: positions by rod, shape (len(SAMPLES), 3), m.
+        unloaded: positions without loads by rod, shape (len(SAMPLES), 3), m.
     """
 
     deformed: dict[str, FloatArray]

@@ -76,10 +76,10 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
 
 
 Views = dict[tuple[int, int], Plane | None]
-"""By the row and the column of a panel in the grid the two world axes that it shows; None shows space."""
+"""The two world axes that a panel shows, by its row and column in the grid; None shows space."""
 
 SPACE_VIEWS: Views = {(0, 0): (0, 1), (0, 1): None, (1, 0): (0, 2), (1, 1): (1, 2)}
-"""From above, in space; from the front below the first, from the side beside that."""
+"""Panels from above and in space; below these, panels from the front and from the side."""
 
 
 def _figure(views: Views, show_inputs: bool) -> tuple[Any, Any]:
@@ -111,7 +111,7 @@ def _scatter(panel: Any, points: FloatArray, plane: Plane | None, shades: FloatA
     Args:
         panel: the axes.
         points: shape (k, 3), m.
-        plane: the axes that the panel shows of them; None for space.
+        plane: the axes that the panel shows of the points; None for space.
         shades: shape (k,), or None.
     """
     share = DOT_AREA / max(len(points), 1)

@@ -127,14 +127,14 @@ def _centre_line(solution: TubeSolution, start: float, end: float) -> FloatArray
 
 
 def _between(distance: FloatArray, start: float, end: float) -> npt.NDArray[np.bool_]:
-    """Which stations lie from one distance to another, both of them among these."""
+    """Which stations lie from one distance to another, stations at both distances among them."""
     # Distances are sums of steps: where a tube ends they are off by rounding.
     slack = 1e-9 * float(distance.max())
     return (distance >= start - slack) & (distance <= end + slack)
 
 
 def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bool) -> None:
-    """Angles of the tubes up to their tips, less that of the first drive."""
+    """Draw the angles of the tubes up to their tips, less the angle of the first drive."""
     shape = solution.shape
     first = solution.inputs[0]
     for index, name in enumerate(solution.robot.names):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:
-    """That contact is smooth, the widths of obstacles and of contacts of rods, m, and how deep things are, in widths.
+    """Smooth contact as data: its kind, widths of obstacles and of contacts of rods, m, and depths, in widths.
 
     Args:
         model: of a scene with smooth obstacles.

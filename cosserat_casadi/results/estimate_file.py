@@ -48,7 +48,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
 
 
 def _shared(found: Estimate) -> list[dict[str, Any]]:
-    """Numbers that all rows share; empty where none of them is unknown."""
+    """Numbers that all rows share; empty where no such number is unknown."""
     shared = found.shared
     if shared is None:
         return []

@@ -53,7 +53,7 @@ def identification_result(found: Identification) -> dict[str, Any]:
 
 
 def _shared(found: Identification) -> dict[str, Any]:
-    """Unknowns that all cases share, by name: numbers, or lists of them."""
+    """Unknowns that all cases share, by name: numbers, or lists of numbers."""
     entries = {}
     first = 0
     intervals = found.intervals

@@ -35,7 +35,7 @@ def row_outcome(inverse: Inverse, unstable: bool) -> str:
 
 
 def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> str:
-    """The file as text: the table's own columns, the outcome, gaps with their errors, that of the tips, and the inputs.
+    """The file as text: the table's own columns, the outcome, gaps with their errors, error of the tips, and inputs.
 
     Args:
         table: the targets.

@@ -78,7 +78,7 @@ def motion_columns(motion: Motion) -> dict[str, FloatArray]:
 
     ``t``; inputs as ``push.force.x``; of a rod ``rod.tip.x`` … ``rod.tip.qz`` and ``rod.X=0.5.x``; of a body
     ``platform.x`` … ``platform.qz``; of an actuator ``cable.tension`` and ``cable.length``; ``energy.kinetic`` …
-    An effort or a conjugate that is an input too has one column, that of the input.
+    An effort or a conjugate that is an input too has one column, under the name of the input.
     """
     columns: dict[str, FloatArray] = {}
     for name, values in _columns(motion):
@@ -154,7 +154,7 @@ def _add_pose(arrays: NamedArrays, name: str, pose: dict[str, FloatArray]) -> No
 
 
 def _contact_entry(motion: Motion) -> dict[str, Any]:
-    """Contact with obstacles: depth of rods inside obstacles with a width; contacts with the others, and impacts."""
+    """Contact with obstacles: depths inside obstacles with a width; contacts and impacts with obstacles without."""
     if not motion.model.scene.touches_exactly:
         entry = contact_entry(motion.model, motion.x, motion.inputs)
         return entry | rubbing_entries(motion, len(motion.times))

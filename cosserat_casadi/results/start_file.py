@@ -36,7 +36,7 @@ def read_start(path: str | Path, scene: Scene) -> Solution | Checkpoint:
 
     Args:
         path: what ``cosserat solve`` has written.
-        scene: the scene; its numbers, inputs aside, must be the same as when the equilibrium was solved.
+        scene: the scene; its numbers, inputs aside, must be as when the equilibrium was solved.
 
     Raises:
         SceneError: the file cannot be read or is not of an equilibrium, or the scene does not have that equilibrium.
@@ -169,7 +169,7 @@ def _strain_coordinates(model: Model, data: Mapping[str, Any]) -> FloatArray:
 
 
 def _distance(solution: Solution, data: Mapping[str, Any]) -> float:
-    """Largest distance between positions of a solution and those of the file, relative to the length of the rod."""
+    """Largest distance between positions of a solution and positions in the file, over the length of the rod."""
     distances = []
     for name, rod in solution.model.discrete.rods.items():
         listed = data["rods"][name]

@@ -27,7 +27,7 @@ class ContactSession(RobotSession):
     """A robot that touches obstacles and is moved from a browser.
 
     The contacts are unknowns, which the compiled library does not look for: :func:`cosserat_casadi.solve` does, from
-    those of the last equilibrium.
+    the contacts of the last equilibrium.
     """
 
     def __post_init__(self) -> None:
@@ -68,10 +68,10 @@ class ContactSession(RobotSession):
         return accuracy_of(solve(self.model, values, start=self._present))
 
     def _followed(self, given: FloatArray) -> None:
-        """No way is followed: a solve begins at the last equilibrium."""
+        """Do nothing: no way is followed, since a solve begins at the last equilibrium."""
 
     def _solved(self, given: FloatArray) -> Solution:
-        """The equilibrium for inputs, whose contacts are tried from those of the last one on."""
+        """The equilibrium for inputs, looked for from the contacts of the last equilibrium."""
         before: Solution = self._last
         if np.all(np.isfinite(given)):
             return solve(self.model, given, start=before, estimate_error=False)

@@ -210,7 +210,7 @@ class _Arrival(io.RawIOBase):
         self._end = time.monotonic() + PATIENCE
 
     def readable(self) -> bool:
-        """It is."""
+        """True: a connection can be read."""
         return True
 
     def readinto(self, buffer: Any) -> int:

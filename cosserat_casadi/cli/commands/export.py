@@ -108,7 +108,7 @@ class Asked:
         """Refuse an export of nothing, files that cannot be written, and options of sources without their folder.
 
         Raises:
-            ExportError: one of them is refused.
+            ExportError: the export, a file or an option is refused.
         """
         if self.output is None and not self.files:
             remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"

@@ -181,7 +181,7 @@ def _asked_range(text: str) -> AskedRange:
 
 
 def _way_of(scene: Scene, asked: AskedRange) -> _Way:
-    """One number of an input from a value to another; the others keep the scene's values.
+    """The way of one number of an input from a value to another; other numbers keep the scene's values.
 
     Raises:
         SceneError: the scene has no such number.

@@ -33,7 +33,7 @@ IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
 """Orientation of a joint that has none in the scene."""
 
 TURNED = 1e-6
-"""Angle between two orientations, rad, below which they are the same."""
+"""Angle between two orientations, rad, below which they count as one orientation."""
 
 
 def error_words(error: float, within: bool | None, tolerance: float) -> str:

@@ -145,8 +145,8 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
     """Sentences about the rows that were solved again in Python.
 
     Args:
-        checked: for each such row its number, counted from 0; the estimated error, the distance of its poses from
-            those of the sweep, None where Python found no equilibrium, and whether it is stable.
+        checked: for each such row its number, counted from 0; the estimated error, the distance of its poses from the
+            sweep's, None where Python found no equilibrium, and whether it is stable.
         tolerance: of the scene.
     """
     compared = [entry for entry in checked if entry["difference"] is not None]
