@@ -56,7 +56,7 @@ _LAWS = {
     "magnus8": (5120.0, 108.0, 5.1),
     PLANAR: (114.0, 8.8, 0.5),
 }
-"""For each interval: operations of its functions, and the factors of the turning coordinates and of their square."""
+"""Operations of the functions of an interval, and factors of the turning coordinates and of their square, by method."""
 
 _TAYLOR_COUNT = {PLANAR: 1, "magnus4": 2, "magnus6": 3, "magnus8": 4}
 """Numbers that an interval takes of the strain about each axis."""

@@ -1,12 +1,12 @@
-"""From a tolerance to the cheapest discretisation that meets it (docs/theory.md, section 10).
+"""The cheapest discretisation that meets a tolerance (docs/theory.md, section 10).
 
 Uniform discretisations are refined, level by level, to a reference solution: one whose own error is a small part of
 the tolerance. From there modes per component, intervals and the order of the rotation integrator are coarsened to what
 the tolerance needs. The coarsened model is solved, and its distance to the reference, with what the reference itself
 may be off, is the estimate of its error.
 
-A rod that is held at both ends has several equilibria near each other. Which of them is found must not hang on the
-discretisation: it is decided on levels that are the same for every tolerance, and for modes that the user fixes.
+A rod that is held at both ends has several equilibria near each other. Which equilibrium is found must not hang on the
+discretisation: it is decided on levels that are alike for every tolerance, and for modes that the user fixes.
 
 The choice is made at the inputs of the scene, or of the call: a component that they do not excite keeps one mode. Who
 changes the inputs afterwards, to load the rod harder or in another direction, fixes modes and nodes or chooses at the

@@ -6,9 +6,9 @@ leave, a careful one where errors fall faster than that. Its grid: one look at a
 
 Not all errors fall so regularly. Waves along a rod do not show in its last coefficients. The error of a rod with
 supports falls in uneven steps: where the last two modes happen to do little, both the change that they make and its
-ratio to the one before are small, and their product says far too little; that of a free rod under strong loads may do
-so too. And tips are superconvergent: their change tells nothing of the sections between, which are farther off. So a
-look is taken at modes that the solution lacks, and at how both move by them.
+ratio to the one before are small, and their product says far too little; for a free rod under strong loads it may do so
+too. And tips are superconvergent: their change tells nothing of the sections between, which are farther off. So a look
+is taken at modes that the solution lacks, and at how both move by them.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ class Verified:
 
     @property
     def sentence(self) -> str:
-        """For a header or a README."""
+        """Ranges, solves and errors in words, for a header or a README."""
         where = ", ".join(self.ranges) or "the scene's own inputs"
         text = f"The discretisation was verified by {self.solves} solves over {where}:"
         if self.error_estimate is not None:
@@ -46,7 +46,7 @@ class Verified:
         return f"{text} Inputs beyond these ranges need it chosen anew."
 
     def plain(self) -> dict[str, Any]:
-        """For a manifest."""
+        """Ranges, solves and errors as plain data, for a manifest."""
         error = self.error_estimate
         return {
             "ranges": list(self.ranges),

@@ -25,7 +25,7 @@ class Horizon:
     """A guess of a motion over N stages; its stages need not meet, and its equations need not hold.
 
     Attributes:
-        states: at the ends of all stages, shape (N + 1, state_size); the first one is a datum, the others are guesses.
+        states: states at the ends of all stages, shape (N + 1, state_size); the first is a datum, the rest are guesses.
         unknowns: of all stages, shape (N, unknowns_size).
     """
 

@@ -1,6 +1,6 @@
 """How far an equilibrium is from instability, as a function that an optimiser can bound.
 
-The second variation of the energy is set against that of the elastic energy of the unloaded rods, over the admissible
+The second variation of the energy is set against the elastic energy's of the unloaded rods, over the admissible
 variations. Its smallest eigenvalue is the share of the elastic stiffness that loads leave: 1 − P/P_c for a column
 under the thrust P, zero where the equilibrium is critical, whatever the units and the number of modes. It has a kink
 where two eigenvalues meet, which is the rule in symmetric robots. The margin is the soft minimum −w log Σ exp(−λ/w):

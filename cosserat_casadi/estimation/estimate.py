@@ -2,7 +2,7 @@
 
 The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores, or in exact contact in Python;
 where a place along a rod or another parameter is unknown, from several values between its bounds. Its covariance is
-that of the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013,
+taken from the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013,
 section A.3; the Gaussian approximation of Laplace.
 """
 

@@ -22,7 +22,7 @@ BLIND = 1e-10
 """Share of the largest eigenvalue of the information, in typical sizes, below which data and prior say nothing."""
 
 HARDLY_SEEN = 0.01
-"""Information of the data, relative to that of the prior, below which the prior alone speaks: a deviation that is
+"""Information of the data, over the prior's, below which the prior alone speaks: a deviation that is
 narrower by half a percent."""
 
 SHOWN_PART = 0.2

@@ -3,7 +3,7 @@
 While its contacts stay, a case is one system in z = (x, f, p): unknowns, forces and places of contact, with inputs and
 parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed there, judged at each
 step, and solved anew where a contact opens, closes or changes its kind. The misfit is continuous over such a change and
-its derivatives jump: they are those of the contacts on this side.
+its derivatives jump: derivatives with the contacts on this side are returned.
 """
 
 from __future__ import annotations

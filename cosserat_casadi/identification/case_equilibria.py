@@ -70,8 +70,8 @@ class Equilibria:
 
     Attributes:
         model: of the scene, with its parameters.
-        cases: their number.
-        sought: which cases are to be in equilibrium, shape (cases,); the others stay unloaded.
+        cases: number of cases.
+        sought: which cases are to be in equilibrium, shape (cases,); the rest stay unloaded.
         barred: cases of which a step was refused, for it led through a smooth bar, ball or rod, shape (cases,).
     """
 

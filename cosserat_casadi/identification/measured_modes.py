@@ -3,7 +3,7 @@
 A mode is λ with (λ² M + λ C + K) z = 0 = l (λ² M + λ C + K), and changes by dλ = −l (λ² dM + λ dC + dK) z where the
 vectors are scaled to l (2λ M + C) z = 1 (P. Lancaster, *Numerische Mathematik* 6 (1964) 377–387). Of r modes with one
 λ, such as the two bendings of a round rod, none has a derivative. Their mean has one: the trace, over r, of
-the r×r matrix of these numbers. It is what all of them are compared with.
+the r×r matrix of these numbers. All r measured modes are compared with this mean.
 """
 
 from __future__ import annotations

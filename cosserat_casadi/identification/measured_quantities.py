@@ -108,7 +108,7 @@ class MeasurementSite:
 
 @dataclass(frozen=True)
 class TubeSite(MeasurementSite):
-    """Where a quantity of concentric tubes is measured.
+    """Robot, record and measurement that the expression of a quantity of concentric tubes is written in.
 
     Attributes:
         section: unknowns, inputs and abscissa ↦ position and quaternion.
@@ -308,7 +308,7 @@ class Frequency(VibrationQuantity[MeasuredFrequency]):
         return abs(eigenvalue) / (2 * np.pi)
 
     def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
-        """Its derivatives."""
+        """Derivatives of the frequency where the eigenvalue has these."""
         return np.asarray(_slope_of_size(eigenvalue, change) / (2 * np.pi))
 
 
@@ -324,7 +324,7 @@ class DampingRatio(VibrationQuantity[MeasuredDampingRatio]):
         return -eigenvalue.real / abs(eigenvalue)
 
     def slope(self, eigenvalue: complex, change: ComplexArray) -> FloatArray:
-        """Its derivatives."""
+        """Derivatives of the damping ratio where the eigenvalue has these."""
         size = abs(eigenvalue)
         of_size = _slope_of_size(eigenvalue, change)
         return np.asarray(-change.real / size + eigenvalue.real * of_size / size**2)

@@ -5,8 +5,8 @@ the section relative to the stream and its parts across and along the tangent: G
 158. A speed is √(v·v + ε²), so that its derivatives are finite where nothing moves. Slow flow of viscous fluids adds
 −ζ_n v_n − ζ_t v_t, resistive force theory: J. Gray and G. J. Hancock, J. Exp. Biol. 32 (1955) 802.
 
-Fluid that moves along has the kinetic energy ½ m_a |ṙ − (t·ṙ) t|² per length, that of slender bodies in a fluid at
-rest: H. Lamb, *Hydrodynamics*, 6th ed., § 124. Its force and moment are those of Lagrange's equations, so that the
+Fluid that moves along has the kinetic energy ½ m_a |ṙ − (t·ṙ) t|² per length, as along slender bodies in a fluid at
+rest: H. Lamb, *Hydrodynamics*, 6th ed., § 124. Its force and moment follow by Lagrange's equations, so that the
 energy of a motion is kept: with P = 1 − t tᵀ
 
     f = −m_a d(P ṙ)/dt = −m_a (P r̈ − (ṫ·ṙ) t − (t·ṙ) ṫ),    c = −m_a (t·ṙ) t × ṙ.

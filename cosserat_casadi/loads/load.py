@@ -163,7 +163,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     symbolic or numeric; an entry that is zero for good is not stored in it.
 
     Attributes:
-        record: the record of the scene, whose word, inputs and units are those of the load.
+        record: the record of the scene, whose word, inputs and units are the load's.
         kind: the word of the scene format.
         per_mass: whether its force is per mass, and so acts on masses that are fixed to sections as well.
         nodal: name of an input that holds numbers of each node of the rod; empty for none.
@@ -182,7 +182,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes.
 
-        By default they are minus the derivatives of :meth:`energy`; for a load without an energy, those of the scene.
+        By default they are minus the derivatives of :meth:`energy`; for a load without an energy, the scene's values.
 
         Returns:
             force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j

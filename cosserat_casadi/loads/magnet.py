@@ -1,6 +1,6 @@
 """Magnetised rods and dipoles in a field: energy −m·B, of which moment m × B and force ∇(m·B) are the derivatives.
 
-The field is that of three sources, which add up: uniform, linear in the place, and of a dipole. J. D. Jackson,
+The field has three sources, which add up: uniform, linear in the place, and of a dipole. J. D. Jackson,
 *Classical Electrodynamics*, 3rd ed., (5.56), (5.72). What the magnets of a scene do to each other is left out.
 """
 

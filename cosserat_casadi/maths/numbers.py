@@ -215,7 +215,7 @@ def sparse_known(entries: Matrix) -> Matrix:
 
 
 def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray:
-    """Entries, with what rounding alone makes differ made the same, so that expressions of them can be shared.
+    """Entries, made equal where rounding alone makes them differ, so that their expressions can be shared.
 
     Entries that are rounding errors beside the largest one are zero: orthogonal polynomials leave them. Entries whose
     sizes differ by rounding alone take the size of the middle one, or a whole number: symmetric rows leave them.

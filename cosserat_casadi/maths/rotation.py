@@ -2,7 +2,7 @@
 
 What takes vectors or quaternions side by side takes and returns SX, MX, DM or NumPy arrays. Where the shapes say
 ``3×k`` or ``4×k``, column ``i`` holds the object of section ``i`` and any ``k ≥ 1`` will do; a NumPy array may also be
-a single vector of shape ``(3,)`` or ``(4,)``. The formulas are written once, by rows, for all of them.
+a single vector of shape ``(3,)`` or ``(4,)``. The formulas are written once, by rows, for all these types.
 
 A row without entries (a structural zero of CasADi) stays without entries, so that a planar rod costs what a planar
 rod should.

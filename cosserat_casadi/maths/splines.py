@@ -1,4 +1,4 @@
-"""Tables of values over time or along a rod as piecewise polynomials, and how near to zero one of them comes."""
+"""Tables of values over time or along a rod as piecewise polynomials, and how near to zero such a polynomial comes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _CONTROL = np.linalg.inv(_BINOMIALS * _INSIDE[:, None] ** _DEGREES * (1 - _INSID
 _SQUARE = np.array(
     [np.outer(_BINOMIALS, _BINOMIALS) * (np.add.outer(_DEGREES, _DEGREES) == k) / math.comb(6, k) for k in range(7)]
 )
-"""Matrices that take Bernstein coefficients of two cubic polynomials to those of their product, shape (7, 4, 4)."""
+"""Matrices from Bernstein coefficients of two cubic polynomials to coefficients of their product, shape (7, 4, 4)."""
 
 _LEAST_NORM_ERROR = 1e-14
 """Error of the least norm as a share of the largest norm: some tens of rounding errors."""

@@ -1,4 +1,4 @@
-"""From a scene to named CasADi functions: the stages of the river in their order.
+"""Named CasADi functions from a scene: the stages of the river in their order.
 
 Scene ── rods.rod_properties ─▶ RodProperties        what each rod is made of
       ── inputs.input_layout ─▶ InputLayout          what stays free at run time

@@ -19,7 +19,7 @@ their unknowns. With u = (strains q, multipliers m, deviations d of frames, tens
     cable      by ∂L/∂q             0                  0                        by τ
 
 A joint whose coordinate is an unknown adds its row (constraints/joint_coordinate.py) and a column wherever its wrench
-turns with it; a stop of it adds the row of its pair, and a column in that of the coordinate.
+turns with it; a stop of the coordinate adds the row of its pair, and entries in the column of the coordinate.
 
 Here δ is the motion of the section with q, W the wrench of a unit of each multiplier, and B the motion of a frame with
 d. Docs/theory.md, section 8.

@@ -177,7 +177,7 @@ class RodLoads:
             yield LineWrench(of_force, of_moment, profiles, kernel.follower)
 
     def _pose_wrench(self, kernel: TracedLoad, site: Site, motion: RodMotion | SeenMotion | None) -> PoseWrench:
-        """A load that depends on the pose of its sections or on their motion: its kernel, evaluated at each of them."""
+        """A load that depends on the pose of its sections or on their motion: its kernel, evaluated at each section."""
         at = kernel.member.abscissa(kernel.load)
         values = self._values(kernel.load)
         section_kernel = kernel.kernel

@@ -178,7 +178,7 @@ def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
     """Load cases spread evenly over a box, shape (count, size of a case).
 
     The points are the multiples of an irrational direction, modulo one (the additive recurrence with the generalised
-    golden ratio), so that any number of them covers the box; the corner of all upper ends comes first.
+    golden ratio), so that any number of points covers the box; the corner of all upper ends comes first.
 
     Args:
         ranges: ``column=low:high``, such as ``push.force.x=-1:1``.

@@ -1,6 +1,6 @@
 """The named functions of a model in motion: see model/model_functions.py and docs/theory.md, section 11.
 
-Coordinates x are those of statics, v and a their first and second time derivatives. Multipliers and tensions have
+Coordinates x are as in statics, v and a their first and second time derivatives. Multipliers and tensions have
 neither: their entries of v and a are not read.
 """
 

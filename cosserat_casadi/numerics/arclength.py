@@ -255,7 +255,7 @@ class Curve:
     def round_corner(self, current: ArcPoint) -> ArcPoint | None:
         """The point just behind a corner next to a point; None where there is no corner.
 
-        The gradient of a pair's equation is that of its side that is zero: behind the corner this grows.
+        The gradient of a pair's equation is the gradient of its side that is zero: behind the corner this side grows.
         """
         derivative = self.derivative(current.y)
         for number in self.pairs:

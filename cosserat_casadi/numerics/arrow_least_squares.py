@@ -93,7 +93,7 @@ class BlockResiduals(Protocol[StateType]):
         """The state at shared unknowns, (n,), and unknowns of the blocks, (blocks, k); None where evaluation fails."""
 
     def jacobians(self, state: StateType) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the residual with the shared unknowns, (m, n), and with those of the row's block, (m, k)."""
+        """Derivatives of the residual with the shared unknowns, (m, n), and with the row's block's, (m, k)."""
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ class ArrowStep:
 
     @cached_property
     def _triangles(self) -> list[FloatArray]:
-        """For each block the triangle of [its unknowns, shared unknowns, residual], which replaces its rows."""
+        """Triangle of each block, of [its unknowns, shared unknowns, residual], which replaces its rows."""
         n, k = self.sizes
         by_shared = np.where(self.shared_held, 0.0, self.by_shared)
         if not k:

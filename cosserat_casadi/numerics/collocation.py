@@ -62,7 +62,7 @@ class Collocation:
         return len(self.nodes)
 
     def values_at(self, share: float | FloatArray) -> FloatArray:
-        """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,), or at k of them, shape (k, s)."""
+        """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,), or at k shares, shape (k, s)."""
         powers = np.asarray(share)[..., None] ** np.arange(self.stages)
         return np.asarray(powers @ self.polynomials)
 

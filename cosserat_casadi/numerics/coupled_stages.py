@@ -1,7 +1,7 @@
-"""Newton's method for the stages of one step with a Jacobian at each of them, damped: for steps that move far.
+"""Newton's method for the stages of one step with a Jacobian at each stage, damped: for steps that move far.
 
 One Jacobian for all stages, as :mod:`stage_newton` has it, serves where a step moves little. A step of a given size may
-turn a rod by a large angle between its stages: no single Jacobian is near all of them, and a whole correction leads
+turn a rod by a large angle between its stages: no single Jacobian is near all stages, and a whole correction leads
 astray. Here the stages keep their own Jacobians, whose systems are coupled by the tables of the method, and corrections
 are shortened until the next one would be shorter: P. Deuflhard, *Newton Methods for Nonlinear Problems*, Springer 2004,
 section 3.3 (natural monotonicity).

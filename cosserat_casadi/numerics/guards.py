@@ -1,4 +1,4 @@
-"""Guards: values along a motion that have to stay at zero or above, and the time at which one of them would not.
+"""Guards: values along a motion that have to stay at zero or above, and the time at which a guard would not.
 
 What ends where a guard falls through zero goes on under other equations: a cable that becomes taut, one whose tension
 vanishes. The last step is made just as long as brings that guard to zero, so that its end is a state of the method
@@ -90,7 +90,7 @@ def crossing(step: TimeStep, guards: Guards) -> tuple[float, int] | None:
 
 
 def _far_from_zero(step: TimeStep, guards: Guards, times: FloatArray, seen: dict[int, FloatArray]) -> bool:
-    """Whether looks at its ends and its middle tell that no guard comes to zero in a step.
+    """Whether looks at the ends and the middle of a step tell that no guard comes to zero in it.
 
     Args:
         step: the step.

@@ -73,7 +73,7 @@ class MotionEquations:
         rates_of_last: (t, x, v) ↦ rates, and second derivatives without the part of a, of constraints that are the last
             rows, shape (m,) each; None where all constraints are differentiated along the motion by a polynomial.
         kinks: ascending times at which F has a kink in t that steps may reach over, s.
-        eliminated: indices of entries whose rows have no derivative by another one of them, such as flows of
+        eliminated: indices of entries whose rows have no derivative by another such entry, as flows of
             branches: they are no unknowns of the linear systems of a step.
     """
 

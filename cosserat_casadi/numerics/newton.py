@@ -1,6 +1,6 @@
 """Newton's method that keeps a Jacobian while it serves; success is judged here, by finiteness and residual.
 
-A Jacobian and its factorisation cost several residuals. Between two of them the steps are corrected by Broyden's
+A Jacobian and its factorisation cost several residuals. Between two Jacobians the steps are corrected by Broyden's
 rank-one updates, which converge superlinearly. A step that does not lower the residual well enough asks for a new
 Jacobian; with a new one it is halved until it does (J. E. Dennis, R. B. Schnabel, *Numerical Methods for Unconstrained
 Optimization and Nonlinear Equations*, SIAM 1996, sections 6.3 and 8.3). See docs/theory.md, section 9.

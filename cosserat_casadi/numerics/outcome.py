@@ -8,7 +8,7 @@ from enum import Enum
 class Outcome(Enum):
     """Every way a solve can end. Only CONVERGED carries a result to build on.
 
-    The order is that of the numbers in C and in the tables of sweeps: new members come last, but before the outcomes of
+    The order gives the numbers in C and in the tables of sweeps: new members come last, but before the outcomes of
         contact and of concentric tubes, for which C has separate libraries.
     """
 

@@ -73,7 +73,7 @@ class NewtonBounds:
     iterations: int
 
     def length(self, change: FloatArray) -> float:
-        """Largest weighted entry of changes of position, shape (…, n); not finite where one of them is not."""
+        """Largest weighted entry of changes of position, shape (…, n); not finite where a change is not."""
         return float((np.abs(change) * self.weights).max(initial=0.0))
 
 
@@ -155,7 +155,7 @@ class SecantUpdates:
     equilibria.
 
     Attributes:
-        matrix: A of the collocation method, shape (s, s): changes of h² a to those of h v.
+        matrix: A of the collocation method, shape (s, s): changes of h² a to changes of h v.
         weights: what each entry of a change of h v is multiplied by, 0 for algebraic ones, shape (n,).
         taken: corrections taken so far, each of shape (s, n).
         duals: of each correction s the ŝ with ŝ·s = 1, orthogonal to all vectors across s, each of shape (s, n).
@@ -181,7 +181,7 @@ class SecantUpdates:
         return corrections
 
     def take(self, corrections: FloatArray) -> None:
-        """Add the update of corrections that are taken, shape (s, n); some differential entry of them is not zero."""
+        """Add the update of corrections that are taken, shape (s, n), of which some differential entry is not zero."""
         weighted = (self.matrix @ corrections) * self.weights
         dual = self.matrix.T @ (weighted * self.weights)
         self.taken.append(corrections)

@@ -43,7 +43,7 @@ class StepPolynomial:
     Attributes:
         method: the collocation method.
         differential: which entries have accelerations, shape (n,).
-        start: where the step begins; its acceleration is that of the step before.
+        start: where the step begins, with the acceleration of the step before.
         size: h, s.
         unknowns: of the stages: accelerations of differential entries, values of algebraic ones, shape (s, n).
     """
@@ -114,7 +114,7 @@ class TimeStep(StepPolynomial):
     contraction: float
 
     def at(self, time: float) -> Instant:
-        """The motion at a time of the step; its ends are those of the step, outside it is extrapolated.
+        """The motion at a time of the step: exactly at the ends of the step, extrapolated outside.
 
         Positions have an error of order s + 2 in h, velocities of s + 1, accelerations and algebraic entries of s.
         """

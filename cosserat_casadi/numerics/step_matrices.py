@@ -118,10 +118,10 @@ def step_matrices(
         step: h, s.
         linearisation: K, C and M.
         differential: which entries have accelerations, shape (n,).
-        eliminated: indices of entries whose rows have no derivative by another one of them.
+        eliminated: indices of entries whose rows have no derivative by another such entry.
 
     Returns:
-        the matrices; None where one of them is singular to rounding.
+        the matrices; None where a matrix is singular to rounding.
     """
     inverses = []
     shares = np.ones((len(method.eigenvalues), len(differential)), dtype=np.complex128)

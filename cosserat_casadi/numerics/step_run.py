@@ -46,7 +46,7 @@ MOST_LASTING = 100.0
 """Largest factor on the error of a step by its shortness: what Newton's method leaves of short ones counts too."""
 
 FEW_ITERATIONS = 4
-"""Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
+"""Iterations of a step up to which its Jacobian serves the next step too: to save more iterations costs as much."""
 
 ITERATIONS_OF_GIVEN_STEP = 30
 """Most Newton iterations, with one Jacobian, of a step of prescribed size: no shorter step may stand for it."""
@@ -213,7 +213,7 @@ class StepRun:
         return np.tile(unknowns, (self.method.stages, 1))
 
     def _middle(self, guess: FloatArray) -> Instant:
-        """The middle of the step as the first iterate has it: a Jacobian there is nearest to those of all stages."""
+        """The middle of the step as the first iterate has it: a Jacobian there is nearest to all stages' Jacobians."""
         time = self.now.time + self.size / 2.0
         return StepPolynomial(self.method, self.equations.differential, self.now, self.size, guess).at_share(0.5, time)
 

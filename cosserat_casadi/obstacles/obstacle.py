@@ -28,7 +28,7 @@ class Obstacle(Kind, ABC, Generic[RecordType]):
     """One kind of obstacle.
 
     Attributes:
-        record: the record of the scene, whose word is that of the obstacle.
+        record: the record of the scene, whose word is the obstacle's.
         kind: the word of the scene format.
         forbidden: the side of its surface where a rod must not be, in sentences.
     """

@@ -81,7 +81,7 @@ def ends_of_sliders(model: Model, moved: Sequence[Slider]) -> FloatArray:
 
 
 def drawn_kernels(chosen: Chosen, free: Model, names: Names) -> list[ca.Function]:
-    """For each arrangement (z, inputs) ↦ numbers of the picture, then the points at which each contact touches.
+    """Functions of each arrangement, (z, inputs) ↦ numbers of the picture, then points at which each contact touches.
 
     Args:
         chosen: the arrangements.

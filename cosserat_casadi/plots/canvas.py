@@ -25,7 +25,7 @@ LABEL_HEIGHT = 0.05
 """Height of the name of the vertical axis above its end, over the longest side."""
 
 LABEL_DISTANCE = 9.0
-"""Between the numbers of an axis in space and its name, points: nearer they stand on each other."""
+"""Distance of the numbers of an axis in space from its name, points: nearer they stand on each other."""
 
 SMALL = 8
 """Size of letters in a small panel, points."""
@@ -51,7 +51,7 @@ FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
 
 NUMBER_DISTANCE, SMALL_NUMBER_DISTANCE = 12.0, 8.0
-"""Between the vertical axis and its numbers, points, and in a small panel; matplotlib adds 8 points to its pad."""
+"""Distance of the vertical axis from its numbers, points, and in a small panel; matplotlib adds 8 points to its pad."""
 
 CORNER = 0.12
 """Distance from the front corner of the box, relative to its longest side, in which one axis alone has a number."""

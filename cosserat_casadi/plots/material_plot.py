@@ -49,7 +49,7 @@ AXES = (
 
 
 class StressCurve(NamedTuple):
-    """Stress against the change of one strain, the others unchanged.
+    """Stress against the change of one strain, all other strains unchanged.
 
     Attributes:
         component: index of the strain.

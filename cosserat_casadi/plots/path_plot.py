@@ -106,7 +106,7 @@ def animate_path(path: EquilibriumPath, file: str | Path, *, progress: Callable[
 
 
 def shown_points(count: int) -> npt.NDArray[np.int64]:
-    """Numbers of the points of a path that its film shows, at most MOST_FRAMES of them.
+    """Numbers of the points of a path that its film shows, at most MOST_FRAMES.
 
     Raises:
         SceneError: the path has no point.

@@ -7,7 +7,7 @@ Along a motion ÿ = Y q̈ + Ẏ q̇, and so
 
 the last because differentiating in time and with q commute. The sweeps of Y carry their first and second rates along:
 with A of an interval, δθ has the rates Σ Ȧ and Σ Ä. The inertia force −μ ÿ does the work Σ Yᵀ μ ÿ on δq, whose
-derivative at fixed ÿ is that of a dead load and is computed in tangent.py; this module adds the other derivatives. For
+derivative at fixed ÿ is as for a dead load and is computed in tangent.py; this module adds the other derivatives. For
 directors they are collected in three 3×3 matrices a node: with δd = δθ × d
 
     −δm = Σ μ δ(d × d̈) = P₂ δθ̈ + P₁ δθ̇ + P₀ δθ,

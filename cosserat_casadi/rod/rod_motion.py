@@ -1,7 +1,7 @@
 """Forward sweeps of a motion: velocities and accelerations of the sections.
 
-Both are the exact time derivatives of the discrete rotations and positions of kinematics.py. All vectors are those of
-the motion in the world, with coordinates in the axes that the base has at the instant: a rate is never the rate of a
+Both are the exact time derivatives of the discrete rotations and positions of kinematics.py. All vectors belong to the
+motion in the world, with coordinates in the axes that the base has at the instant: a rate is never the rate of a
 coordinate. An interval that turns by exp(Ω^) adds R b to the angular velocity, b = T Ω̇, and with the section at its
 beginning that turns at ω it adds ω × R b + R ḃ to the angular acceleration. See docs/theory.md, section 11.
 """

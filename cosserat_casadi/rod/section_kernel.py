@@ -1,7 +1,7 @@
 """A wrench as a function of the pose of the section it acts on, differentiated by CasADi.
 
-Rods are written in the axes of their base, loads in those of the world: the kernel composes the pose of the base with
-that of the section, calls the load, and turns force and moment back. With the pose (p, R) of the base and (r, θ) of the
+Rods are written in the axes of their base, loads in world axes: the kernel composes the pose of the base with
+the pose of the section, calls the load, and turns force and moment back. With poses (p, R) of the base, (r, θ) of the
 section in it, f = Rᵀ f_w(p + R r, R exp(θ^) …), so the derivatives below are in the axes of the base too.
 """
 

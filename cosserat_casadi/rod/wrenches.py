@@ -1,6 +1,6 @@
 """Wrenches on a rod: the records in which every effect speaks to the mechanics.
 
-Coordinates are those of the rod's base frame for a dead wrench and those of the loaded section for a follower.
+Coordinates are in the axes of the rod's base for a dead wrench and in the axes of the loaded section for a follower.
 A part that does not exist is None and costs nothing.
 """
 

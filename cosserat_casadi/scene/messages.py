@@ -45,7 +45,7 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
 
     Args:
         error: what pydantic raised.
-        tables: the scene, whose order is that of the problems.
+        tables: the scene, in whose order problems are listed.
         applied: overrides, the last one first: a fault in a value that an override set is told of the override.
     """
     faults = [_fault(details) for details in error.errors(include_url=False)]

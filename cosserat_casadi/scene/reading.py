@@ -1,4 +1,4 @@
-"""From TOML to a scene: file, text or tables ↦ overrides ↦ `Scene`, or one `SceneError` with every fault.
+"""A scene from TOML: file, text or tables ↦ overrides ↦ `Scene`, or one `SceneError` with every fault.
 
 Whatever the bytes of a file are, the outcome is one of the two.
 """

@@ -35,7 +35,7 @@ def restated(error: ValidationError, *, below: Path = (), faults: Iterable[Fault
     Args:
         error: what pydantic raised.
         below: path that its locations are put behind.
-        faults: faults that follow those of the error.
+        faults: faults that follow the error's.
     """
     errors = error.errors(include_url=False)
     lines = [_line(details, below) for details in errors]

@@ -27,7 +27,7 @@ from cosserat_casadi.scene.profiles import ENDS, SERIES, Notation, Profile, Refu
 from cosserat_casadi.scene.records import refusal
 
 ROUNDING = 1e-15
-"""Norms as near to 1 as this are left as they are: a value that is read, written and read again stays the same."""
+"""Norms as near to 1 as this are left as they are: a value that is read, written and read again does not change."""
 
 NORM_SLACK = 1e-6
 """Distance of a quaternion's norm from 1 that is put down to rounding in the file."""

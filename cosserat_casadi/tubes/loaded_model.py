@@ -1,7 +1,7 @@
 """The model of concentric tubes that bear loads: named CasADi functions of their tips and of the inputs.
 
 The frame at the tip of the robot is unknown beside the angles there: loads keep their direction in the world, and the
-frame at the base plate must be that of the world. See docs/tubes.md.
+frame at the base plate must be the world's. See docs/tubes.md.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 """Inputs by name, all in order, or None for the inputs of the scene."""
 
 SLACK = 1e-12
-"""By how much, relative to a length, a translation may leave its range: what rounding does to it."""
+"""Distance, over a length, by which a translation may leave its range: what rounding does to it."""
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ def _print_list(chosen: list[Example]) -> None:
 
 
 def _copy(chosen: list[Example], folder: Path) -> None:
-    """Copy examples, with the files that they need, into a folder, all of them or none.
+    """Copy examples, with the files that they need, into a folder, all or none.
 
     Raises:
         SceneError: a file is there already, with another content.

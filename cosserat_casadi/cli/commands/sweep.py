@@ -171,7 +171,7 @@ def _asked_table(over: Path | None, ranges: list[str], output: Path, *, sobol: b
     """The rows of a file, of ranges, or of both.
 
     Raises:
-        SceneError: with every fault of them; or neither is asked for.
+        SceneError: with every fault of table and grid; or neither is asked for.
     """
     if over is None and not ranges:
         remedy = "give a file, or ranges such as --range push.force.x=-1:1:21"

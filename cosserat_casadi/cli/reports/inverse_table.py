@@ -26,7 +26,7 @@ def print_inverse_table(
     outcomes: Sequence[str],
     output: Path,
 ) -> None:
-    """Print how many rows are met, and of the others the line, the outcome and why; then the largest error."""
+    """Print how many rows are met, and of rows that are not the line, the outcome and why; then the largest error."""
     failed = [row for row, outcome in enumerate(outcomes) if outcome != MET]
     rows = counted(len(outcomes), "row")
     if not failed:

@@ -95,7 +95,7 @@ def _outcome_table(sweep: Sweep) -> Table:
 
 
 def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
-    """On which discretisation the rows were solved, and how good it is where it was chosen."""
+    """Sentence on the discretisation that rows were solved on, and how good it is where it was chosen."""
     discretisation = chosen["discretisation"]
     if discretisation is None:
         return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."

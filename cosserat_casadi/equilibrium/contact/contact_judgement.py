@@ -1,4 +1,4 @@
-"""From contacts that hold to a solution: its residual, its contacts by name, and its stability.
+"""The solution of contacts that hold: its residual, its contacts by name, and its stability.
 
 Contacts that press are constraints, and the curvature of the gap times their force is in the Jacobian already: their
 forces have the energy −N d. The place of a point of contact follows the motion; it moves so that the gap is least, and

@@ -1,4 +1,4 @@
-"""From a first guess of the contacts to contacts that hold: states are tried until one has no fault.
+"""Contacts that hold, from a first guess of the contacts: states are tried until one has no fault.
 
 A state is at fault where a force pulls, or a section or a body is inside an obstacle; the fault says which states to
 try next. States that were tried are remembered and their number is bounded, so that the search ends; where it ends

@@ -63,7 +63,7 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int], forc
 
 
 def force_widths(state: ContactState, modes: Mapping[str, int]) -> list[Place | None]:
-    """For each row of the gaps over what its force is spread, relative to the rod; None for slopes, which have none.
+    """Share of the rod that the force of each row of the gaps is spread over; None for slopes, which have no force.
 
     A force at a section counts as spread over one: gaps at sections are no averages over a stretch.
     """

@@ -2,7 +2,7 @@
 
 A gap stays zero at the section that touches, along a line at all of it. What a moving place of contact does to the
 stiffness is N (∂d′/∂x)² / d″, as in stability (contact_judgement.py). So small changes ask for no elements that move:
-they are those of the rods to the error of the modes.
+the elements of the rods serve to the error of the modes.
 """
 
 from __future__ import annotations
