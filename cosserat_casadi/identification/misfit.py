@@ -38,7 +38,7 @@ class MisfitState:
         point: the equilibria.
         residual: differences in standard deviations, case after case, shape (m,); NaN of modes that do not swing, and
             of motions that could not be computed.
-        runs: motions of the cases that were measured over time, by the number of the case; None where there is none.
+        runs: motions of the cases that were measured over time, by the number of the case; None where steps failed.
         sensitivities: derivatives of the equilibria with the shared unknowns, (cases, size, n), and with the unknowns
             of the case, (cases, size, k); None until they are asked for.
     """
