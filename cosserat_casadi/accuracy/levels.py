@@ -27,7 +27,7 @@ SIGNAL_FACTOR = 2
 """Factor on the modes that the signals of a scene ask for, up to which levels are tried."""
 
 FIRST_LEVELS = ((1e-4, 1), (0.0, 2))
-"""First level for tolerances down to a bound; lower ones cannot tell how fast they converge."""
+"""First level for tolerances down to a bound; lower levels cannot tell how fast solutions converge."""
 
 MOST_LEVELS = 3
 """Most levels up at once where the missing modes are extrapolated: convergence may turn out faster."""
@@ -36,13 +36,13 @@ GRID_FACTOR = 1.4
 """Factor on the intervals after a grid was too coarse."""
 
 MOST_GRID_FACTOR = 4.0
-"""Product of these factors at which the grid is given up."""
+"""Product of the factors on the intervals at which the grid is given up."""
 
 VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
 """Modes per strain component and element where a level is verified by the next one."""
 
 VERIFIED_WAVES = (48, 64, 85, 113, 150)
-"""Further ones for scenes that put waves along their rods."""
+"""Further modes where a level is verified, for scenes that put waves along their rods."""
 
 SHORT = 0.25
 """Length of an element over its rod's, up to which it is short: it sees less of the rod, and needs fewer modes."""

@@ -59,7 +59,7 @@ class Actuator(Kind, ABC, Generic[RecordType]):
         return self.quantity(actuator, grid)
 
     def margin(self, actuator: RecordType, values: Mapping[str, Matrix]) -> Matrix | None:
-        """How far these inputs, 1×1 each, are from the end of the actuator's law; not positive beyond it.
+        """How far inputs, 1×1 each, are from the end of the actuator's law; not positive beyond it.
 
         None of an actuator whose law has no end.
         """

@@ -34,7 +34,7 @@ LONG_GRACE = 30.0
 """Time for a command that writes partial results, such as the beginning of a motion, to end after a signal, s."""
 
 LOOKS = 0.05
-"""Time between two looks at whether it is over, s."""
+"""Time between two looks at whether the command is over, s."""
 
 _received: list[int] = []
 """Signals that have come, in their order."""

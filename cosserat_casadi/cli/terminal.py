@@ -35,7 +35,7 @@ PLAIN = {
 """Substitutes for letters that the terminal does not know."""
 
 HANDLER = "cosserat_plain"
-"""Name of the error handler that writes it."""
+"""Name of the error handler that writes substitutes for letters that the terminal does not know."""
 
 
 class Console(console.Console):

@@ -42,7 +42,7 @@ EASED = 10.0
 """Factor by which that weight falls after a turn that has come nearer."""
 
 TIGHTENED = 5.0
-"""Factor by which it grows after one that has not."""
+"""Factor by which that weight grows after a turn that has come no nearer."""
 
 NEARER = 0.1
 """Share of the expected decrease of the error that a turn has to reach."""

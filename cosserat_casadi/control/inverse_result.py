@@ -26,7 +26,7 @@ UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
 """How the message of an unstable result begins."""
 
 NOT_STABLE = " No stable equilibrium was found that comes as near."
-"""How it ends where a stable one was wanted."""
+"""How the message of an unstable result ends where a stable one was wanted."""
 
 
 BARRED = (
@@ -138,7 +138,7 @@ def _targets_sentence(result: Inverse) -> str:
 
 
 def _missed_by_the_model(result: Inverse) -> bool:
-    """Whether these modes and nodes meet every target, but their error is too large for that."""
+    """Whether the model meets every target, but the error of its modes and nodes is too large for that."""
     return result.solution.converged and all(_reached(result)) and not meets_all(result)
 
 

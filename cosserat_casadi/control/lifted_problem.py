@@ -30,13 +30,13 @@ SETTLED = 1e-9
 """Change of the inputs from round to round, in their scales, below which they have settled."""
 
 ROUNDS = 7
-"""Most rounds."""
+"""Most rounds of the optimiser."""
 
 LONGEST_RUN = 60.0
 """Seconds after which one run of the optimiser ends where it is."""
 
 OUT_OF_TIME = "Maximum_WallTime_Exceeded"
-"""The status that ipopt returns then."""
+"""The status that ipopt returns where its time is over."""
 
 IPOPT = {
     "print_level": 0,

@@ -38,7 +38,7 @@ RANDOM_TRIES = 4
 """Further tries, each from a start off the saddle in a random combination of its unstable variations."""
 
 OFF = 0.3
-"""Length of such a perturbation (2-norm of the strain coordinates)."""
+"""Length of a perturbation off a saddle (2-norm of the strain coordinates)."""
 
 PATH_OF_ENERGY = " It was reached by letting the rod settle to less energy, not by growing the load."
 """Sentence in the message of a relaxed solution."""

@@ -129,7 +129,7 @@ class Equilibrium(Result, ABC, Generic[ModelType]):
     @property
     @abstractmethod
     def stable(self) -> bool | None:
-        """Whether it is stable; None where that has no meaning."""
+        """Whether the equilibrium is stable; None where that has no meaning."""
 
     @property
     @abstractmethod

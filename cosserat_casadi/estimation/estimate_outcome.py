@@ -38,7 +38,7 @@ BEHIND = "behind"
 """Word for a row whose search led through a smooth obstacle or a rod."""
 
 UNREACHED = "unreached"
-"""Word for a row whose search may have led through one: paths of its loads stall before they show that."""
+"""Word for a row whose search may have led through one of these: paths of its loads stall before they show it."""
 
 
 @dataclass(frozen=True, repr=False)

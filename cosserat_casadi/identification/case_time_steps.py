@@ -12,16 +12,16 @@ STEP_ERROR = 0.05
 """Error that the steps leave in any number that was measured, in standard deviations, that is small enough."""
 
 SPARE = 0.2
-"""Share of that error which longer steps aim at."""
+"""Share of the error of the steps which longer steps aim at."""
 
 ORDER = 4.0
-"""Power of the step that its error goes with, at least."""
+"""Least power of the step that the error of the steps goes with."""
 
 MOST_LONGER = 4.0
 """Most that steps are made longer at once."""
 
 TINY = 1e-9
-"""Error, in standard deviations, below which all are alike."""
+"""Error, in standard deviations, below which all steps are alike."""
 
 MOST_HALVINGS = 9
 """Times that the first steps are halved before they are taken as they are."""

@@ -141,7 +141,7 @@ class Ending:
         return replace(draft, warnings=(*warnings, *self._remarks(draft)))
 
     def _outcome(self) -> tuple[str, str]:
-        """How it ended, in a word and in sentences."""
+        """How the search ended, in a word and in sentences."""
         fit, misfit, known = self.fit, self.misfit, self.known
         if fit.outcome not in (FitOutcome.CONVERGED, FitOutcome.AT_KINK):
             remedy = ""

@@ -39,10 +39,10 @@ NEAREST = 0.05
 """Share of the way to a start at which it is given up, and the search begins where the first one does."""
 
 NOT_SWINGING = "A mode that was measured does not swing there."
-"""Why a case takes no part although it has an equilibrium."""
+"""Why a case takes no part in the fit although it has an equilibrium."""
 
 NOT_MOVING = "The steps of its motion cannot be solved there."
-"""Why a motion takes no part."""
+"""Why a motion takes no part in the fit."""
 
 MOST_RETRIES = 3
 """Times that cases without an equilibrium or motion are tried again, at the fitted numbers."""

@@ -52,7 +52,7 @@ class UnknownEntry:
 
     @property
     def of_input(self) -> bool:
-        """Whether it is an input, and not a parameter."""
+        """Whether the unknown is an input, and not a parameter."""
         return self.record.input is not None
 
     @property

@@ -51,11 +51,11 @@ class DrawnLoad:
 
     @property
     def at_point(self) -> bool:
-        """Whether it is a force and a moment; else it is both per length."""
+        """Whether the load is a force and a moment; else it is both per length."""
         return self.on_body or self.member.abscissa(self.load) is not None
 
     def arrows(self) -> list[Arrow]:
-        """How it is drawn, where the numbers are known."""
+        """Arrows of the load, where the numbers are known."""
         numbers = [ca.DM(part).full() for part in (self.position, self.force, self.moment)]
         position, force, moment = numbers
         if self.on_body:

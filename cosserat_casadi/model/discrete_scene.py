@@ -85,7 +85,7 @@ class CableOfLength:
 
     @property
     def may_go_slack(self) -> bool:
-        """Whether it never pushes."""
+        """Whether the cable goes slack instead of pushing."""
         return bool(EFFECTS[self.tendon.kind].may_go_slack(self.tendon))
 
     @property

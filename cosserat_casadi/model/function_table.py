@@ -184,7 +184,7 @@ class FunctionSpec:
 
     @property
     def public(self) -> bool:
-        """Whether it is a function of the header in C."""
+        """Whether the function is one of the header in C."""
         return bool(self.header)
 
     @property

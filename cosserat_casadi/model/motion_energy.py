@@ -312,7 +312,7 @@ class MotionEnergy:
 
 
 def _is_damped(load: scenes.LoadRecord) -> bool:
-    """Whether it is one that takes energy."""
+    """Whether a load takes energy in motion."""
     return isinstance(load, ContactLayer) and load.takes_energy
 
 

@@ -131,7 +131,7 @@ class PlacedConstraint:
 
     @property
     def closes_assembly(self) -> bool:
-        """Whether it holds rods to each other or a carried rod to the world, not a rod that starts in the world."""
+        """Whether the constraint ties rods together, or a carried rod to the world, not a rod that starts there."""
         return self.compliance is ASSEMBLED
 
 

@@ -34,7 +34,7 @@ RADIAL_POINTS = 3
 """Points along the radius of a round section: exact up to its eleventh power."""
 
 DIRECTIONS = 12
-"""Directions in which they lie: products of powers of x and y are exact up to a sum of 11."""
+"""Directions in which points of a round section lie: exact for products of powers of x and y up to a sum of 11."""
 
 POINTS_ACROSS = 6
 """Points across each side of a rectangle: exact up to the eleventh power of x and of y."""

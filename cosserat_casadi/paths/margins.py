@@ -34,7 +34,7 @@ NARROWINGS = 3
 """Times that the section which is nearest to an obstacle is looked for more closely."""
 
 POLISHING = 4
-"""Newton steps to it then."""
+"""Newton steps to the section which is nearest to an obstacle."""
 
 ROUNDING = 1e-9
 """Difference of distances, over the length, that is put down to rounding."""

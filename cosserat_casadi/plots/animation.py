@@ -59,7 +59,7 @@ TURNING = np.linspace(0.0, 1.0, 11)
 """Abscissae of the sections whose axes are drawn."""
 
 AXIS_LENGTH = 0.25
-"""Length of such an axis relative to the extent of the motion."""
+"""Length of a section's axis that is drawn, over the extent of the motion."""
 
 TITLE_LETTERS = 100
 """Letters of a title in one line."""

@@ -31,7 +31,7 @@ SMALL = 8
 """Size of letters in a small panel, points."""
 
 FEW_TICKS = 3
-"""Most intervals between its ticks."""
+"""Most intervals between the ticks of a small panel."""
 
 THINNEST_BOX = 0.4
 """Least side of the box of a scene in space, relative to the longest."""

@@ -29,7 +29,7 @@ AXES_SECTIONS = 9
 """Most sections whose axes are drawn: the rods share them. Where there is not one for each end no axes are drawn."""
 
 AXES_LENGTH = 0.06
-"""Length of their axes, relative to the scene."""
+"""Length of the axes of sections that are drawn, over the scene."""
 
 RIM = 33
 """Points of the rim of a disk."""

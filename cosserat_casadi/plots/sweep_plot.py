@@ -24,7 +24,7 @@ MOST_POINTS = 40_000
 """Points that are drawn; of more, every so many are left out."""
 
 RASTERISED = 5000
-"""Points from which they are drawn as an image in a vector figure."""
+"""Number of points from which on they are drawn as an image in a vector figure."""
 
 DOT_AREA = 4e4
 """Area of all dots together, points²; each takes its share within DOT_LIMITS."""

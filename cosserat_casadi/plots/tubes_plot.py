@@ -31,7 +31,7 @@ STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
 """Strokes of stable and unstable equilibria, and of equilibria under loads without energy."""
 
 VERDICTS: dict[bool | None, str] = {True: "stable", False: "unstable", None: "loads without energy"}
-"""Words for these."""
+"""Words for stable and unstable equilibria, and for equilibria under loads without energy."""
 
 NANOMETRES = 9
 """Digits of a distance in metres."""

@@ -93,7 +93,7 @@ class StraightCable(Cable):
 
     @property
     def conservative(self) -> bool:
-        """Whether it does not rub: friction is no gradient."""
+        """Whether the cable does not rub: friction is no gradient."""
         return self.routing.friction is None
 
     @cached_property

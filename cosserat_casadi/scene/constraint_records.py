@@ -201,7 +201,7 @@ mass = 0.1
 
     @property
     def stands_for_entry(self) -> bool:
-        """Whether reading wrote it for a disk of a row or for a joint without a name, as ``spacers[0]``."""
+        """Whether reading wrote the body for a disk of a row or for a joint without a name, as ``spacers[0]``."""
         return "[" in self.name
 
     @property
@@ -357,7 +357,7 @@ class JointRecord(Oriented, Entry):
 
     @property
     def at_base(self) -> bool:
-        """Whether it holds the base of its rod to what the base names, the world or another rod."""
+        """Whether the joint holds the base of its rod to what the base names, the world or another rod."""
         return self.body is None and self.holds_base
 
     @property

@@ -15,7 +15,7 @@ SEATED = {"name", "listed", "radius", "thickness"}
 """Keys of a body that stands for a disk."""
 
 SEAT = {"kind", "body", "rod", "at"}
-"""Keys of the joint that holds it."""
+"""Keys of the joint that holds a body which stands for a disk."""
 
 
 def seat_disks(tables: dict[str, Any]) -> None:

@@ -47,7 +47,7 @@ class InputField:
 
     @property
     def moves(self) -> bool:
-        """Whether it moves rods or prescribes a length: it cannot jump, and its rate and acceleration matter."""
+        """Whether the input moves rods or prescribes a length: it cannot jump, and its rate and acceleration matter."""
         return self.geometry or self.continuous
 
     def entry_count(self, value: Any) -> int:

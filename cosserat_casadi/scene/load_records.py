@@ -67,17 +67,17 @@ acceleration = [0, 0, -9.81]
 
     @property
     def acts_on_all(self) -> bool:
-        """Whether it weighs every rod and every body."""
+        """Whether gravity weighs every rod and every body."""
         return self.rods is None and self.bodies is None
 
     def acts_on_rod(self, rod: str) -> bool:
-        """Whether it weighs the rod of this name."""
+        """Whether gravity weighs the rod of this name."""
         if self.rods is None:
             return self.acts_on_all
         return rod in self.rods
 
     def acts_on_body(self, body: str) -> bool:
-        """Whether it weighs the body of this name."""
+        """Whether gravity weighs the body of this name."""
         if self.bodies is None:
             return self.acts_on_all
         return body in self.bodies

@@ -33,7 +33,7 @@ MARGIN_OF_DECAY = 30
 """Legendre coefficients in which a wave decays to rounding, beyond the degree of its frequency."""
 
 POINTS_BEYOND = 20
-"""Points of the quadrature beyond these coefficients."""
+"""Points of the quadrature of a travelling wave beyond the number of its coefficients."""
 
 WAVE_ROUNDING = 1e-12
 """Share of the largest Legendre coefficient of a travelling wave below which a coefficient is left out."""
@@ -105,7 +105,7 @@ wave = "one_minus_cosine"
 
     @property
     def is_table(self) -> bool:
-        """Whether it is a table of values and not a wave."""
+        """Whether the motion is a table of values and not a wave."""
         return self.times is not None
 
     @property
@@ -137,7 +137,7 @@ wave = "one_minus_cosine"
 
     @property
     def travels(self) -> bool:
-        """Whether it is a wave along the rod."""
+        """Whether the motion is a wave along the rod."""
         return self.wave == "travelling"
 
     @property

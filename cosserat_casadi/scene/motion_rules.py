@@ -19,7 +19,7 @@ LEAST_NORM = 0.1
 """Norm of a quaternion on its way, over the largest one at the times of its tables, below which it has no direction."""
 
 DIGITS = 3
-"""Digits behind the point of such a norm in a sentence."""
+"""Digits behind the point of the norm of a quaternion in a sentence."""
 
 
 class _Moving(NamedTuple):

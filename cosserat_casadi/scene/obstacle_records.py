@@ -38,7 +38,7 @@ SMOOTH_KEYS = ("width", "stiffness", "damping", "slip_speed")
 """Keys of an obstacle whose contact is smooth."""
 
 SMOOTH_NUMBERS = ("width", "stiffness")
-"""Keys of these whose numbers may be parameters."""
+"""Keys of an obstacle whose contact is smooth that may be parameters."""
 
 SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
 """Remedy where exact contact is not found."""
@@ -150,7 +150,7 @@ class ObstacleRecord(Entry):
 
     @property
     def is_smooth(self) -> bool:
-        """Whether it pushes smoothly, from a width on."""
+        """Whether the obstacle pushes smoothly, from a width on."""
         return self.width is not None
 
     @property

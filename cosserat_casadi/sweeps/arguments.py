@@ -80,7 +80,7 @@ def touches_in_c(scene: Scene) -> bool:
 
 
 def accepts_parameters(tables: Mapping[str, Any], names: Sequence[str]) -> bool:
-    """Whether these are parameters of the scene, of one number each."""
+    """Whether columns are parameters of the scene, of one number each."""
     try:
         scene = scene_from_dict({**tables, "parameters": list(names)})
     except SceneError:

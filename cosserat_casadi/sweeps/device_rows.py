@@ -21,7 +21,7 @@ DEVICE_ROWS = 65_536
 """Rows of a chunk that a GPU solves: some for each of its threads."""
 
 _LOCK = threading.Lock()
-"""Threads take turns: they share the workspaces of the device."""
+"""Lock by which threads take turns on the device: they share its workspaces."""
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ class TubeLoad:
 
     @property
     def is_beside_tip(self) -> bool:
-        """Whether it acts beside the tip, or a parameter may move it there."""
+        """Whether the load acts beside the tip, or a parameter may move it there."""
         return is_symbolic(self.from_tip) or self.from_tip > 0.0
 
 

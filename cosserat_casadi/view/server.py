@@ -30,10 +30,10 @@ from cosserat_casadi.view.questions import Question, QuestionError
 from cosserat_casadi.view.robot_session import RobotSession
 
 HOST = "127.0.0.1"
-"""Nobody else's machine reaches it."""
+"""Address of the server, which no other machine reaches."""
 
 LARGEST_QUESTION = 1_000_000
-"""Bytes of a question beyond which it is none of ours."""
+"""Bytes beyond which a question does not come from our page."""
 
 CONNECTIONS = 32
 """Connections that are served at once; a browser has six to one server."""

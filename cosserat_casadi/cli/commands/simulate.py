@@ -28,7 +28,7 @@ HASTY_FRAMES = 10
 """Frames below which an animation shows little but its ends."""
 
 UNHURRIED = 5.0
-"""Time that the speed which is then proposed gives an animation, s."""
+"""Time that an animation of few frames takes at the speed which is proposed for it, s."""
 
 
 def simulate(

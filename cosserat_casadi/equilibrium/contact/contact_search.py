@@ -238,11 +238,11 @@ class Penetrated:
         return (touch.owner, touch.obstacle, touch.of_body) == (self.owner, self.obstacle, self.of_body)
 
     def is_at(self, touch: Touch) -> bool:
-        """Whether it begins or ends at a contact."""
+        """Whether the stretch begins or ends at a contact."""
         return bool(self.concerns(touch) and touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
 
     def is_along(self, touch: Touch) -> bool:
-        """Whether it is inside a line of contact: it is the error of polynomials then."""
+        """Whether the stretch is inside a line of contact: then its depth is an error of polynomials."""
         return bool(touch.is_line and touch.start < self.deepest < touch.end)
 
 

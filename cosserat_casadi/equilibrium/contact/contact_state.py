@@ -122,12 +122,12 @@ class Touch:
 
     @property
     def starts_at_base(self) -> bool:
-        """Whether it is a line that begins where the rod does."""
+        """Whether the contact is a line that begins where the rod does."""
         return self.is_line and not is_symbolic(self.start) and self.start == BASE
 
     @property
     def reaches_tip(self) -> bool:
-        """Whether it ends at the tip."""
+        """Whether the contact ends at the tip."""
         return not self.of_body and not self.moves[-1]
 
     @property

@@ -42,13 +42,13 @@ DEEP = 1e-3
 """Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
 
 MIDDLE = 0.7
-"""Share of the way from its surface to the middle of a bar or ball by which a rod may sink in.
+"""Share of the way from the surface to the middle of a bar or ball by which a rod may sink in.
 
 Deeper it would come out on the other side. A rod with a radius touches before its centre line is at the surface.
 """
 
 FINEST = 0.25
-"""Width of the smallest parts, relative to the depth that is admitted: they miss no way through the middle."""
+"""Width of the smallest parts of a way, over the depth that is admitted: no way through the middle is missed."""
 
 
 @dataclass(frozen=True)

@@ -30,16 +30,16 @@ ROUNDS = 12
 """Times that cushions are raised."""
 
 STIFFENINGS = 4
-"""Rounds from the first one in which they are made stiffer as well."""
+"""Rounds from the first one in which cushions are made stiffer as well."""
 
 STIFFER = 4.0
-"""Factor on their stiffness then."""
+"""Factor on the stiffness of cushions in such a round."""
 
 LINE = 0.06
 """Stretch of nodes that are held from which a line of contact is tried before a point."""
 
 APART = 0.1
-"""Distance of two such stretches on one obstacle below which they may be one."""
+"""Distance of two stretches of held nodes on one obstacle below which they may be one."""
 
 
 @dataclass(frozen=True)
