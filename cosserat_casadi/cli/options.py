@@ -93,7 +93,7 @@ def check_files(
     """Add the faults of files that cannot be written, before time is spent on a solve.
 
     Args:
-        files: to be written, by the option that asks for each; None where none is asked for.
+        files: files to be written, by the option that asks for each; None where none is asked for.
         scene: file of the scene, whose tables are read too.
         settings: changes of the scene, which may name other tables.
         problems: list that the faults are added to: a file cannot be written, would be written over one that is read,
@@ -138,7 +138,7 @@ def check_figure(file: Path | None, option: str, problems: list[Problem], *, mes
     """Add the faults of the file of a figure or an animation.
 
     Args:
-        file: that is asked for; None where none is.
+        file: the file that is asked for; None where none is.
         option: ``--plot`` or ``--animation``.
         problems: list that the faults are added to: the file cannot be written, or has no suffix that can be drawn.
         meshes: whether it may be a file of meshes.
@@ -171,8 +171,8 @@ def check_file(file: Path | None, option: str, suffix: str) -> None:
     A file without suffix promises nothing.
 
     Args:
-        file: that is asked for; None where none is.
-        option: by which it is asked for.
+        file: the file that is asked for; None where none is.
+        option: the option by which it is asked for.
         suffix: of the only format that is written there, such as ``.json``.
 
     Raises:

@@ -93,7 +93,7 @@ def say_once(sentence: str) -> None:
     """Print a sentence on standard error, unless the command or the thread that watches has printed one before.
 
     Args:
-        sentence: that the command was stopped.
+        sentence: the sentence, which says that the command was stopped.
     """
     with _saying:
         if _said.is_set():

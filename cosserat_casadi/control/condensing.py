@@ -105,8 +105,8 @@ class Condensing:
 
         Args:
             guess: states and unknowns.
-            inputs: at the beginnings of all stages, shape (N, inputs).
-            inputs_rate: in them, shape (N, inputs), units per second.
+            inputs: inputs at the beginnings of all stages, shape (N, inputs).
+            inputs_rate: rates of the inputs in the stages, shape (N, inputs), units per second.
             p: stacked parameters of all stages, of a stage that takes them, shape (N, parameters).
 
         Raises:

@@ -48,13 +48,13 @@ class _Episode:
     """Where an episode stands.
 
     Attributes:
-        state: of the motion.
-        inputs: stacked.
-        inputs_rate: with which they move by now, units per second.
-        aimed: where the last action wants them.
+        state: state of the motion.
+        inputs: stacked inputs.
+        inputs_rate: rates with which the inputs move by now, units per second.
+        aimed: inputs that the last action wants.
         target: where the tip is to be, m, shape (3,).
-        memory: of the steps in C.
-        periods: that have passed.
+        memory: memory of the steps in C.
+        periods: number of periods that have passed.
     """
 
     state: StepState

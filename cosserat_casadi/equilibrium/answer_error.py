@@ -293,8 +293,8 @@ def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) ->
 
     Args:
         solution: the answer.
-        inverse: of its Jacobian.
-        residual: that the missing modes leave.
+        inverse: inverse of its Jacobian.
+        residual: residual that the missing modes leave.
     """
     first = -inverse @ residual
     left = residual + column(solution.model.path_residual(solution.x + first, solution.inputs, 1.0))

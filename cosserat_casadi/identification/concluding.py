@@ -29,9 +29,9 @@ def without_equilibrium(
     """The end where cases have no equilibrium.
 
     Args:
-        model: that was to be fitted.
+        model: the model that was to be fitted.
         layout: the unknowns.
-        left_out: these cases.
+        left_out: the cases without equilibrium.
         stopped: whether others have one, and the scene asks for all.
     """
     cases = named([case.where for case in left_out])

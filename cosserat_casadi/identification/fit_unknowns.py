@@ -295,7 +295,7 @@ def _entry(
         model: has the parameter or the input.
         record: as the scene has it.
         places: of its numbers in the stacked parameters, or in the stacked inputs.
-        parameter: that is unknown; None of an input.
+        parameter: the parameter that is unknown; None where an input is.
         typical: sizes of what may have any sign, by unit.
     """
     if parameter is not None:

@@ -23,7 +23,7 @@ def with_identified(scene: scenes.Scene, model: AnyModel, layout: UnknownLayout,
 
     Args:
         scene: the scene whose unknowns they are, with or without its own inputs and parameters.
-        model: that was fitted.
+        model: the fitted model.
         layout: the unknowns.
         shared: their identified values, shape (n,).
 

@@ -25,7 +25,7 @@ class BodyLoad:
 
     Attributes:
         position: the loaded point in the axes of the body, m.
-        arm: that point from the origin of the body, 3×1, m.
+        arm: the loaded point from the origin of the body, world axes, 3×1, m.
         force: 3×1, N.
         moment: 3×1, N m.
         follower: whether force and moment turn with the body.

@@ -429,7 +429,7 @@ class UnloadedScene:
         Args:
             seat: the joint.
             pose: of the body.
-            length: that displacements are divided by, m.
+            length: length that displacements are divided by, m.
 
         Returns:
             displacements along held directions and sines of turns about them, shape (k,); their derivatives by a turn

@@ -28,7 +28,7 @@ class _Link(NamedTuple):
         number: place of the joint in the scene's list.
         ends: names of the bodies, and of rods that start on bodies; None for the world, in which the other rods stand.
         first: pose of the place at the first end, world axes.
-        second: that at the other end, which is the held one.
+        second: pose of the place at the other end, the held one, world axes.
         held: directions, in the axes of the held place.
     """
 

@@ -638,11 +638,11 @@ class ArrowFit(Generic[StateType]):
         """Try a step along kinks, of which a state is known on the other side; as :meth:`_try_step`.
 
         Args:
-            search: on this side.
-            arrow: there.
+            search: the search, on this side.
+            arrow: the linear problem on this side.
             there: unknowns on the other side.
-            beyond: the state there.
-            blocks: which have a kink in between, shape (blocks,).
+            beyond: the state on the other side.
+            blocks: which blocks have a kink in between, shape (blocks,).
         """
         search.beyond = beyond
         other = self.linear(*there, beyond)

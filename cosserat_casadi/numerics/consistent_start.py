@@ -196,8 +196,8 @@ def least_change(saddle: Saddle, gradients: FloatArray, values: FloatArray) -> F
 
     Args:
         saddle: the linear system.
-        gradients: of the gaps, shape (m, n).
-        values: to be taken from each, shape (m,).
+        gradients: gradients of the gaps, shape (m, n).
+        values: values to be taken from each gap, or rate, shape (m,).
 
     Returns:
         the change, shape (n,).

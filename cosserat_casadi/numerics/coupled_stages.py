@@ -135,9 +135,9 @@ def _shortened(
 
     Args:
         stages: the equations.
-        unknowns: to be corrected, shape (s, n).
-        corrections: of h² a and of algebraic values, shape (s, n).
-        inverse: of the Jacobian, shape (s n, s n).
+        unknowns: unknowns to be corrected, shape (s, n).
+        corrections: corrections of h² a and of algebraic values, shape (s, n).
+        inverse: inverse of the Jacobian, shape (s n, s n).
         bounds: weights of the unknowns.
     """
     matrix = stages.method.matrix

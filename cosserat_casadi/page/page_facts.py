@@ -75,7 +75,7 @@ def facts_of_every_page(model: SystemFunctions, of_inputs: Sequence[Slider], poi
     Args:
         model: whose inputs are moved.
         of_inputs: a slider for each number of the inputs.
-        points: that the picture must hold, shape (k, 3), m.
+        points: points that the picture must hold, shape (k, 3), m.
     """
     scene = model.scene
     by_hand = movable(model)

@@ -46,7 +46,7 @@ def draw_surfaces(
     Args:
         canvas: where to draw.
         obstacles: what to draw.
-        points: that are shown, world axes, shape (k, 3), m.
+        points: points that are shown, world axes, shape (k, 3), m.
         bodies: poses of the bodies that obstacles are fixed to, by name.
         strength: share of its colour that an obstacle has.
         named: whether the legend names them; it names no obstacle that is far from the points.

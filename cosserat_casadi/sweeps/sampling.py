@@ -64,8 +64,8 @@ def farthest_rows(
     Args:
         values: shape (rows, columns).
         directions: shape (k, columns).
-        origin: that columns count from, shape (columns,).
-        units: of the columns, shape (columns,); a column of unit 0 is one that does not vary.
+        origin: values that columns count from, shape (columns,).
+        units: units of the columns, shape (columns,); a column of unit 0 is one that does not vary.
         scratch: where the values lie.
     """
     lengths = np.where(units > 0.0, units, 1.0)

@@ -212,10 +212,10 @@ class Penetrated:
         owner: name of the rod, or of the body, that is inside.
         obstacle: name of the obstacle.
         start: abscissa of its first section.
-        end: of its last one.
-        deepest: of the one that is deepest inside.
-        depth: there, relative to the length of the rod.
-        angle: largest one between the rod and the obstacle, rad; 0 of a body.
+        end: abscissa of its last section.
+        deepest: abscissa of the section that is deepest inside.
+        depth: depth of that section, over the length of the rod.
+        angle: largest angle between the rod and the obstacle, rad; 0 of a body.
         of_body: whether it is a body.
     """
 

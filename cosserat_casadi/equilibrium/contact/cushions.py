@@ -113,7 +113,7 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
 
     Args:
         scene: without contacts.
-        factor: on the stiffness of the cushions.
+        factor: factor on the stiffness of the cushions.
     """
     cushions: list[Penetration] = []
     records = {rod.name: rod for rod in scene.rods}
