@@ -22,8 +22,18 @@ NOUNS_MISSING = {
     "own": r"\bof (?:its|their|one's) own\b|\bown ones?\b|\bthe own\b|\bown(?=[.,;)]|$)",
     "made": r"\b(?:those|ones?|what is|what was) made\b",
     "none of none": r"\bnone of none\b|\bNone where there is none\b",
+    "the same": r"^The same\b|\bthe same (?:of|with)\b|[:;] the same(?=[.,;:)]|$| (?:as|at|but|by|for|in|where)\b)",
+    "likewise": r"\b[Ll]ikewise\b",
+    "of": r"^(?:Of|As|That|Those|Its|Their|It|They)\b",
+    "from": r"^(?:After|At|Before|Behind|Between|By|For|From|In|On|Over|To|Under|With|Without)\b",
+    "one": r"^One (?:all|each|for|if|of|over|where)\b|^One[.,:]",
+    "that of": r"(?:^|[.:;] )[Tt](?:hat|hose) of\b|\n +\w+: that\b",
+    "former": r"\bthe (?:former|latter)\b",
 }
-"""Word that stands in place of a noun, and a pattern of the places where it does."""
+"""Word that stands in place of a noun, and a pattern of the places where it does.
+
+A reader who jumps to a function does not see the docstring above it: none begins with a reference to that.
+"""
 
 
 def docstrings(text: str) -> Iterator[tuple[int, str]]:
@@ -77,6 +87,34 @@ def solve():
 '''
     words = Counter(word for _, word in missing_nouns(source))
     assert words == {"what": 1, "those": 1, "given": 1, "own": 1}
+
+
+@pytest.mark.parametrize(
+    ("word", "docstring"),
+    [
+        ("the same", "The same in numbers."),
+        ("the same", "Results.\n\n    Args:\n        bodies: the same of each body."),
+        ("the same", "Abscissa at which it ends; the same for a point."),
+        ("likewise", "Largest value, likewise."),
+        ("of", "Of a tube without bore."),
+        ("of", "As the input, h×1."),
+        ("of", "Their indices in the stacked inputs."),
+        ("from", "From its radius."),
+        ("from", "At rest in the unloaded shape."),
+        ("one", "One over each entry."),
+        ("one", "One: what varies along the rod is its magnetisation."),
+        ("that of", "Stiffness of a cable.\n\n    Args:\n        model: that of the motion."),
+        ("that of", "Error of the tips; that of the shapes between."),
+        ("former", "Guards of events, and the number of the former."),
+    ],
+)
+def test_a_reference_to_another_docstring_is_seen(word: str, docstring: str) -> None:
+    assert word in {seen for _, seen in missing_nouns(f'"""{docstring}"""')}
+
+
+def test_a_comparison_within_a_sentence_is_not_counted() -> None:
+    source = '"""One row of a table. Its rate is beside that of another row with the same number of cells."""'
+    assert missing_nouns(source) == []
 
 
 def test_a_said_noun_is_not_counted() -> None:

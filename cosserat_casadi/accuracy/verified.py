@@ -11,7 +11,7 @@ from cosserat_casadi.equilibrium.locking import locking_sentence
 
 @dataclass(frozen=True)
 class Verified:
-    """Over which ranges the error of a discretisation was estimated, and how large it is there.
+    """Ranges over which the error of a discretisation was estimated, and how large it is there.
 
     Attributes:
         ranges: ``column=low:high`` of inputs and parameters; all else has the scene's value.

@@ -32,7 +32,7 @@ def bases_on_nothing(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _carriers(scene: SceneTables) -> dict[str, str]:
-    """For each rod that starts on another rod, by name, the name of the rod that carries it."""
+    """Name of the rod that carries each rod which starts on another rod, by the name of the carried one."""
     carriers = {}
     for name, (_, rod) in scene.named("rods").items():
         base = rod.get("base")

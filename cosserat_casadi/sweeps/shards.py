@@ -22,7 +22,7 @@ TOLD = 5
 
 @dataclass(frozen=True)
 class Shard:
-    """One of several parts of a sweep.
+    """A part of a sweep that is cut into several.
 
     Attributes:
         number: from 1 to count.
