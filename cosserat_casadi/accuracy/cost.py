@@ -25,7 +25,7 @@ Functions of one interval are called: each call is one instruction.
 """
 
 STRAIGHT_BESIDE_INTERVALS = 9_000
-"""Instructions up to which code is straight-line that a scene of one rod computes beside its intervals.
+"""Instructions up to which a function of one rod is straight-line code beside its intervals.
 
 Four intervals are computed together. Loops take half as long again there, or twice: they gather what the intervals take
 and give.

@@ -142,7 +142,7 @@ def solve(subject: Any, values: Any = None, **options: Any) -> Any:
     are, and only the error is estimated.
 
     A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one. Concentric tubes
-    are straight at first, become curved where they are, and are loaded then; :func:`all_equilibria` finds the rest.
+    are straight at first, become curved where they are, and are loaded then; :func:`all_equilibria` finds every one.
 
     Args:
         subject: a validated scene, or a model of it: of rods, or of concentric tubes.

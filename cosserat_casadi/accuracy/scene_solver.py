@@ -140,7 +140,7 @@ class SceneSolver:
         return solution
 
     def _counted(self, solution: Solution) -> Solution:
-        """Count the iterations of a solution, and log it; the solution itself."""
+        """Count the iterations of a solution, log it, and return it."""
         self.iterations += solution.iterations
         sizes = {name: (chosen.modes, chosen.nodes) for name, chosen in solution.model.discretisation.items()}
         LOG.info("modes and intervals %s: %s, %d iterations", sizes, solution.outcome.name, solution.iterations)
