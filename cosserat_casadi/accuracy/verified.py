@@ -18,7 +18,7 @@ class Verified:
         solves: points of the ranges that were solved.
         error_estimate: largest error estimate of these points; None where no point has an equilibrium.
         without_equilibrium: how many points have no equilibrium.
-        within: whether the error is within the tolerance at all points that have an equilibrium; None without a tolerance.
+        within: whether the error is within the tolerance at all points with an equilibrium; None without a tolerance.
         locked: names of the inputs that move nothing on this discretisation, and would on more modes.
     """
 

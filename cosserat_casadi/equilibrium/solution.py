@@ -182,7 +182,7 @@ class Solution(Equilibrium[Model]):
     """The end of a solve of rods; an equilibrium only where ``converged`` says so.
 
     The residual norm is the relative norm of the dimensionless residual. The iterations of a scene count all
-    discretisations that were tried. The error estimate bounds the poses of the tips, as distance over the rod length
+    discretisations that were tried. The error estimate covers the poses of the tips, as distance over the rod length
     and as angle in rad, and the lengths of cables over the rod length; of held rods sections between the ends too.
 
     Attributes:

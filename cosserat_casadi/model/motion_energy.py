@@ -70,7 +70,7 @@ class MotionEnergy:
 
     @cached_property
     def of_loads(self) -> Matrix:
-        """Energy of each load, (loads)×1, J: −Σ f·r for a dead force, stored for smooth contact, else zero."""
+        """Energy of each load, (loads)×1, J: −Σ f·r of a dead force, stored energy of smooth contact, else zero."""
         energies = []
         for load, dead in zip(self._loads, self.load_is_dead, strict=True):
             energy = ca.DM(1, 1)

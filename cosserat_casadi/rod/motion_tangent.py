@@ -170,7 +170,7 @@ class MotionTangent:
     def _gram(self) -> Numbers:
         """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift.
 
-        It is in units of :attr:`_mass`, so that uniform rods of any length and density have the same.
+        It is in units of :attr:`_mass`, so that uniform rods of any length and density have the same matrix.
         """
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
