@@ -332,7 +332,7 @@ class RoundRecord(ObstacleRecord):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Refuse a width beyond the radius: a rod in the middle would not be seen to be too deep."""
+        """Refuse a width that is not less than the radius: a rod in the middle would not be seen to be too deep."""
         yield from super().conflicts(given)
         width, radius = given.get("width"), given.get("radius")
         if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:
