@@ -146,7 +146,7 @@ class DiscreteScene:
         scaling: the scene with the numbers that scale the equations; None where this scene holds them itself.
         moving: whether it is for a motion, in which stress that relaxes has flows.
         memory: grids of the rods at whose nodes loads remember sections along a path; None for the scene's own grids.
-        layers: widths of smooth contact over those of the scene.
+        layers: factor on the widths of smooth contact of the scene.
         fewest_sections: least sections of each element at which thin layers are summed, by the name of the load.
     """
 
@@ -631,7 +631,7 @@ class Richer:
         return ca.DM(flexibility)
 
     def _stiffness_unit(self, rod: str, further: StiffnessBeyondHooke | None) -> Matrix:
-        """Square root of how much each diagonal entry of K differs from that of the nominal scene, n×1."""
+        """Square root of the ratio of each diagonal entry of K to the entry of the nominal scene, n×1."""
         stiffness = self.discrete.rods[rod].stiffness
         nominal = np.diag(known(self.discrete.nominal.rods[rod].stiffness))
         if further is not None:
