@@ -4,11 +4,11 @@ At rest the states are the model's inputs, the controls their rates, the algebra
 ẋ = u, 0 = residual(z, x), for the integrator IRK. In motion the states begin with the unknowns that move, q, and their
 velocities v: q̇ = v, and 0 = F(q and z, v, v̇, inputs, u), the equations of motion; z are multipliers and tensions.
 
-All is scalar: acados differentiates the expressions anew, and the second derivatives of a graph of matrices take a
-compiler hundreds of times longer than those of scalars.
+All is scalar: acados differentiates the expressions anew, and a compiler takes hundreds of times longer for second
+derivatives of a graph of matrices than of scalars.
 
-Names and argument lists of the C functions, [x, ẋ, u, z, t, p] to values and Jacobians, are those of acados'
-``casadi_function_generation.py``; the C signature is that of ``external_function_param_casadi`` in
+Names and argument lists of the C functions, [x, ẋ, u, z, t, p] to values and Jacobians, are taken from acados'
+``casadi_function_generation.py``, the C signature from ``external_function_param_casadi`` in
 ``acados/utils/external_function_generic.h`` (both in github.com/acados/acados, seen in 2025).
 """
 
@@ -46,9 +46,9 @@ class AcadosExpressions:
         name: of the model, a C identifier.
         x: states, symbols of SX, or of MX where rods touch rods: the stacked inputs, shape (model.inputs.size,); in
             motion before them the differential unknowns of the model and their velocities, 1/s.
-        xdot: their derivatives.
+        xdot: derivatives of the states.
         u: controls: the rates of the inputs, units per second.
-        z: algebraic states: the unknowns of the model, shape (model.size,); in motion the algebraic ones of them.
+        z: algebraic states: the unknowns of the model, shape (model.size,); in motion its algebraic unknowns.
         p: parameters of the scene, shape (model.parameters.size,), often none; of relaxed contact the smoothing and the
             abscissae.
         f_impl_expr: what the integrator holds at zero: ẋ − u, in motion q̇ − v before it, then the residual.
@@ -68,7 +68,7 @@ class AcadosExpressions:
         Args:
             target: the ``AcadosModel``.
             parameters: what the parameters of the scene, if it names some, are there: ``p``, a value for each stage, or
-                ``p_global``, one for all of them, which acados can differentiate solutions with.
+                ``p_global``, one value for all stages, which acados can differentiate solutions with.
         """
         for entry in fields(self):
             word = parameters if entry.name == "p" else entry.name
@@ -87,8 +87,8 @@ def acados_expressions(model: Model | RelaxedContact, name: str, *, moving: bool
     Args:
         model: the model; of a scene in exact contact, at rest, that which :func:`relaxed_contact` makes of it.
         name: what acados calls it, a C identifier.
-        moving: whether the equations are those of motion. With supports, joints or cables of given length they have the
-            index 3, for which acados promises nothing.
+        moving: whether the equations are equations of motion. With supports, joints or cables of given length they have
+            the index 3, for which acados promises nothing.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.

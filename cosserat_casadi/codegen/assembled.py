@@ -34,7 +34,7 @@ class Assembled:
 
     @property
     def kernels(self) -> list[Kernel]:
-        """All functions, those of the residual with the calls of their intervals in fours."""
+        """All functions; functions of the residual call their intervals in fours."""
         of_residual = map(with_calls_in_fours, self.residual.kernels)
         return [*of_residual, *self.jacobian.kernels, *self.input_jacobian.kernels]
 

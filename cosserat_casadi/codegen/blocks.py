@@ -27,7 +27,7 @@ class Front:
     Attributes:
         members: unknowns of the block.
         interface: interface unknowns that it touches, as numbers within the interface, not within x.
-        start: first entry of its matrix among those of all fronts.
+        start: first entry of its matrix among the matrices of all fronts.
     """
 
     members: list[int]
@@ -47,7 +47,7 @@ class Elimination:
     Attributes:
         fronts: one after the other.
         interface: unknowns of the interface, which is eliminated last.
-        entry_fronts: of each entry its front, or the number of fronts for those of the interface.
+        entry_fronts: of each entry its front, or the number of fronts for an entry of the interface.
         entry_rows: of each entry the row there.
         entry_columns: of each entry the column there.
     """
@@ -60,7 +60,7 @@ class Elimination:
 
     @property
     def interface_start(self) -> int:
-        """First entry of the interface's own matrix, behind those of the fronts."""
+        """First entry of the interface's own matrix, behind the matrices of the fronts."""
         return sum(front.order**2 for front in self.fronts)
 
     @property
@@ -70,7 +70,7 @@ class Elimination:
 
     @property
     def indices(self) -> list[int]:
-        """For each entry its index among those of all matrices."""
+        """Index of each entry among the numbers of all matrices."""
         starts = [*(front.start for front in self.fronts), self.interface_start]
         orders = [*(front.order for front in self.fronts), len(self.interface)]
         places = zip(self.entry_fronts, self.entry_rows, self.entry_columns, strict=True)
@@ -91,7 +91,7 @@ class Blocks:
 
     @cached_property
     def entry_owners(self) -> list[int]:
-        """For each entry of the Jacobian the rod that it belongs to, or INTERFACE."""
+        """The rod that each entry of the Jacobian belongs to, or INTERFACE."""
         rows, columns = self.pattern.get_triplet()
         return [max(self.owners[i], self.owners[j]) for i, j in zip(rows, columns, strict=True)]
 
@@ -151,7 +151,7 @@ class Blocks:
 
     @cached_property
     def dense_indices(self) -> list[int]:
-        """For each entry its index in the dense matrix, column after column."""
+        """Index of each entry in the dense matrix, column after column."""
         rows, columns = self.pattern.get_triplet()
         return [i + j * self.pattern.size1() for i, j in zip(rows, columns, strict=True)]
 

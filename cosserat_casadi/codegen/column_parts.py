@@ -28,7 +28,7 @@ class _Piece:
     """Entries of one owner.
 
     Attributes:
-        stream: their instructions, with those of a column of the rod behind them.
+        stream: instructions of the entries, then of a column of the rod.
         column: the rod's columns; None for entries that depend on none.
         entries: numbers of the entries of the whole.
     """

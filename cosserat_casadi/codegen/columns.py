@@ -31,7 +31,7 @@ from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
 
 SHARED_AT_MOST = 2
-"""Instructions of a function before common terms are looked for, over those of its shared form: no function has more.
+"""Instructions of a function before common terms are looked for, over its shared form's: no function has more.
 
 1.0 to 1.6 on the scenes of examples/. Looking for common terms takes by far the most time of a long function.
 """
@@ -81,8 +81,8 @@ class WrittenJacobian:
         arguments: symbols that it is written in, by name.
         system: rods in these symbols.
         of_system: the same rods, whose columns may be known ↦ Jacobian.
-        gathered: function of the arguments, and of more behind them ↦ that of the arguments that it has in C.
-        given: names of these.
+        gathered: function of the arguments, and of more behind them ↦ function of the arguments that it has in C.
+        given: names of the arguments in C.
     """
 
     arguments: Mapping[str, ca.MX]
@@ -200,7 +200,7 @@ class ColumnPart:
     turns: FloatArray
 
     def form(self, name: str) -> ColumnForm:
-        """Both as one scalar function, with common terms shared."""
+        """Entries and column as one scalar function, with common terms shared."""
         shared = ca.cse([self.entries, self.column])
         words = [*self.given, *_words_of_columns(name)]
         function = ca.Function(name, self.symbols, shared, words, ["jacobian", "column"])
@@ -288,7 +288,7 @@ def _stacked(columns: Columns) -> Matrix:
 
 
 def _unstacked(alike: Columns, every: ca.MX) -> Columns:
-    """Stacked columns in parts as those of other columns of the rod."""
+    """Stacked columns in parts like other columns of the rod."""
     ends = np.cumsum([0, *(part.shape[0] for part in _parts(alike))]).tolist()
     rotation, angular, *further = ca.vertsplit(every, ends)
     count = len(alike.linear)

@@ -40,15 +40,15 @@ OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner 
 class Compiled(CompiledMotion):
     """An exported folder as compiled functions.
 
-    Methods take inputs by name, or all of them stacked; inputs that are not named keep the scene's values. So do
+    Methods take inputs by name, or all inputs stacked; inputs that are not named keep the scene's values. So do
     parameters, where the scene names some. They raise a ValueError for an
-    argument of the wrong size, and a SceneError for names or values that are not those of the scene. Functions take
-    both stacked, parameters behind the inputs, as those of a model do.
+    argument of the wrong size, and a SceneError for names or values that the scene refuses. Functions take both
+    stacked, parameters behind the inputs, as functions of a model do.
 
     Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
     ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
     it has in C. A pose is (position, quaternion). Functions with the key ``external`` in the manifest have derivatives
-    as :attr:`residual`, the others none.
+    as :attr:`residual`, other functions none.
 
     Attributes:
         library: the shared object.
@@ -192,12 +192,12 @@ class Compiled(CompiledMotion):
         """Equilibria of many load cases.
 
         Args:
-            inputs: shape (count, size of the inputs), or those of all rows.
-            parameters: shape (count, size of the parameters), or those of all rows, by name or stacked.
+            inputs: shape (count, size of the inputs), or one row for all.
+            parameters: shape (count, size of the parameters), or one set for all rows, by name or stacked.
 
         Raises:
             ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
-            SceneError: the names of parameters are not those of the scene.
+            SceneError: the scene has no parameters of these names.
         """
         given, passed = self._rows(inputs, parameters)
         count = len(given)

@@ -39,9 +39,9 @@ class CompiledStep:
     """A step of a motion by the solver in C.
 
     Attributes:
-        state: at its end; where it was not done, the state that was given.
+        state: state at the end of the step; where it was not done, the state that was given.
         status: how it ended.
-        iterations: Newton corrections, those of attempts that failed too.
+        iterations: Newton corrections, corrections of failed attempts too.
         jacobians: Jacobians evaluated.
         parts: into how many parts it was cut; 1 where it was taken whole.
         residual: largest entry of the equations before the last correction.
@@ -387,7 +387,7 @@ class CompiledMotion(LoadedLibrary):
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
-        """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
+        """A step as by :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
         size = 2 * self.size
         by_start = np.zeros((size, size))
         derivatives, columns = self._input_derivatives(size)

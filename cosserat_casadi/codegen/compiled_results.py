@@ -51,7 +51,7 @@ def judged_words(info: AnswerInfo, outcomes: Sequence[Outcome]) -> dict[str, Any
 
 
 class TubeInfo(AnswerInfo):
-    """The same of concentric tubes."""
+    """The struct in C that says how a call for concentric tubes ended, with the determinant."""
 
     _fields_ = (("determinant", ctypes.c_double),)
 
@@ -96,7 +96,7 @@ class StabilityInfo(ctypes.Structure):
 
     @property
     def judged(self) -> CompiledStability:
-        """The same as a record."""
+        """The stability as a record."""
         return CompiledStability(self.smallest_eigenvalue, self.negative, self.zero, VERDICTS[self.verdict])
 
 
@@ -108,7 +108,7 @@ class CompiledAnswer:
         outcome: how it ended.
         iterations: Newton steps tried.
         jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual at x and the inputs asked for, whatever was reached of them.
+        residual_norm: relative norm of the residual at x and the inputs asked for, reached or not.
         load_factor: share of the load that x carries, or of the way of the inputs that was gone; 1 where it converged.
         error_estimate: of the poses of tips and bodies, as distance over the length and as angle in rad, and of the
             lengths of cables over the length; 1 where it is not known, None where it was not estimated.
@@ -125,7 +125,7 @@ class CompiledAnswer:
 
     @property
     def converged(self) -> bool:
-        """Whether it is an equilibrium for the inputs at the full load."""
+        """Whether the answer is an equilibrium for the inputs at the full load."""
         return self.outcome is Outcome.CONVERGED
 
     @property
@@ -150,7 +150,7 @@ class CompiledSolution(CompiledAnswer):
     """A solution of the solver in C.
 
     Attributes:
-        inputs: that it is of, shape (m,).
+        inputs: inputs of the solution, shape (m,).
         x: unknowns; the last equilibrium on the way where it did not converge.
         determinant: of concentric tubes that do not twist 1; 0 where they snap, negative where they cannot stay.
     """
@@ -178,9 +178,9 @@ class Sensitivity:
     """Derivatives of an equilibrium with some numbers, a column for each.
 
     Attributes:
-        x: of the unknowns, shape (size, columns).
-        tips: of position and quaternion of the tip of each rod, shape (7, columns).
-        bodies: of each rigid body, likewise.
+        x: derivatives of the unknowns, shape (size, columns).
+        tips: derivatives of position and quaternion of the tip of each rod, shape (7, columns).
+        bodies: derivatives of position and quaternion of each rigid body, shape (7, columns).
     """
 
     x: FloatArray

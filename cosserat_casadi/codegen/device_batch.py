@@ -80,7 +80,7 @@ STEP_TABLE = {
     "d_end_d_inputs_rate": "d_end_d_inputs",
     "d_end_d_inputs_acceleration": "d_end_d_inputs",
 }
-"""The same of the table of a step."""
+"""Pointers in the table of a step, in their order in C, and of what shape each is."""
 
 NEEDED = frozenset({"inputs", "parameters", "x", "status", "state", "memory"})
 """Pointers that may not be null."""
@@ -133,7 +133,7 @@ class DeviceBatch:
         """Equilibria of many load cases from the unloaded scene, written into the arrays of the call.
 
         For m inputs, p parameters, n unknowns and k rows: ``inputs`` (m, k), ``parameters`` (p, k) where the scene has
-        some, ``x`` (n, k) and ``status`` (k), whose numbers are those of the header. Others may be left out:
+        some, ``x`` (n, k) and ``status`` (k), whose numbers the header lists. Other arrays may be left out:
         ``iterations``, ``jacobians``, ``residual_norm``, ``load_factor``, ``error_estimate`` (k); ``results`` (r, k),
         poses of tips and bodies, efforts and conjugates of actuators; ``d_x_d_inputs`` (k, m, n); ``d_poses_d_inputs``
         (k, poses, m, 7). On a GPU the call returns before they are written.
@@ -161,7 +161,7 @@ class DeviceBatch:
         """One step of many motions, written into the arrays of the call.
 
         ``inputs`` (m, k), ``parameters`` (p, k); ``state`` (3 n, k), x, v and a, before and after; ``memory``
-        (k, :attr:`memory_size`), bytes, zeros before the first step; ``status`` (k). Others may be left out:
+        (k, :attr:`memory_size`), bytes, zeros before the first step; ``status`` (k). Other arrays may be left out:
         ``inputs_rate``, ``inputs_acceleration`` (m, k); ``iterations``, ``jacobians``, ``parts``, ``residual``,
         ``error_left`` (k); ``d_end_d_start`` (k, 2 n, 2 n), transposed as columns stand together; ``d_end_d_inputs``,
         ``d_end_d_inputs_rate``, ``d_end_d_inputs_acceleration`` (k, m, 2 n).
@@ -441,7 +441,7 @@ def batch_of(
     single: bool = False,
     threads: int | None = None,
 ) -> DeviceBatch:
-    """As :func:`load_batch`, from a manifest, and the texts of sources and headers by name."""
+    """A batch as :func:`load_batch` gives it, from a manifest, and texts of sources and headers by name."""
     if device not in FLAGS or (threads is not None and threads < 1):
         raise ValueError(f"a device is 'cuda' or 'host', with at least one thread, got {device!r} and {threads}")
     found = find_compiler(compiler) if device == HOST else find_nvcc(compiler)
@@ -458,7 +458,7 @@ def batch_of(
 
 
 def find_nvcc(wanted: str | None = None) -> str:
-    """Command of the compiler for GPUs: the one wanted, that of the path, or that of the wheels of NVIDIA.
+    """Command of the compiler for GPUs: the wanted one, the one on the path, or the one in the wheels of NVIDIA.
 
     Raises:
         ExportError: there is none.

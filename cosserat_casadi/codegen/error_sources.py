@@ -16,7 +16,7 @@ STEPS_OF_ESTIMATE = 1
 """Steps that the estimate takes into the updates of the Jacobian that Newton has left."""
 
 FOLLOWED = 0.5
-"""Length of the second step over that of the first, up to which the Jacobian that Newton has left is believed."""
+"""Length of the second step over the first step's, up to which the Jacobian that Newton has left is believed."""
 
 BALANCE = "richer_balance"
 WATCHED = "watched"

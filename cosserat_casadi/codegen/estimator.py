@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
 NAME = "estimate"
-"""Beginning of every symbol of these libraries."""
+"""Beginning of every symbol of the libraries that estimate."""
 
 ENDINGS = ("found", "no_equilibrium", "singular", "not_found")
 """How the search for a row can end, in the order of the numbers in C."""
@@ -116,7 +116,7 @@ class Estimates:
         )
 
     def first(self, count: int) -> Estimates:
-        """The first numbers that were found, the others held."""
+        """Estimates of the first numbers alone, all other numbers held."""
         return replace(
             self,
             unknowns=self.unknowns[:, :count],

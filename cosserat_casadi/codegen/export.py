@@ -59,22 +59,22 @@ def export(
     Args:
         model: of rods, with its discretisation, or of concentric tubes, with its steps; or a scene, which is exported
             as the model that :func:`cosserat_casadi.solve` solves it with.
-        directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
+        directory: the folder, new, empty, or of an earlier export; its name is the library's unless given.
         name: what every symbol begins with, a C identifier.
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
         verified: over which ranges the discretisation keeps the tolerance, for header, README and manifest.
         derivatives: whether the equations are written once more with first and second derivatives, for CasADi: what
             :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again. In
-            exact contact they are those of each arrangement of contacts.
+            exact contact these equations are written for each arrangement of contacts.
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
             and their linearisation.
         stability: whether it holds the function that says whether an equilibrium is stable.
         batches: whether its function for many load cases solves them four at a time in the vectors of the processor,
-            where the equations have a form for that; a compiler takes about twice as long. Others are solved one after
-            the other; in exact contact there is that function with it alone.
+            where the equations have a form for that; a compiler takes about twice as long. Without that, cases are
+            solved one after the other; in exact contact there is that function with it alone.
         cuda: whether the folder holds the source of batches on a GPU too. Experimental: it was never run on one.
         load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
-            arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
+            arrangements of contacts that it meets on the way from its own inputs to each case, one after the other.
         period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
             measured with the compiler of this machine, or foreseen where there is none.
         estimate_errors: whether the library estimates the errors of its answers; the code of its kernels is about half
@@ -174,7 +174,7 @@ def folder_files(
     period: float | None = None,
     estimate_errors: bool = True,
 ) -> dict[str, str]:
-    """Text of every file that :func:`export` writes of a model; the manifest, which lists the others, is last.
+    """Text of every file that :func:`export` writes of a model; the manifest, which lists these files, is last.
 
     Raises:
         ExportError: the scene has no motion, and that is asked for.

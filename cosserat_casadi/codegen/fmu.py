@@ -95,7 +95,7 @@ def write_fmu(
         name: what every symbol begins with, a C identifier.
         error_estimate: as for :func:`cosserat_casadi.export`.
         verified: as for :func:`cosserat_casadi.export`.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang, python-zig.
+        compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
         progress: told the file that is compiled, the number of compiled files, and of all.
 
     Raises:

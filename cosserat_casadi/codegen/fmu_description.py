@@ -134,7 +134,7 @@ def build_description(name: str, sources: Sequence[str]) -> bytes:
 
     Args:
         name: identifier in C.
-        sources: files to compile; the others of the folder are included by them.
+        sources: files to compile; these include the other files of the folder.
     """
     root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)

@@ -15,7 +15,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.stacked import StackedLayout
 
 ArgumentValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
-"""By name, those not named keeping the scene's values; or all of them stacked; None for the scene's."""
+"""Values by name, where values not named keep the scene's; or all values stacked; None for the scene's values."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class ListedValue:
         unit: SI unit, "1" without.
         default: the scene's value, shape (components, places along the rod or degrees).
         lower: least value of each entry, stacked, shape (size,); -inf where there is none.
-        upper: largest value; likewise.
+        upper: largest value of each entry, stacked, shape (size,); inf where there is none.
     """
 
     name: str

@@ -135,7 +135,7 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
 
 
 def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Function | ColumnedFunction:
-    """One function of a scene that has no parts: by columns, in straight-line code, or in loops."""
+    """A function of a scene that has no parts: by columns, in straight-line code, or in loops."""
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
@@ -162,7 +162,7 @@ def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> Pr
 
     Args:
         written: the Jacobian.
-        function: the same as it is called in C.
+        function: the Jacobian as it is called in C.
         name: its name in C.
     """
     columned = _columned(written, function, name, MOST_IN_COLUMNS)
@@ -170,7 +170,7 @@ def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> Pr
 
 
 def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: int) -> ColumnedFunction | None:
-    """As :func:`by_columns`, before it is C."""
+    """A Jacobian of one rod by columns, before it is C; None where :func:`by_columns` gives none."""
     form = in_columns(written, name, most)
     return None if form is None else _within(form, dense(function, name), most)
 
@@ -185,7 +185,7 @@ def _within(form: ColumnForm, signature: ca.Function, most: int) -> ColumnedFunc
 
 
 def _literal(model: Model) -> bool:
-    """Whether rotations are those of the literal linear system, which is solved with pivoting: no scalar form."""
+    """Whether rotations solve the literal linear system, with pivoting: it has no scalar form."""
     return any(chosen.transport == "permuted" for chosen in model.discretisation.values())
 
 
@@ -223,7 +223,7 @@ def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
 
 
 def differentiable(model: Model, names: Names) -> list[ca.Function]:
-    """Each function with its forward and reverse derivatives, and the forward derivative of the latter.
+    """Each function with its forward and reverse derivatives, and the forward derivative of its reverse derivative.
 
     They are named as ``casadi.external`` looks for them.
     """
@@ -234,6 +234,6 @@ def differentiable(model: Model, names: Names) -> list[ca.Function]:
 
 
 def with_derivatives(plain: ca.Function) -> list[ca.Function]:
-    """A function, its forward and reverse derivatives, and the forward derivative of the latter."""
+    """A function, its forward and reverse derivatives, and the forward derivative of its reverse derivative."""
     reverse = plain.reverse(1)
     return [plain, plain.forward(1), reverse, reverse.forward(1)]

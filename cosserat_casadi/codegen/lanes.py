@@ -34,7 +34,7 @@ go through: what makes it slow, its length, four rows share. Loops in lanes are 
 whose Jacobians have their columns in lanes (``benchmarks/row_cost.py``)."""
 
 ROWS_TOGETHER = 16
-"""Rows under way at a time: enough of them wait for the same."""
+"""Rows under way at a time: enough rows wait for the same kernel."""
 
 FILES = ("lanes.h", "lanes_arithmetic.h", "lanes_linear.c", "lanes.c")
 """Files of the folder ``c`` that a library with lanes has, as they are."""
@@ -42,7 +42,7 @@ FILES = ("lanes.h", "lanes_arithmetic.h", "lanes_linear.c", "lanes.c")
 
 @dataclass(frozen=True)
 class InLanes:
-    """Files and words of a library with lanes beside the others.
+    """Files and words that a library with lanes has beside files and words of every library.
 
     Attributes:
         files: sources and headers by name.

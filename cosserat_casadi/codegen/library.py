@@ -154,7 +154,7 @@ class FolderContents:
         parts: the equations of an assembly in parts; None for one rod.
         motion: the equations of motion, where the folder has them.
         rows: the solver of batches side by side, where the folder has it.
-        beside: further files by name, such as those of stability or of derivatives.
+        beside: further files by name, such as files for stability or for derivatives.
         on_device: whether it holds batches on a GPU.
         batches: whether its function for many load cases was asked for.
     """

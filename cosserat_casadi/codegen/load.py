@@ -48,7 +48,7 @@ def load(
 
     Args:
         directory: a folder written by :func:`cosserat_casadi.export`.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang, python-zig.
+        compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
         progress: told the file that is compiled, the number of compiled files, and of all; not called if none is left.
 
     Returns:

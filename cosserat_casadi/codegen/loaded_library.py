@@ -25,8 +25,8 @@ from cosserat_casadi.maths.typing import FloatArray
 class LoadedLibrary(ABC):
     """An exported folder, compiled.
 
-    Methods take inputs by name, where those left out keep the scene's values, or all of them stacked. They raise a
-    ValueError for inputs of the wrong size, and a SceneError for names that are not those of the scene.
+    Methods take inputs by name, where inputs left out keep the scene's values, or all inputs stacked. They raise a
+    ValueError for inputs of the wrong size, and a SceneError for names that the scene does not have.
 
     Attributes:
         library: the shared object.
@@ -49,7 +49,7 @@ class LoadedLibrary(ABC):
 
     @staticmethod
     def sizes(described: Mapping[str, Any]) -> dict[str, int]:
-        """Sizes beside that of the inputs by their macros in the header, as a sound manifest has them."""
+        """Sizes beside the size of the inputs, by their macros in the header, as a sound manifest has them."""
         parameters = described.get("parameters")
         return {"PARAMETERS": sum(len(entry["value"]) for entry in parameters)} if parameters else {}
 
@@ -99,8 +99,8 @@ class LoadedLibrary(ABC):
         """Inputs of many load cases, shape (count, size of the inputs), and what C takes behind them.
 
         Args:
-            inputs: shape (count, size of the inputs), or those of all rows.
-            parameters: shape (count, size of the parameters), or those of all rows, by name or stacked.
+            inputs: shape (count, size of the inputs), or one row for all.
+            parameters: shape (count, size of the parameters), or one set for all rows, by name or stacked.
 
         Raises:
             ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
@@ -149,11 +149,11 @@ def budget(options: type[ctypes.Structure], first: int | None, second: int | Non
 
     Args:
         options: the struct, whose members are the budgets.
-        first: value of the first; None for none.
-        second: of the second; likewise.
+        first: value of the first budget; None for none.
+        second: value of the second budget; None for none.
 
     Raises:
-        ValueError: one is given without the other.
+        ValueError: one budget is given without the other.
     """
     if (first is None) != (second is None):
         names = " and ".join(name for name, *_ in options._fields_)

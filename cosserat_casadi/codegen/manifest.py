@@ -280,7 +280,7 @@ def described_unknowns(model: Model) -> list[tuple[dict[str, Any], str]]:
 
 
 def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[str, Any]:
-    """A kernel, with the function of the header that it is behind; those of parts of an assembly are not known."""
+    """A kernel, with the function of the header that it is behind; of parts of an assembly none is known."""
     function = kernel.signature if isinstance(kernel, PrintedKernel) else kernel
     known = every.get(function.name())
     units = ARGUMENT_UNITS if known is None else known.units

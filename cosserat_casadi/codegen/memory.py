@@ -34,11 +34,11 @@ def _rooms(generated: Mapping[str, str], kind: str) -> dict[str, int]:
 
 
 def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str] = ()) -> int:
-    """Stack that a call needs, in double precision: that of the kernel which needs most.
+    """Stack that a call needs, in double precision: as much as the kernel which needs most.
 
     A kernel in straight-line code keeps its values in local variables, which all lie on the stack where nothing is
-    optimised, with those of the functions that it calls, one below the other. A kernel that is called without a
-    workspace has its room there as well; all others work in the room of the workspace.
+    optimised, with variables of the functions that it calls, one below the other. A kernel that is called without a
+    workspace has its room there as well; all other kernels work in the room of the workspace.
 
     Args:
         generated: source and header of the kernels by file name.
@@ -54,7 +54,7 @@ def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str]
 
 
 def _on_calls(generated: Mapping[str, str]) -> dict[str, int]:
-    """Numbers on the stack of each function of the kernels, with those of the deepest of its calls."""
+    """Numbers on the stack of each function of the kernels, with the numbers of its deepest call."""
     included = [text for file, text in generated.items() if file.endswith("_in_fours.h")]
     sources = [text for file, text in generated.items() if file.endswith(".c")]
     text = "".join([*included, *sources])

@@ -1,7 +1,7 @@
 """The equations of motion of a scene as parts of rods, and the blocks in which the matrices of a step are eliminated.
 
 A scene with one dense Jacobian is one part and one block. State (x, v, a) and inputs (with rates and accelerations) are
-one vector each, so that parts are cut as those of statics are.
+one vector each, so that parts are cut as parts of statics are.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
 
 
 def _flows_apart(discrete: DiscreteScene) -> list[int]:
-    """For each unknown the number of its block: flows of one strain in one branch, which meet in its stiffness alone.
+    """Number of each unknown's block: flows of one strain in one branch, which meet in its stiffness alone.
 
     Their rows are diagonal: eliminated first, they leave linear systems of the other unknowns, which are the interface.
     """
@@ -136,7 +136,7 @@ def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
 
 
 def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca.MX], name: str) -> Parted:
-    """Entries of stiffness, damping and mass, those of one owner together."""
+    """Entries of stiffness, damping and mass; entries of one owner stand together."""
     number = {entry: k for k, entry in enumerate(zip(*partition.pattern.get_triplet(), strict=True))}
     owner_of = partition.entry_owners
     places = list[int]()

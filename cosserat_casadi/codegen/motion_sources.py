@@ -140,7 +140,7 @@ def _entry_tables(motion: MotionInC) -> str:
 
 
 def _acceleration_table(model: Model) -> str:
-    """Of each input, and then each parameter, whether the equations of motion have its acceleration."""
+    """Table that says of each input, then of each parameter, whether the equations of motion have its acceleration."""
     function = model.inverse_dynamics
     felt = np.zeros(max(model.inputs.size + model.parameters.size, 1), dtype=int)
     felt[function.jac_sparsity(0, function.index_in("inputs_acceleration")).get_col()] = 1
@@ -148,7 +148,7 @@ def _acceleration_table(model: Model) -> str:
 
 
 def _elimination_tables(fronts: Elimination, whole: Elimination) -> str:
-    """Both orders; a scene with one front has but one."""
+    """Tables of both orders of elimination; a scene with one front has one order alone."""
     if len(fronts.fronts) == 1:
         return _elimination("WHOLE", ["BY_FRONTS", "AS_A_WHOLE"], whole)
     return _elimination("FRONT", ["BY_FRONTS"], fronts) + _elimination("WHOLE", ["AS_A_WHOLE"], whole)

@@ -1,6 +1,6 @@
 """A stage of an optimal-control problem in motion, compiled, with the derivatives that its solver asks for.
 
-As in :mod:`stage` whole Jacobians are functions in C. Those of the equations are made of the derivatives of inverse
+As in :mod:`stage` whole Jacobians are functions in C. The equations' Jacobians are made of the derivatives of inverse
 dynamics at every instant, K with x, C with v, M with a: with the tables A, A² and the nodes c of the method
 
     ∂R_i/∂x₀ = K, ∂R_i/∂(h v₀) = c_i K + C/h, ∂R_i/∂(h² a_j) = (A²)_ij K + A_ij C/h + δ_ij M/h²,
@@ -65,9 +65,9 @@ def compiled_motion_stage(
     Args:
         stage: the stage.
         name: what the functions begin with, a C identifier.
-        curvature: as in :func:`compiled_stage`: whether second derivatives are exact. Those of the equations of motion
-            have several hundred times as many instructions as the equations: for models of a few unknowns.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang, python-zig.
+        curvature: as in :func:`compiled_stage`: whether second derivatives are exact. They have several hundred times
+            as many instructions as the equations of motion: for models of a few unknowns.
+        compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
         progress: as in :func:`compiled_stage`.
 
     Raises:
@@ -107,7 +107,7 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
 
 
 def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
-    """As :func:`equations_functions`, of the poses of tips and bodies."""
+    """The poses of tips and bodies, their Jacobian, their adjoint and its Jacobian, as :func:`equations_functions`."""
     model = stage.model
     state, _, inputs, *_ = stage.symbols
     given = [inputs]

@@ -106,7 +106,7 @@ def _listed_lines(functions: list[str]) -> str:
 
 
 def _arguments(names: Names) -> Words:
-    """Arguments of the functions of the header, each behind another; those of inputs are followed by a comma."""
+    """Arguments of the functions of the header, each behind another; arguments for inputs end with a comma."""
     real = f"{names.name}_real"
     derivatives = {word: f",\n    {real} *{argument}" for word, argument in DERIVATIVES.items()}
     return {

@@ -1,8 +1,8 @@
 """A function of an assembly in parts, one for each rod; rods that compute alike share one function.
 
-Each part reads few unknowns and inputs. Two parts compute alike where their instructions are the same but for
-constants: those become arguments, unless they are the same in all. So six legs of a robot are one piece of code.
-Where that is too long without loops, programs.py does the same with steps in place of instructions.
+Each part reads few unknowns and inputs. Two parts compute alike where their instructions are equal but for
+constants: these become arguments, unless they are equal in all parts. So six legs of a robot are one piece of code.
+Where that is too long without loops, programs.py shares steps in place of instructions.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def _short_or_in_loops(program: Program) -> ca.Function:
 
 
 def places_by_owner(owners: Sequence[int]) -> list[list[int]]:
-    """For each owner in turn the places where it stands."""
+    """Places where each owner stands, one owner after another."""
     return [[i for i, entry_owner in enumerate(owners) if entry_owner == owner] for owner in sorted(set(owners))]
 
 
@@ -168,7 +168,7 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
 
     Args:
         functions: what the kernels compute, with as many arguments each.
-        kernels: the same as straight-line code with dense outputs, which those keep that are like no other.
+        kernels: the functions as straight-line code with dense outputs; a function that is like no other keeps it.
         name: what the functions that they call are called, before their numbers.
     """
     # Common terms are shared afterwards: those of one rod may be equal by chance.
@@ -218,7 +218,7 @@ def _calling(
         name: of the new function.
         shared: maps the entries read of each argument, and constants, to the entries of all results.
         reads: entries that are read of each argument.
-        constants: those of this function.
+        constants: constants of this function.
     """
     symbols = function.mx_in()
     given = [ca.vec(symbol.nz[[*entries]]) for symbol, entries in zip(symbols, reads, strict=True)]

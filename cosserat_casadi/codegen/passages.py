@@ -33,7 +33,7 @@ PASSAGE_FILES = ("interpolation.c", "passages.c")
 """Files of the folder ``c`` that a library includes which watches."""
 
 ANY_SHARE = -1.0
-"""Distance in abscissae below that of any two sections."""
+"""Distance in abscissae below the distance of any two sections."""
 
 RADII = 65
 """Sections whose radii are listed of a rod that is not linear from base to tip."""
@@ -97,7 +97,7 @@ def passage_words(model: Model, names: Names) -> Words:
 
 
 def _sizes(model: Model, inputs: ca.MX) -> list[Scalar]:
-    """Sizes of all barriers and pairs, as passages.c.in has them; expressions where an argument is part of them."""
+    """Sizes of all barriers and pairs, as passages.c.in has them; expressions where an argument is part of a size."""
     known_discrete, discrete = model.at().discrete, model.discrete
     sizes: list[Scalar] = []
     for own, layer in zip(thin_layers(known_discrete), thin_layers(discrete), strict=True):

@@ -1,8 +1,8 @@
 """Programs of some entries of a function's result, and one program for all that compute alike.
 
-Two of them compute alike where their steps (steps.py) are the same but for constants. Constants that differ become an
-argument, with a piece for each matrix of them, that the steps read where it lies. So a kernel that several rods share
-may be as long as it likes.
+Two programs compute alike where their steps (steps.py) are equal but for constants. Constants that differ become an
+argument, with a piece for each matrix of constants, that the steps read where it lies. So a kernel that several rods
+share may be as long as it likes.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def shared_program(programs: Sequence[PartialProgram], name: str) -> tuple[Progr
 
 
 def _needed(program: Program, wanted: Numbers) -> tuple[npt.NDArray[np.bool_], list[Step]]:
-    """Which numbers these need, and the steps that compute them; entrywise steps compute the needed entries alone."""
+    """Which numbers some numbers need, and the steps that compute these; entrywise steps compute no other entries."""
     needed = np.zeros(program.origins.count, dtype=np.bool_)
     needed[wanted] = True
     kept = []
@@ -197,7 +197,7 @@ def _constants(origins: Origins, numbers: Numbers) -> tuple[float, ...]:
 class _Sharing:
     """Programs that compute alike on their way to one.
 
-    Constants that are the same in all stay in the code; the others are an argument.
+    Constants that are equal in all programs stay in the code; all other constants are an argument.
     """
 
     def __init__(self, programs: Sequence[PartialProgram], name: str) -> None:

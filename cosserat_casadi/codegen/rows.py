@@ -29,7 +29,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.scene import Scene
 
 NAME = "sweep"
-"""Beginning of every symbol of these libraries."""
+"""Beginning of every symbol of the libraries that solve rows."""
 
 JUDGED = ("outcome", "iterations", "residual")
 """First columns of every row of results; the outcome as its number."""
@@ -51,7 +51,7 @@ CONTACT = ("contacts", "from", "to", "force.x", "force.y", "force.z")
 """Columns of a rod and an obstacle: number of contacts, abscissae between which they lie, their resultant (N)."""
 
 BODY_CONTACT = ("contacts", "force.x", "force.y", "force.z")
-"""Columns of a body and an obstacle: one where they touch, else zero, and the force (N)."""
+"""Columns of a body and an obstacle: 1 where they touch, else 0, and the force (N)."""
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
@@ -122,7 +122,7 @@ def row_library(
         estimate_errors: whether rows have :data:`ERRORS`.
         stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
         lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
-            about twice as long. The results are the same.
+            about twice as long. The results do not change.
 
     Raises:
         ExportError: two things of the scene would have one name in C.

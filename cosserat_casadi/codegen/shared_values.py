@@ -45,7 +45,7 @@ def with_shared_kernels(written: Sequence[ca.Function | ColumnedFunction], name:
 
 
 def _arguments_of(function: ca.Function, known: dict[tuple[str, ...], ca.SX]) -> list[ca.SX]:
-    """Symbols of the arguments of a function: those of another one as long as both have the same names.
+    """Symbols of the arguments of a function: symbols of another function as long as both have the same names.
 
     Args:
         function: the function.
@@ -94,7 +94,7 @@ class _Sharing:
         return [self._function(i) for i in range(len(self._functions))], kernels
 
     def _homes_of_values(self) -> list[int]:
-        """For each value the set of functions whose kernel computes it; 0 if each function computes it itself."""
+        """The set of functions whose kernel computes each value; 0 if each function computes it itself."""
         listing = self._listing
         users = [0] * len(listing.values)
         for i, output in enumerate(listing.outputs):
@@ -161,7 +161,7 @@ class _Sharing:
         return [home for home in self._kernels if home & users == users != home]
 
     def _function(self, i: int) -> ca.Function:
-        """One of the functions, which calls its kernels."""
+        """The i-th function, which calls its kernels."""
         function = self._functions[i]
         results: dict[int, ca.SX] = {}
         for home, kernel in self._kernels.items():

@@ -3,9 +3,9 @@
 An optimiser needs whole Jacobians. A library that knows only directional derivatives gives them a column at a time;
 here the Jacobian is one function in C, and so is the second derivative. CasADi finds them by their names.
 
-The second derivative of Σ λ_i g_i is symmetric and has many columns, which differ in one direction alone. Its code is
-that of one column, the derivative of the adjoint in a direction, in a loop over the columns; what a constant derivative
-leaves empty is not computed, and of two blocks that mirror each other one is.
+The second derivative of Σ λ_i g_i is symmetric and has many columns, which differ in one direction alone. Its code
+computes one column, the derivative of the adjoint in a direction, in a loop over the columns; what a constant
+derivative leaves empty is not computed, and of two blocks that mirror each other one is.
 """
 
 from __future__ import annotations
@@ -49,16 +49,16 @@ def compiled_stage(
     Of a scene with parameters (x, inputs, p): fix them with ``model.at(…)`` where they are none of the problem's.
 
     Args:
-        model: the model; of a scene in exact contact that which :func:`relaxed_contact` makes of it, whose poses are
-            those of tips and bodies.
+        model: the model; of a scene in exact contact the one which :func:`relaxed_contact` makes of it, whose poses are
+            poses of tips and bodies.
         name: what the function is called, a C identifier.
-        curvature: whether second derivatives are exact. If not, those of all outputs count as zero, so that any of
+        curvature: whether second derivatives are exact. If not, all second derivatives count as zero, so that any of
             CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and good
             where the deviations are small and no pose is a constraint. A path through poses that are constraints needs
             exact ones: without them a solver may take it for infeasible.
         sections: abscissae X in [0, 1] of further sections, rod by rod.
         actuators: actuators whose effort and conjugate are wanted, for a tendon its tension and its length.
-        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang, python-zig.
+        compiler: C compiler; by default the command in the environment variable CC, then cc, gcc, clang, python-zig.
         progress: told the function or file under way, the number of finished ones, and of all; not called if all
             files are compiled.
 
@@ -222,7 +222,7 @@ def _further_outputs(
 ) -> dict[str, ca.Function]:
     """Poses of sections, efforts and conjugates of actuators with their derivatives, by name.
 
-    Each function takes the arguments of the residual, and gives a value and its derivative with each of them.
+    Each function takes the arguments of the residual, and gives a value and its derivative with each argument.
     """
     further: dict[str, ca.Function] = {}
     for rod, abscissae in sections.items():
@@ -314,10 +314,10 @@ def _second(
 
     Args:
         plain: the function.
-        slopes: its Jacobian, of which that of the adjoint with its multipliers is made.
+        slopes: its Jacobian, of which the Jacobian of the adjoint with its multipliers is made.
         adjoint: the adjoint.
-        symbols: its arguments.
-        hessian: its derivatives with the arguments of the function, block by block.
+        symbols: arguments of the adjoint.
+        hessian: derivatives of the adjoint with the arguments of the function, block by block.
     """
     count = plain.n_in()
     blocks = slopes.call(symbols[: slopes.n_in()])

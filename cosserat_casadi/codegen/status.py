@@ -58,7 +58,7 @@ class MotionStatus(Enum):
 
 
 MOTION_STATUSES = tuple(MotionStatus)
-"""In the order of their numbers in C."""
+"""Outcomes of a step of a motion, in the order of their numbers in C."""
 
 
 def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOLVER") -> dict[str, str]:

@@ -38,7 +38,7 @@ def stacked(function: ca.Function) -> ca.Function:
 
 
 class Stream:
-    """The values of a scalar function with constants apart: two legs of a robot have the same but for these.
+    """The values of a scalar function with constants apart: two legs of a robot differ in constants alone.
 
     An unknown is read by its number among the unknowns that the function reads: 3 x₀ + x₄ reads x = [0, 4], and
     computes with the constant 3 what 5 x₁ + x₂ computes with 5.
@@ -88,7 +88,7 @@ class Stream:
 
     @property
     def content(self) -> Hashable:
-        """Key that functions which compute the same share: those of several rods of a scene may."""
+        """Key that functions with one result share: functions of several rods of a scene may."""
         return self.key, tuple(self.constants)
 
     def result(self, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
@@ -122,9 +122,9 @@ def alike(keys: Iterable[Hashable]) -> list[list[int]]:
 
 
 def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list[float]]]:
-    """One function for streams that compute alike, and the constants of each.
+    """A function for streams that compute alike, and the constants of each stream.
 
-    Constants that are the same in all streams stay in the code; uses that vary alike share one argument. Rounding makes
+    Constants that are equal in all streams stay in the code; uses that vary alike share one argument. Rounding makes
     no difference: it is another on another machine, which shall write the same code.
     """
     first = streams[0]
@@ -148,13 +148,13 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
 
 
 def same_but_for_rounding(one: Sequence[float] | FloatArray, other: Sequence[float] | FloatArray) -> bool:
-    """Whether constants are the same, one by one, but for rounding."""
+    """Whether constants are equal, one by one, but for rounding."""
     pairs = zip(np.ravel(one), np.ravel(other), strict=True)
     return all(_same(float(first), float(second)) for first, second in pairs)
 
 
 def _same(one: float, other: float) -> bool:
-    """Whether two constants are the same but for rounding; an infinite one is no other number rounded."""
+    """Whether two constants are equal but for rounding; an infinite one is no other number rounded."""
     if one == other:
         return True
     largest = max(abs(one), abs(other))
@@ -162,7 +162,7 @@ def _same(one: float, other: float) -> bool:
 
 
 def _numbered(values: Sequence[float]) -> dict[float, int]:
-    """A number for each value, one for all values that are the same but for rounding."""
+    """A number for each value, one for all values that are equal but for rounding."""
     ordered = sorted(set(values))
     numbers = dict.fromkeys(ordered[:1], 0)
     for before, value in pairwise(ordered):

@@ -36,10 +36,10 @@ Of rods, robots with tendons and the six-rod platform, measured, it was 1 to 4.3
 """
 
 FORESEEN_POINTS = 1.0
-"""Time of a point of a path beside, likewise. It was 0.2 to 0.7."""
+"""Time of a point of a path over residual and Jacobian of plain rods. It was 0.2 to 0.7."""
 
 FORESEEN_ENDS = 9.0
-"""Time of the end of a turn, likewise: another Jacobian, derivatives with inputs and of poses. It was 3 to 8.4."""
+"""Time of the end of a turn over residual and Jacobian of plain rods: Jacobian, derivatives. It was 3 to 8.4."""
 
 TIME_LIMIT = 300.0
 """Time, s, after which a compiler, or the program that measures, is given up."""
@@ -80,7 +80,7 @@ class TurnBudget:
         iterations: Newton steps.
         steps: points between the last inputs and the new ones.
         period: time that a turn was to fit, s; None where none was given.
-        costs: of its parts; likewise.
+        costs: times of the parts of a turn; None where no time was given.
     """
 
     iterations: int = MOST_ITERATIONS
@@ -155,7 +155,7 @@ def costs_of(model: Model, names: Names, files: Mapping[str, str]) -> TurnCosts:
 
 
 def measured_costs(model: Model, names: Names, files: Mapping[str, str], compiler: str) -> TurnCosts:
-    """As :func:`costs_of`, by a program that this compiler makes.
+    """Times of the parts of a turn, measured by a program that this compiler makes.
 
     Raises:
         ExportError: compiler or program fail, or take too long.
@@ -173,7 +173,7 @@ def measured_costs(model: Model, names: Names, files: Mapping[str, str], compile
 
 
 def foreseen_costs(model: Model) -> TurnCosts:
-    """As :func:`costs_of`, by the laws of the cost of single rods."""
+    """Times of the parts of a turn, foreseen by the laws of the cost of single rods."""
     scene = model.scene
     equations = 0.0
     for name, rod in model.at().discrete.rods.items():

@@ -60,7 +60,7 @@ TALLY = ".tally"
 """Ends of the names of libraries, of texts, and of tallies of the time that went without a library."""
 
 OURS = re.compile(rf"\w+-[0-9a-f]{{20}}(-[0-9a-f]{{20}})?(\{LIBRARY}|\{TEXTS}|\{TALLY})")
-"""Names of these files; libraries of earlier versions had no hash of their content.
+"""Names of files of the cache; libraries of earlier versions had no hash of their content.
 
 Whatever else lies in the folder is not ours to remove."""
 
@@ -173,7 +173,7 @@ def tallied(stem: str | None) -> float:
 
 
 def tally(stem: str | None, seconds: float) -> None:
-    """Note time that went for want of a library, for processes to come: each of them may be short.
+    """Note time that went for want of a library, for processes to come: each process may be short.
 
     A byte stands for a millisecond, so that processes may append to the file at once. Without a stem nothing is noted.
     """

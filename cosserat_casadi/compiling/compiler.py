@@ -37,7 +37,7 @@ LOG = logging.getLogger(__name__)
 REMEDY = "install gcc or clang, or pip install ziglang, or name one in the environment variable CC"
 
 COMPILERS = ("cc", "gcc", "clang", "python-zig cc")
-"""Commands that are looked for, in this order; the last is that of the package ziglang of PyPI."""
+"""Commands that are looked for, in this order; the last comes from the package ziglang of PyPI."""
 
 EXPORT_ANEW = "export the folder anew"
 """Remedy where files of a folder are missing, of another version, or do not belong together."""
@@ -106,7 +106,7 @@ def compiled_texts(
     flags: Sequence[str] | None = None,
     origin: str | None = None,
 ) -> Path:
-    """As :func:`shared_object`, of sources and headers that are texts by file name.
+    """Compile sources and headers that are texts by file name, as :func:`shared_object` compiles files.
 
     Args:
         name: what the name of the object begins with.
@@ -156,7 +156,7 @@ def _compiled_before(name: str, folder: Path, stem: str) -> Path | None:
 
 
 def find_compiler(wanted: str | None = None) -> str:
-    """Command of a C compiler: the one wanted, else that of CC, else the first there is.
+    """Command of a C compiler: the wanted one, else the command in CC, else the first command that is there.
 
     Args:
         wanted: a program, or a command with options or a launcher before it, such as ``gcc -O1`` or ``ccache gcc``.
@@ -295,7 +295,7 @@ class Processes:
     """Programs that were started here and have not ended; they are stopped where the block of a ``with`` is left.
 
     Args:
-        longest: time that each of them has, s.
+        longest: time that each program has, s.
     """
 
     def __init__(self, longest: float) -> None:

@@ -27,7 +27,7 @@ PLAIN = (type(None), bool, int, float, str, bytes)
 """Classes of values that their own texts tell."""
 
 Tokens = tuple["str | Tokens", ...]
-"""Words, and groups of them."""
+"""Words, and groups of words."""
 
 
 class NoDataError(Exception):

@@ -64,7 +64,7 @@ class Computed:
 
 @dataclass(frozen=True)
 class Called:
-    """One of the results of a call."""
+    """A result of a call."""
 
     call: int
     result: int
@@ -104,7 +104,7 @@ class Listing:
     Args:
         function: the function.
         apart: whether every use of a constant is a separate value, and every operation is listed as CasADi has it:
-            values of functions that differ in constants alone are then the same but for the constants.
+            values of functions that differ in constants alone are then equal but for the constants.
     """
 
     def __init__(self, function: ca.Function, *, apart: bool = False) -> None:
@@ -175,7 +175,7 @@ class Listing:
         return expressions
 
     def entries(self, output: int, expressions: Mapping[int, ca.SX]) -> list[ca.SX]:
-        """Stored entries of an output, from expressions of the values that it has; zeros of the others."""
+        """Stored entries of an output, from expressions of the values that it has; zeros for all other entries."""
         entries = [ca.SX(0.0)] * self.function.nnz_out(output)
         for entry, number in self.outputs[output].items():
             entries[entry] = expressions[number]

@@ -136,7 +136,7 @@ class Origins:
         return self._count
 
     def is_constant(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
-        """Which of these are constants."""
+        """Which numbers are constants."""
         return np.asarray(self._owners[numbers] == 0)
 
     def numbers(self, thing: int) -> Numbers:
@@ -145,7 +145,7 @@ class Origins:
         return np.arange(first, first + self.sizes[thing])
 
     def owners(self, numbers: Numbers) -> Numbers:
-        """For each number the thing that it is an entry of; 0 for all constants."""
+        """The thing that each number is an entry of; 0 for all constants."""
         return np.asarray(self._owners[numbers])
 
     def holders(self, numbers: Numbers) -> list[int]:
@@ -153,7 +153,7 @@ class Origins:
         return sorted(set(self.owners(numbers).tolist()) - {0})
 
     def is_whole(self, numbers: Numbers) -> bool:
-        """Whether these are all entries of one thing in their order, or constants."""
+        """Whether numbers are all entries of one thing in their order, or constants."""
         if len(numbers) == 0:
             return True
         owner = int(self._owners[numbers[0]])

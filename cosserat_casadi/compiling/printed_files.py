@@ -68,7 +68,7 @@ END = """#ifdef __cplusplus
 } /* extern "C" */
 #endif
 """
-"""How every file ends, those of CasADi too."""
+"""How every file ends, files of CasADi too."""
 
 GENERATOR = {"with_header": True}
 

@@ -79,7 +79,7 @@ INTEGERS = """#undef INTEGERS
 NUMBERS = """#undef C
 #define C {stem}_numbers
 """
-"""How functions read constants that several of them have."""
+"""How functions read constants that several functions have."""
 
 NUMBER = re.compile(r"NUMBER\(([^()]+)\)")
 """A constant in the text of a function until it is known whether it is there once."""
@@ -206,7 +206,7 @@ class PrintedKernel:
     places: tuple[int, ...] = ()
 
     def name(self) -> str:
-        """Its name in C."""
+        """Name of the kernel in C."""
         name: str = self.signature.name()
         return name
 
@@ -215,7 +215,7 @@ class PrintedKernel:
         return self.statements
 
     def prototype(self, qualifier: str = "") -> str:
-        """Its declaration, behind a qualifier, and the sizes of its arrays."""
+        """Declaration of the kernel, behind a qualifier, and the sizes of its arrays."""
         arguments = self.signature.n_in()
         results = self.signature.n_out()
         sizes = {"arguments": arguments, "results": results, "reals": self.reals}
@@ -287,7 +287,7 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
 
 
 def _shared_numbers(texts: Iterable[str]) -> dict[str, str]:
-    """Where constants that stand in these texts several times are in one array, by their text."""
+    """Where constants that stand in texts of functions several times are in one array, by their text."""
     counts = Counter(number for text in texts for number in NUMBER.findall(text))
     several = [number for number, count in counts.items() if count > 1]
     return {number: f"C[{i}]" for i, number in enumerate(several)}
@@ -320,7 +320,7 @@ def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:
 
 
 def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
-    """Names of the functions that kernels call: one for all that call the same."""
+    """Names of the functions that kernels call: one name for each function, by whichever kernels it is called."""
     name_of: dict[Callee, str] = {}
     for kernel in kernels:
         for word, callee in kernel.callees.items():
@@ -346,7 +346,7 @@ def _tables(kernels: Sequence[PrintedKernel], stem: str) -> dict[ConstantTable, 
 
 
 def _longest_with_each(tables: Sequence[ConstantTable]) -> dict[ConstantTable, ConstantTable]:
-    """For each constant array the longest one that begins with it; of whole numbers the array itself."""
+    """The longest constant array that begins with each array; for an array of whole numbers the array itself."""
     by_first: dict[tuple[str, ...], list[ConstantTable]] = defaultdict(list)
     longest = {}
     for table in sorted(tables, key=lambda table: -len(table.numbers)):

@@ -2,7 +2,7 @@
 
 A kernel works in an array ``w``. Its first number is zero; every argument and every result of a step has a place in it,
 which later results take over. A step reads its operands where they lie; entries that lie apart are gathered before, by
-a table. Operations on as many entries, such as those of the sections of a rod, are one loop, whose turns keep in
+a table. Operations on as many entries, such as entries of the sections of a rod, are one loop, whose turns keep in
 variables what only they read. Small steps are written together without loops. Calls of one function that do not wait
 for each other are made four at a time.
 """
@@ -39,7 +39,7 @@ LONGEST_BUNDLE = 3000
 """Instructions of small steps that are written together at the most."""
 
 FEWEST_TURNS = 5
-"""Entries from which on an operation on each of them is part of a loop."""
+"""Entries from which on an operation on each entry is part of a loop."""
 
 LONGEST_PRODUCT_WITHOUT_LOOP = 40
 """Instructions up to which a product of matrices is written without a loop."""
@@ -65,7 +65,7 @@ LOOP = """static void MADE({name})(casadi_real *w) {{
   }}
 }}
 """
-"""The same, one entry at a time: not all its operations have a form in fours."""
+"""A loop over entries, one entry at a time: not all its operations have a form in fours."""
 
 UNUSED = -1
 """Place of an entry that has none yet."""
@@ -483,7 +483,7 @@ class _Writing:
         return _joined(grouped)
 
     def _write_calls(self, k: int, unit: Unit) -> None:
-        """Write calls of one function, four at a time where there are enough of them."""
+        """Write calls of one function, four at a time where there are enough calls."""
         function = unit.steps[0].function
         width = self._width(unit)
         turns = -(-len(unit.steps) // width)

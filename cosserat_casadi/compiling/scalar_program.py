@@ -115,13 +115,13 @@ class _Writer:
         return np.concatenate([*parts, lines[last + 1 :]])
 
     def _call(self, callee: ca.Function, operands: Lines, results: Lines, work: int) -> list[Lines] | None:
-        """Lines of a call: the arguments are copied, and the results when all of them are there.
+        """Lines of a call: the arguments are copied, and the results when all results are there.
 
         Args:
             callee: the function that is called.
             operands: numbers of all its arguments in the work of the caller.
             results: numbers of its results there; below zero where a result is not wanted.
-            work: slot of the first of them.
+            work: slot of the first number of the caller's work.
         """
         place = callee.__hash__()
         if place not in self.called:
@@ -140,7 +140,7 @@ class _Writer:
 def _first_and_last(numbers: Iterable[list[int]], count: int) -> tuple[Lines, Lines]:
     """The first and the last of the numbers of each of so many instructions; zeros where there are none.
 
-    No list lives on: tens of thousands of them would have Python look for cycles of references.
+    No list lives on: tens of thousands of lists would have Python look for cycles of references.
     """
     ends = chain.from_iterable((each[0], each[-1]) if each else (0, 0) for each in numbers)
     both = np.fromiter(ends, np.intc, 2 * count).reshape(-1, 2)

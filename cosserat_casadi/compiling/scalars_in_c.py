@@ -1,8 +1,8 @@
 """Functions of scalars as C that computes four intervals of a rod, or four columns of a Jacobian, at once.
 
-Calls of one function that do not wait for each other, such as those of the intervals of a rod, are made four at a time,
-and so are the columns of a Jacobian (columns.py). Each number comes from the operations of the function in their order,
-and is the same to the last digit as CasADi computes it.
+Calls of one function that do not wait for each other, as for the intervals of a rod, are made four at a time, and so
+are the columns of a Jacobian (columns.py). Each number comes from the operations of the function in their order, and
+equals CasADi's to the last digit.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def scalars_in_c(
 
 
 def shared_in_c(function: ca.Function, earlier: Sequence[PrintedKernel], first: int) -> PrintedKernel:
-    """A kernel as C whose results stay in the array that it works in, which is that of the kernels that call it.
+    """A kernel as C whose results stay in the array that it works in, an array of the kernels that call it.
 
     Args:
         function: the function, of scalars and with one result.
@@ -117,7 +117,7 @@ class ColumnedFunction:
 
     Attributes:
         form: the function.
-        signature: the same as CasADi has it.
+        signature: the function as CasADi has it.
     """
 
     form: ColumnForm
@@ -281,7 +281,7 @@ class _Writing:
     # What belongs where
 
     def _in_column(self) -> list[bool]:
-        """For each value whether it is one of each column."""
+        """Whether each value depends on the column."""
         found: list[bool] = []
         for number, value in enumerate(self.listing.values):
             of_turns = self.form is not None and isinstance(value, Read) and value.argument == self.form.turns_argument
@@ -297,7 +297,7 @@ class _Writing:
         return [value for value in given if not self.in_column[value] and not self._is_constant(value)]
 
     def _batches(self) -> dict[int, _Batch]:
-        """For each call the calls that are made with it: of the same function, and behind as many other calls."""
+        """Calls that are made together with each call: of the same function, and behind as many other calls."""
         depth = self._depths()
         groups: dict[tuple[int, int], list[int]] = defaultdict(list)
         for number, call in enumerate(self.listing.calls):
@@ -318,7 +318,7 @@ class _Writing:
         return batches
 
     def _depths(self) -> list[int]:
-        """For each value the number of calls that one needs of another for it, itself included."""
+        """Depth of each value: most calls on a way to it, its own call included."""
         depths: list[int] = []
         for number, value in enumerate(self.listing.values):
             depth = max((depths[operand] for operand in self.listing.operands(number)), default=0)
@@ -536,7 +536,7 @@ def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:
 
     Args:
         listing: the values of the function.
-        arithmetic: FOURS for four calls at once, or that of single numbers.
+        arithmetic: FOURS for four calls at once, or arithmetic of single numbers.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here, or a call of another function.

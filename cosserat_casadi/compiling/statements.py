@@ -56,12 +56,12 @@ class Statement(NamedTuple):
     whole: Sequence[int] | None = None
 
     def stores(self, value: int | None) -> bool:
-        """Whether it stores a value as it is, whatever is asked for."""
+        """Whether the statement stores a value as it is, whatever is asked for."""
         alone = all(side == CHOICE for side in self.sides)
         return self.made is None and not self.asked and alone and list(self.operands) == [value]
 
     def with_operand(self, place: int, other: Statement) -> Statement:
-        """The same statement with the expression of another in place of an operand."""
+        """This statement with the expression of another in place of an operand."""
         count = len(other.operands)
         inner = other.text.format(*[f"{{{place + i}}}" for i in range(count)])
         if self.sides and other.binding < self.sides[place]:
@@ -273,9 +273,9 @@ def in_parts(
 
     Args:
         statements: the statements.
-        longest: most of them in a part.
+        longest: most statements in a part.
         store: place of a value that is passed on ↦ text of the statement that stores it.
-        stored: values that a statement behind that of the value stores, whose places are known.
+        stored: values that a later statement than the value's own stores, whose places are known.
 
     Returns:
         the parts, with statements that store the values that other parts read, and the number of these values.
@@ -310,7 +310,7 @@ def _ends_of_parts(statements: Sequence[Statement], longest: int, stored: Contai
 
 
 def _passing(statements: Sequence[Statement], stored: Container[int]) -> list[int]:
-    """For each number of statements how many values these compute, and store nowhere, that others read."""
+    """How many values the first k statements compute, and store nowhere, that later statements read, for each k."""
     last_use = {operand: i for i, statement in enumerate(statements) for operand in statement.operands}
     change = [0] * (len(statements) + 1)
     for i, statement in enumerate(statements):

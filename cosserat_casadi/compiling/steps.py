@@ -2,7 +2,7 @@
 
 * What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
   into order when a step asks for them.
-* A constant matrix that falls apart into blocks, such as that of the turns of a rod about each axis, is multiplied
+* A constant matrix that falls apart into blocks, as for the turns of a rod about each axis, is multiplied
   block by block where that is quicker.
 * Of a constant matrix times a constant matrix times a computed one, the two constants are multiplied beforehand where
   that leaves fewer products: matrices that fold and unfold symmetric ones are worth it without loops alone.
@@ -28,10 +28,10 @@ LONG = 6
 """Entries from which on a column is long: its sums do not wait for each other."""
 
 SHORT_RATE = 4.5
-"""The same for shorter columns."""
+"""Products a nanosecond that are added to shorter dense columns."""
 
 SPARSE_RATE = 1.0
-"""The same where every entry is looked up."""
+"""Products a nanosecond that are added where every entry is looked up."""
 
 MOVE_RATE = 1.5
 """Entries a nanosecond that are brought into order."""
@@ -304,7 +304,7 @@ class _Reading:
         return Value(ca.Sparsity.dense(*numbers.shape), numbers.ravel(order="F"))
 
     def _with_constants_multiplied(self, left: Value, right: Value) -> tuple[Value, Value]:
-        """Factors of the same product, of which the constant one may have taken in a constant factor of the other."""
+        """Factors of a product, of which the constant one may have taken in a constant factor of the other."""
         if self._is_constant(left):
             inner = self._factors(right)
             if inner is not None and self._is_constant(inner[0]):

@@ -81,7 +81,7 @@ class _Met:
         self.states.setdefault(self.key(state), state)
 
     def add_path(self, path: ContactPath) -> None:
-        """Add those of a path between its load cases, each where it was met last."""
+        """Add the arrangements of a path between its load cases, each where it was met last."""
         is_between = (path.factor >= 0.0) & (path.factor <= 1.0)
         for number, arrangement in enumerate(path.arrangements):
             points = np.flatnonzero((path.arrangement == number) & is_between)

@@ -48,7 +48,7 @@ class Margins(NamedTuple):
 
 
 class ContactInfo(AnswerInfo):
-    """The struct in C that says how a call ended: the members of every solve, then those of contact."""
+    """The struct in C that says how a call ended: the members of every solve, then the members for contact."""
 
     _fields_ = (
         ("arrangement", ctypes.c_int),
@@ -84,13 +84,13 @@ class CompiledContactSolution(CompiledAnswer):
     Attributes:
         arrangement: number of the arrangement of contacts, in the order of the manifest.
         tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
-        bodies: the same of each body.
+        bodies: position and quaternion of each body, shape (7,).
         contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
         actuators: of each its effort and what that works on, by their names, such as tension (N) and length (m).
         tries: arrangements that were solved.
         parts: parts of the way of the inputs.
-        derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
-        body_derivatives: the same of each body.
+        derivatives: derivatives of the tip of each rod with the inputs, shape (7, m), where they were asked for.
+        body_derivatives: derivatives of each body with the inputs, shape (7, m), where they were asked for.
         z: unknowns, forces and places of contact of the arrangement, without unit; empty without a solution.
         state: what the next call begins with.
     """
@@ -146,9 +146,9 @@ class CompiledContact(LoadedLibrary):
 
     @cached_property
     def residual(self) -> list[ca.Function]:
-        """For each arrangement (z, inputs) ↦ residual, with exact first and second derivatives.
+        """Functions (z, inputs) ↦ residual of each arrangement, with exact first and second derivatives.
 
-        z is that of a solution: unknowns, forces and places of contact; parameters stand behind the inputs. Derivatives
+        z is as in a solution: unknowns, forces and places of contact; parameters stand behind the inputs. Derivatives
         of a solution follow from these, and hold while its contacts stay: see :meth:`margins`.
 
         Raises:
@@ -158,7 +158,7 @@ class CompiledContact(LoadedLibrary):
 
     @cached_property
     def poses(self) -> list[ca.Function]:
-        """Likewise (z, inputs) ↦ position and quaternion of the tip of each rod, then of each body, stacked.
+        """Functions (z, inputs) ↦ position and quaternion of the tip of each rod, then of each body, stacked.
 
         Raises:
             AttributeError: the folder was exported without derivatives.
@@ -196,8 +196,8 @@ class CompiledContact(LoadedLibrary):
 
         Args:
             inputs: the scene's own by default.
-            start: a solution from which the inputs move on; that of the scene's own inputs by default, and where the
-                way from it does not lead to the inputs.
+            start: a solution from which the inputs move on; by default, and where the way from it does not lead to the
+                inputs, the solution at the scene's own inputs.
             parameters: by name or stacked; the scene's own by default.
         """
         given = self._given(inputs, parameters)
@@ -211,13 +211,13 @@ class CompiledContact(LoadedLibrary):
         """Equilibria of many load cases, each by itself from the solution of the scene's own inputs.
 
         Args:
-            inputs: shape (count, size of the inputs), or those of all rows.
-            parameters: shape (count, size of the parameters), or those of all rows, by name or stacked.
+            inputs: shape (count, size of the inputs), or one row for all.
+            parameters: shape (count, size of the parameters), or one set for all rows, by name or stacked.
 
         Raises:
             AttributeError: the folder was exported without batches.
             ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
-            SceneError: the names of parameters are not those of the scene.
+            SceneError: the scene has no parameters of these names.
         """
         given, passed = self._rows(inputs, parameters)
         size = self._function("state_size")()
@@ -248,7 +248,7 @@ class CompiledContact(LoadedLibrary):
             start: the solution of the turn before.
             parameters: by name or stacked; the scene's own by default.
             max_iterations: most Newton steps; by default what the header says.
-            max_parts: most parts of the way of the inputs; likewise.
+            max_parts: most parts of the way of the inputs; by default what the header says.
 
         Raises:
             ValueError: one budget is given without the other.
@@ -334,7 +334,7 @@ class CompiledContact(LoadedLibrary):
         )
 
     def _z(self, state: Any) -> FloatArray:
-        """Third member of the state, as long as that of its arrangement."""
+        """Third member of the state, z, as long as the state's arrangement makes it."""
         own = self.manifest[ARRANGEMENTS][self._arrangement_of(state)]
         size = own["unknowns"] + own["forces"] + own["places"]
         # Two whole numbers come before it.

@@ -34,16 +34,16 @@ WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts"
 """Kernels of every arrangement, in the order of the table in C."""
 
 ACTUATORS = "actuators"
-"""Kernel more of a scene that has such."""
+"""Further kernel of a scene that has actuators."""
 
 WATCHED = "watched"
-"""Kernel more where errors are estimated: the poses and lengths whose errors they are."""
+"""Further kernel where errors are estimated: the poses and lengths whose errors are estimated."""
 
 BENDS = "bends"
-"""Kernel more of a library that judges stability."""
+"""Further kernel of a library that judges stability."""
 
 RICHER_WORDS = ("residual", "jacobian", "nodes", "contacts", WATCHED)
-"""The same on the modes and intervals that an estimate of errors adds."""
+"""Kernels of an arrangement on the modes and intervals that an estimate of errors adds."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class ArrangementKernels:
         return self.equations.written
 
     def all(self) -> list[Kernel]:
-        """In the order of the words."""
+        """Kernels of the arrangement, in the order of the words."""
         residual = self._written.residual
         kernels: dict[str, Callable[[], Kernel]] = {
             "residual": lambda: self.written_kernel("residual", [residual]),

@@ -34,7 +34,7 @@ CONTACT_FILES = (
 """Files of the folder ``c`` that a library with steps in exact contact includes."""
 
 FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
-"""Files that it includes where something rubs."""
+"""Files of the folder ``c`` that such a library includes where something rubs."""
 
 MOST_TOUCHES = 64
 """Sections that may touch at once, at most; of more a step says that it was not solved."""
@@ -120,7 +120,7 @@ def _words_of(facing: Facing) -> str:
 
 
 def contact_reals(size: int, inputs: int, words: Words) -> int:
-    """Numbers that the workspace has for contact, of 8 bytes as those of touches are counted.
+    """Numbers that the workspace has for contact, of 8 bytes as numbers of touches are counted.
 
     Args:
         size: number of unknowns.

@@ -1,7 +1,7 @@
 """Functions of what rubs in exact contact, for steps in C: how the point that touches slides along the surface.
 
 A section of the radius ρ touches at −ρ n from its centre, n the normal of the obstacle, and that point of its material
-has the velocity ċ + ω × (−ρ n). Positions and directors between nodes are those of the polynomials through the nodes;
+has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes;
 forces act by the transpose of the same derivatives, so that what friction takes is force times velocity to rounding.
 """
 
@@ -82,9 +82,10 @@ class SurfaceSliding:
 
     @cached_property
     def derivatives(self) -> ca.Function:
-        """The same and (change of the section with X, force along the tangents) ↦ derivatives by x, by X and by inputs.
+        """(…, axis, change of the section with X, force along the tangents) ↦ derivatives by x, by X and by inputs.
 
-        Those of sliding, of the direction, and of the force on the unknowns, 4 + n rows; then of sliding by the rates.
+        The first arguments are those of :attr:`function`. First stand derivatives of sliding, of the direction, and of
+        the force on the unknowns, 4 + n rows; then derivatives of sliding by the rates.
         """
         x, inputs, v, rate, section, _ = self._symbols
         change, force, shift = ca.MX.sym("change", section.shape[0]), ca.MX.sym("force", 2), ca.MX.sym("shift")

@@ -74,7 +74,7 @@ TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "con
 """Templates of header, source, configuration and demo."""
 
 ERROR_FILES = ("contact_error.c",)
-"""The same of a library that estimates errors."""
+"""Further files of a library that estimates errors, which its own source includes, as they are."""
 
 STABILITY_FILES = ("contact_stability.c", SECOND_VARIATION)
 """Further files of a library that judges stability."""
@@ -83,7 +83,7 @@ MOST_TRIES = 24
 """Most arrangements that are solved for one change of the inputs."""
 
 TRIES_EACH = 3
-"""Times that each of few arrangements may be tried then, from other places."""
+"""Times that each arrangement may be tried where there are few, from other places."""
 
 CANDIDATES = 24
 """Most contacts that wait to be tried."""
@@ -105,7 +105,7 @@ def contact_files(
     derivatives: bool = False,
     batches: bool = False,
 ) -> dict[str, str]:
-    """Text of every file of a folder by name; the manifest, which lists the others, is last.
+    """Text of every file of a folder by name; the manifest, which lists these files, is last.
 
     Args:
         model: the exported model.

@@ -64,7 +64,7 @@ class Tables:
 
     @property
     def owners(self) -> list[str]:
-        """Names of the owners of contacts: the rods, then all bodies where any of them may touch."""
+        """Names of the owners of contacts: the rods, then all bodies where any body may touch."""
         bodies = [body.name for body in self.chosen.scene.bodies]
         return [*self.rods, *(bodies if touches_bodies(self.chosen.scene) else [])]
 
@@ -109,7 +109,7 @@ class Tables:
         return max(counts) + len(self.owners) - len(self.rods)
 
     def text(self) -> str:
-        """All tables."""
+        """All tables of the library's contacts, as C."""
         parts = [
             *(self._modes(level) for level in self._levels),
             self._rod_table(),
@@ -277,7 +277,7 @@ class Tables:
         return "\n".join(lines)
 
     def _places_of_ends(self, equations: ContactEquations, rod: str) -> list[int]:
-        """For each end of an element of a rod the number of the place that it is; −1 where it stays."""
+        """Number of the place that each end of an element of a rod is; −1 where it stays."""
         places: dict[float, int] = {}
         number = 0
         for touch in equations.state.touches:

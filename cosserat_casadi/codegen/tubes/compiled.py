@@ -68,9 +68,9 @@ class CompiledTubes(Compiled):
             inputs: of the turn.
             start: the solution of the turn before.
             parameters: of the turn; the scene's own by default.
-            derivatives: whether those of the tips are wanted.
+            derivatives: whether derivatives of the tips are wanted.
             max_iterations: most Newton steps; by default what the header says.
-            max_continuation_steps: most points between the last inputs and these; likewise.
+            max_continuation_steps: most points between the last inputs and these; by default what the header says.
 
         Raises:
             ValueError: one budget is given without the other.

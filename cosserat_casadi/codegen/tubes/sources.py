@@ -84,7 +84,7 @@ def check_tubes(asked: Mapping[str, bool]) -> None:
 def tube_files(
     model: TubeFunctions, name: str, error_estimate: float | None, *, batches: bool = False
 ) -> dict[str, str]:
-    """Text of every file of a folder by name; the manifest, which lists the others, is last.
+    """Text of every file of a folder by name; the manifest, which lists these files, is last.
 
     Args:
         model: the robot with its steps.
