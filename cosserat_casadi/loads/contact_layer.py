@@ -27,7 +27,7 @@ remembers nothing, has no friction.
 A disk of radius R and thickness h, square to its rod with the tangent t, reaches as far as R √(1 − (n·t)²) + h/2 |n·t|
 along the normal n, its corners rounded; its gap is d(r) less that. Before a plane that is exact. Before a ball it is
 less than the true one, by R² (n·t)²/2D at most, D the distance between the centres.
-It is pressed as a stretch of rod of its diameter would be, and the moment is that of the same energy.
+It is pressed as a stretch of rod of its diameter would be, and force and moment derive from one energy.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class ContactLayer(ObstacleLoadRecord):
 
     @property
     def takes_energy(self) -> bool:
-        """Whether it takes energy in motion."""
+        """Whether the layer takes energy in motion."""
         return bool(self.obstacle.damping > 0.0 or self.obstacle.rubs)
 
     def widened(self, ratio: float) -> ContactLayer:
@@ -267,7 +267,7 @@ def _remembers(section: Section) -> bool:
 
 
 def _is_known(section: Section) -> Matrix:
-    """One for a section that has a history, zero before it has one: its rotation is then no rotation."""
+    """1 for a section that has a history, 0 before it has one, when its rotation is no rotation; 1×1."""
     return ca.sumsqr(section.data[4:]) / 3
 
 
@@ -284,7 +284,7 @@ def _normal(load: ContactLayer, section: Section) -> Matrix:
 
 
 def _touching(load: ContactLayer, section: Section, normal: Matrix) -> Matrix:
-    """From the centre of a section, or of a disk, to its point that touches, 3×1, m."""
+    """Vector from the centre of a section, or of a disk, to its point that touches, 3×1, m."""
     if load.at is not None:
         return _support(load, section, normal)[1]
     return -_reach(load, section) * normal
@@ -308,7 +308,7 @@ def _pressing(load: ContactLayer, section: Section) -> Matrix:
 
 
 def _stiffness(load: ContactLayer) -> Matrix | float:
-    """Of a rod, N/m², or of a body or a disk, N/m."""
+    """Stiffness of the layer for a rod, N/m², or for a body or a disk, N/m."""
     return load.stiffness if load.at is None else 2 * load.radius * load.stiffness
 
 

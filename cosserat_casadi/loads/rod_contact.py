@@ -6,7 +6,7 @@ Two sections whose centres are d apart, of rods with the radii ρ, σ, and D = �
 
 with the width w and the stiffness k. Only the distance counts: forces are opposite and along the line of the centres,
 so that neither a sum nor a moment of them remains. Of two straight parallel rods with the gap g = d − D the integral
-over one of them is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its slope is the force per length: zero from the
+over one rod is 32/35 c (R² − d²)₊^{7/2} per length of the other. Its slope is the force per length: zero from the
 gap w on, k D Δ / (5 D² − Δ), or 2 k w/5 for a small width, where they touch, and there it grows by k for each metre of
 gap: the regularisation that an obstacle with a width has, too. Rods that cross at the angle α press each other with
 2π c d (R² − d²)₊³ / sin α.
@@ -16,13 +16,13 @@ rods are parallel, cross, or coincide. Sections stand for as much rod as lies be
 the third derivative of u is bounded: half as far apart, the ripple along a rod falls by 2⁴.
 
 Friction is Coulomb's, of each pair by its own force. In motion it is regularised by the slip speed. Along a path a pair
-that sticks is held by a spring of the stiffness μ F/s, which slips where it is dragged by the way s: s is the same
-however hard F the sections press. Sections that are pressed harder while they stick give back energy, μ F s/2 at most.
+that sticks is held by a spring of the stiffness μ F/s, which slips where it is dragged by the way s, whatever the force
+F between the sections. Sections that are pressed harder while they stick give back energy, μ F s/2 at most.
 
 A CasADi graph has no loop whose length depends on values. Sections lie in panels; a function that is only called where
 the bounding balls of two panels meet is mapped over the panels of the second rod, inside one that is only called where
-a panel of the first meets any of these. So panels that are apart cost one comparison each, and groups of panels that
-are apart likewise, where a rod has more than one.
+a panel of the first meets any of these. So panels that are apart cost one comparison each, and so do groups of panels,
+where a rod has more than one.
 """
 
 from __future__ import annotations
@@ -56,12 +56,12 @@ STILL = ca.DM(MOTION, 0)
 LAW = 5
 """Numbers of a law: width, m, stiffness, N/m², and how far the second section is along the rod beyond the first, m.
 
-It is so far at least. Of two rods every pair counts; of one and itself each pair once. The coefficient of friction and
-the slip speed, m/s, follow; along a path the way at which sections slip, m.
+The last is a least distance. Of two rods every pair counts; of one and itself each pair once. The coefficient of
+friction and the slip speed, m/s, follow; along a path the way at which sections slip, m.
 """
 
 NO_WAY = 1e-9
-"""Way, relative to that at which sections slip, or distance, relative to that of touching, that has no direction."""
+"""Way, over the way at which sections slip, or distance, over the distance of touching, that has no direction."""
 
 FAR = -1.0
 """Depth, in widths, of sections that do not meet."""
@@ -130,8 +130,8 @@ class PairInMotion:
 
     Attributes:
         arguments: symbols (position, data and motion, position, data and motion, law).
-        arms: from the centre of each to the point that touches, 3×1, m.
-        pressing: force between them, 1×1, N.
+        arms: vectors from the centre of each section to the point that touches, 3×1, m.
+        pressing: force between the sections, 1×1, N.
         normal: unit vector from the second to the first, 3×1.
         velocity: relative velocity, or way, of their points that touch, 3×1, m/s or m.
     """
@@ -209,7 +209,10 @@ def friction_kernel(along_path: bool) -> ca.Function:
 
 @cache
 def way_kernel() -> ca.Function:
-    """The same ↦ way of the points that touch and normal, times the force between them, and that force, 7×1."""
+    """Arguments of :func:`friction_kernel` ↦ way of the points that touch and normal, both times the force; the force.
+
+    Along a path; the way, the normal and the force between the sections stand one below the other, 7×1.
+    """
     pair = _pair_in_motion(along_path=True)
     weighted = pair.pressing * ca.vertcat(pair.velocity, pair.normal, 1)
     return ca.Function("contact_way", pair.arguments, ca.cse([weighted]))
@@ -252,14 +255,14 @@ def panel_energy() -> ca.Function:
 
 @cache
 def panel_depth() -> ca.Function:
-    """The same ↦ largest depth, counted from FAR."""
+    """(positions, data, positions, data, law) of two panels ↦ largest depth, counted from FAR, 1×1."""
     arguments = _panels()
     return ca.Function("depth", arguments, [ca.mmax(_by_pair(pair_kernels().depth, arguments))])
 
 
 @cache
 def panel_gradient() -> ca.Function:
-    """The same ↦ derivatives of the energy with the positions of both panels, 3×PANEL each, N."""
+    """Arguments of :func:`panel_energy` ↦ derivatives of the energy with positions of both panels, 3×PANEL each, N."""
     arguments = _panels()
     gradients = _by_pair(pair_kernels().gradient, arguments)
     return ca.Function("gradient", arguments, [_over_second(gradients), -_over_first(gradients)])
@@ -267,14 +270,14 @@ def panel_gradient() -> ca.Function:
 
 @cache
 def panel_way() -> ca.Function:
-    """The same with motions behind the data ↦ sums of :func:`way_kernel` for the sections of the first, 7×PANEL."""
+    """Two panels with motions behind the data ↦ sums of :func:`way_kernel` for sections of the first, 7×PANEL."""
     arguments = _panels(DATA + MOTION)
     return ca.Function("way", arguments, [_over_second(_by_pair(way_kernel(), arguments))])
 
 
 @cache
 def panel_friction(along_path: bool) -> ca.Function:
-    """The same with motions behind the data ↦ [force; moment] of friction on the sections of both, 6×PANEL each."""
+    """Two panels with motions behind the data ↦ [force; moment] of friction on sections of both, 6×PANEL each."""
     arguments = _panels(DATA + MOTION)
     first, second = ca.vertsplit(_by_pair(friction_kernel(along_path), arguments), 6)
     results = [_over_second(first), _over_first(second)]
@@ -315,17 +318,17 @@ def _friction_jacobian(arguments: Sequence[ca.MX], results: Sequence[Matrix], al
 
 @cache
 def panel_friction_rates(along_path: bool, first: int, second: int) -> ca.Function:
-    """The same, and derivatives of positions and data with numbers ↦ derivatives of friction with these.
+    """Arguments of :func:`panel_friction`, their derivatives with numbers ↦ derivatives of friction with these numbers.
 
     Args:
-        along_path: whether motions are those since the last point of a path.
-        first: numbers n on which the sections of the first panel depend.
-        second: numbers m of those of the second.
+        along_path: whether motions are counted from the last point of a path.
+        first: how many numbers n the sections of the first panel depend on.
+        second: how many numbers m the sections of the second panel depend on.
 
     Returns:
-        function whose last arguments are the derivatives of the second panel, m×(3 PANEL) and m×((DATA + MOTION)
-        PANEL), and those of the first. Its results are the derivatives of [force; moment] on the sections of the first
-        panel and of the second with the numbers of the first, n×(6 PANEL), then with those of the second, m×(6 PANEL).
+        function whose last arguments are the derivatives of positions and data of the second panel, m×(3 PANEL) and
+        m×((DATA + MOTION) PANEL), then of the first. Its results are the derivatives of [force; moment] on the sections
+        of the first panel and of the second with the n numbers, n×(6 PANEL), then with the m numbers, m×(6 PANEL).
     """
     arguments = _panels(DATA + MOTION)
     loads = [ca.MX(6, PANEL), ca.MX(6, PANEL)]
@@ -346,7 +349,7 @@ def panel_friction_rates(along_path: bool, first: int, second: int) -> ca.Functi
 
 @cache
 def panel_stiffness(count: int) -> ca.Function:
-    """The same, and a motion of the second panel ↦ second derivatives of the energy.
+    """Arguments of :func:`panel_energy` and a motion of the second panel ↦ second derivatives of the energy.
 
     Args:
         count: coordinates n of the motion: three components, one row for each coordinate, 3n×PANEL.
@@ -418,7 +421,7 @@ class SectionsInContact:
 
     @cached_property
     def group_balls(self) -> Matrix:
-        """The same about each group of panels, 6×groups, m."""
+        """Centre and radius of a ball about each group of panels, and its ends along the rod, 6×groups, m."""
         ends = [*range(0, self.panels, GROUP), self.panels]
         return ca.horzcat(*[_ball_about(balls) for balls in ca.horzsplit(self.balls, ends)])
 
@@ -435,10 +438,10 @@ class SectionPairs:
     """All pairs of sections of two rods, or of one.
 
     Attributes:
-        first: sections.
-        second: those of the other rod; the same where a rod touches itself.
-        law: LAW×1.
-        along_path: whether their motion is that since the last point of a path.
+        first: sections of the first rod.
+        second: sections of the other rod; ``first`` where a rod touches itself.
+        law: numbers of the law, LAW×1.
+        along_path: whether their motion is counted from the last point of a path.
     """
 
     first: SectionsInContact
@@ -472,13 +475,13 @@ class SectionPairs:
 
     @cached_property
     def way(self) -> Matrix:
-        """Of each section of the first: sums of way, of normal and of one, times the force between them, 7×S."""
+        """Sums of way, normal and 1, each times the force of a pair, for each section of the first, 7×S."""
         (weighted,) = self._moving._over_pairs(panel_way(), "f")
         return weighted
 
     @property
     def _moving(self) -> SectionPairs:
-        """The same pairs with motions behind the data."""
+        """These pairs with motions behind the data."""
         first, second = (replace(own, data=ca.vertcat(own.data, own.motion)) for own in (self.first, self.second))
         return replace(self, first=first, second=second)
 
@@ -488,7 +491,7 @@ class SectionPairs:
         Args:
             first: motion of the sections of the first rod with its n coordinates, 3n×S: three components, one row for
                 each coordinate.
-            second: the same of the second, 3m×S.
+            second: motion of the sections of the second rod with its m coordinates, 3m×S.
 
         Returns:
             n×n, m×n and m×m; of a rod that touches itself the first is the sum of both, and the last is zero.
@@ -509,10 +512,10 @@ class SectionPairs:
 
         Args:
             first: derivatives of positions, n×3S, and of data with motions behind them, n×(DATA + MOTION)S.
-            second: the same of the second, m×….
+            second: derivatives of positions and data of the second sections, m×….
 
         Returns:
-            derivatives of the loads on the first, n×6S, and on the second; the same with the numbers of the second.
+            derivatives of the loads on the first sections, n×6S, and on the second with the n numbers; then with the m.
         """
         function = panel_friction_rates(self.along_path, first[0].shape[0], second[0].shape[0])
         rates = self._moving._over_pairs(function, "fsfs", *second, *first)
@@ -523,9 +526,9 @@ class SectionPairs:
 
         Args:
             function: of two panels, the law, and what else ARGUMENTS names.
-            results: a letter each. Of the sections of the first, ``f``, they are summed over the panels of the second;
-                of those of the second, ``s``, over the panels of the first; those of each pair, ``e``, stand side by
-                side.
+            results: a letter for each result. Results for sections of the first, ``f``, are summed over the panels of
+                the second; results for sections of the second, ``s``, over the panels of the first; results for pairs
+                of panels, ``e``, stand side by side.
             motion: the further arguments.
         """
         sides = (self.first, self.second)
@@ -548,7 +551,7 @@ class SectionPairs:
 
 
 def _near_any(first: Matrix, second: Matrix, law: Matrix) -> list[Matrix]:
-    """Of each ball about sections of the first, 6×k, whether it meets any of those of the second, 6×m."""
+    """Whether each ball about sections of the first, 6×k, meets any ball about sections of the second, 6×m."""
     count = second.shape[1]
     return [ca.mmax(_meet(ca.repmat(ball, 1, count), second, law)) for ball in ca.horzsplit(first)]
 
@@ -559,7 +562,7 @@ def _owners(function: ca.Function) -> list[str]:
 
 
 def _joined(results: str, parts: Sequence[Sequence[Matrix]]) -> list[Matrix]:
-    """Results for parts of the first rod: those of the second are summed, others stand side by side."""
+    """Results for parts of the first rod, joined: results for the second rod are summed, others stand side by side."""
     fields = zip(results, zip(*parts, strict=True), strict=True)
     return [sum(of_part[1:], of_part[0]) if of == "s" else ca.horzcat(*of_part) for of, of_part in fields]
 
@@ -573,8 +576,8 @@ def _over_panels(
         function: of two panels.
         results: as :meth:`SectionPairs._over_pairs` takes them.
         of_all: its arguments for all panels, and their balls.
-        first: panels of the first rod.
-        second: those of the second.
+        first: number of panels of the first rod.
+        second: number of panels of the second rod.
     """
     # One call for each panel of the first: what belongs to the second is not copied for it.
     by_panel = [
@@ -603,8 +606,8 @@ def _group(function: ca.Function, results: str, first: int, second: int) -> ca.F
     Args:
         function: of two panels.
         results: as :meth:`SectionPairs._over_pairs` takes them.
-        first: panels of the group.
-        second: those of the second rod.
+        first: number of panels of the group.
+        second: number of panels of the second rod.
 
     Returns:
         the arguments for all panels, and their balls ↦ the results.
@@ -640,7 +643,7 @@ ARGUMENTS = ("first", "first", "second", "second", "law", "second", "second", "f
 """Owners of the arguments of a function of two panels: behind the law how they move, or their derivatives."""
 
 LAW_ARGUMENT = ARGUMENTS.index("law")
-"""Place of the law among them."""
+"""Place of the law among the arguments of a function of two panels."""
 
 
 def _for_all_pairs(arguments: Sequence[Matrix]) -> list[Matrix]:

@@ -1,9 +1,9 @@
-"""Coordinates in which a rod that flies free is integrated: the pose of its centred frame, not that of its base.
+"""Coordinates in which a rod that flies free is integrated: the pose of its centred frame, not of its base.
 
 About its base a free rod is strongly nonlinear: a small strain next to the base swings all the rest, and a shape that
 moves next to no mass is a sum of large motions that cancel. About a frame in its middle strains move the rod by
-little, and hardly move its mean. So steps are longer, a Jacobian serves more of them, and Newton's method needs fewer
-iterations. What the integrator sees is x = φ(y) put into the equations of motion; all others see x.
+little, and hardly move its mean. So steps are longer, a Jacobian serves more steps, and Newton's method needs fewer
+iterations. What the integrator sees is x = φ(y) put into the equations of motion; all other code sees x.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def can_be_centred(model: Model) -> bool:
 
 
 class CentredCoordinates:
-    """The map x = φ(y): y is x but for the entries of the base, which are those of the centred frame.
+    """The map x = φ(y): y is x but for the entries of the base, in whose place the centred frame's stand.
 
-    Forces of contacts, which stand behind the unknowns of the model while something touches, are the same in both.
+    Forces of contacts, which stand behind the unknowns of the model while something touches, are equal in both.
 
     Args:
         model: of one rod that flies free, see :func:`can_be_centred`.
@@ -107,7 +107,7 @@ class CentredCoordinates:
         return Instant(instant.time, x, v, a)
 
     def equations(self, plain: MotionEquations) -> MotionEquations:
-        """The equations of motion in these coordinates, row by row the same.
+        """The equations of motion in these coordinates; no row changes its value.
 
         With Φ = ∂φ/∂y their derivatives are K Φ + C Φ̇ + M Φ̈, C Φ + 2 M Φ̇ and M Φ.
 
@@ -135,7 +135,7 @@ class CentredCoordinates:
         return replace(plain, residual=self._residual(plain.residual), jacobians=jacobians, rates_of_last=None)
 
     def _residual(self, plain: Residual) -> Residual:
-        """A residual in these coordinates: one function of them, where its parts are known."""
+        """A residual in these coordinates: one function of the coordinates, where its parts are known."""
         if isinstance(plain, KernelResidual):
             return replace(plain, call=self._dynamics)
         if not (isinstance(plain, PushedResidual) and isinstance(plain.rows, KernelResidual)):
@@ -166,7 +166,7 @@ class CentredCoordinates:
         return ca.Function("centred_dynamics", [*y, value, rate, acceleration], [ca.densify(rows)])
 
     def _with_base(self, own: ca.MX, base: ca.MX) -> ca.MX:
-        """Unknowns of the model, or their rates, from those of the steps and those of the base."""
+        """Unknowns of the model, or their rates, from unknowns of the steps and of the base."""
         order = np.arange(self._size)
         order[self._pose] = self._size + np.arange(POSE_SIZE)
         return ca.vertcat(own, base)[order.tolist()]
@@ -243,7 +243,7 @@ class _Functions:
 
     @cached_property
     def centred(self) -> ca.Function:
-        """Unknowns of the model ↦ those of the centred frame, 7×1."""
+        """Unknowns of the model ↦ unknowns of the centred frame, 7×1."""
         x = self._symbols[0]
         centred = self._kernels.centred(self._states[0][:POSE_SIZE], self._seen.values[0])
         return ca.Function("centred", [x], [ca.densify(centred)])

@@ -1,4 +1,4 @@
-"""The centred frame of a rod: its origin is the centre of mass, its axes are about the mean of those of all sections.
+"""The centred frame of a rod: its origin is the centre of mass, its axes are about the mean of all sections' axes.
 
 Of the sections' quaternions Q_k in the axes of the base, Q̄ is the mean by the weights 6 X (1 − X). To first order in
 small strains of a uniform rod it turns with the mean motion: of deflections u that bend the rod, ∫ (X − ½) u dX is
@@ -34,7 +34,7 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
 
 SEEN_SIZE = 11
-"""Entries of what the base sees: the centre of mass, 3, the mean of the quaternions, 4, and that of the middle, 4."""
+"""Entries of what the base sees: centre of mass, 3, mean of the quaternions, 4, and quaternion of the middle, 4."""
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,9 @@ class SeenFromBase:
 
     Attributes:
         rod: the rod.
-        weights: of its nodes.
+        weights: weights of its nodes.
         q: strain coordinates, n×1.
-        rates: of them.
+        rates: rates of the strain coordinates.
     """
 
     rod: DiscreteRod
@@ -90,7 +90,7 @@ class SeenFromBase:
 
     @cached_property
     def values(self) -> tuple[Matrix, Matrix, Matrix]:
-        """The three beneath each other, and their first and second rates, 11×1 each."""
+        """Centre of mass, Q̄ and Q_m beneath each other, and their first and second rates, 11×1 each."""
         motion = self.motion
         centre = ca.DM(self.weights.centre)
         mean = ca.DM(self.weights.mean)
@@ -102,7 +102,7 @@ class SeenFromBase:
 
     @cached_property
     def variations(self) -> Jet:
-        """Their derivatives with the strain coordinates, with rates, 11×n each."""
+        """Derivatives of :attr:`values` with the strain coordinates, with rates, 11×n each."""
         turns = self._tangent.section_rotation
         tangents = self._tangent.section_tangent
         centre = ca.kron(ca.DM.eye(3), ca.DM(self.weights.centre).T)
@@ -185,7 +185,7 @@ class BaseKernels:
 
     @cached_property
     def derivatives(self) -> ca.Function:
-        """The same arguments ↦ the derivative of the base's unknowns with the state, 7×18, with its rates."""
+        """Arguments of :attr:`base` ↦ the derivative of the base's unknowns with the state, 7×18, with its rates."""
         state, rate, acceleration = self._symbols
         jacobian = ca.densify(ca.jacobian(self._base_of(state), state))
         orders = [ca.reshape(order, 7, state.numel()) for order in self._orders(ca.vec(jacobian))]

@@ -1,6 +1,6 @@
 """How far a motion has come, as plain data: a later run goes on from it with the very digits of one motion.
 
-Beside the motion itself the motions go on that tell its error: one with coarser steps, one on other modes. Each of them
+Beside the motion itself the motions go on that tell its error: one with coarser steps, one on other modes. Each motion
 has its state, what touches or is taut, and what the next step takes over from the last.
 """
 
@@ -57,11 +57,11 @@ class Strand:
     """One motion of a simulation, as far as it has come.
 
     Attributes:
-        discretisation: of every rod.
+        discretisation: discretisation of every rod.
         settings: how it steps.
         gauss: whether by Gauss's method, and not by Radau IIA.
-        factor: error of the paths over their distance from those of this strand; 0 of the motion itself.
-        impacts: energy that its impacts took more than those of the motion, J.
+        factor: error of the paths over their distance from this strand's paths; 0 of the motion itself.
+        impacts: energy that its impacts took more than impacts of the motion, J.
         resume: where it goes on.
     """
 
@@ -119,7 +119,7 @@ class Checkpoint:
 
         Raises:
             KeyError: an entry is missing.
-            TypeError: one is of another type; likewise ValueError.
+            TypeError, ValueError: an entry is of another type.
         """
         checkpoint: Checkpoint = _value(Checkpoint, data)
         return checkpoint
@@ -182,7 +182,7 @@ def _value(kind: Any, data: Any) -> Any:
 
 
 def _written(record: Any) -> list[Field[Any]]:
-    """Fields of a record that are written: a field with a factory is made of the others."""
+    """Fields of a record that are written: a field with a factory is made of the written ones."""
     return [entry for entry in fields(record) if entry.default_factory is MISSING]
 
 

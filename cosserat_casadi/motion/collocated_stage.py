@@ -167,7 +167,7 @@ class MotionStage:
         return differential_places(self.model) @ state[: self.state_size // 2]
 
     def v(self, state: Matrix) -> Matrix:
-        """Their rates, 1/s, shape (model.size,)."""
+        """Rates of the unknowns of the model in a state, 1/s, shape (model.size,); zero for the algebraic ones."""
         return differential_places(self.model) @ state[self.state_size // 2 :] / self.duration
 
     def independent_rates(
@@ -180,7 +180,7 @@ class MotionStage:
 
         Args:
             state: shape (state_size,).
-            x: unknowns near those of the state, at which constraints are linearised, shape (model.size,).
+            x: unknowns near the state's, at which constraints are linearised, shape (model.size,).
             inputs: stacked inputs there.
             p: stacked parameters there, of a stage that takes them.
 
@@ -202,13 +202,13 @@ class MotionStage:
 
     @cached_property
     def transition(self) -> ca.DM:
-        """By what the next state depends on the state, sparse, shape (state_size, state_size)."""
+        """Matrix by which the next state depends on the state, sparse, shape (state_size, state_size)."""
         one = ca.DM.eye(self.state_size // 2)
         return ca.blockcat([[one, one], [ca.DM(*one.shape), one]])
 
     @cached_property
     def drive(self) -> ca.DM:
-        """By what the next state depends on the unknowns of the stage, sparse, shape (state_size, unknowns_size)."""
+        """Matrix by which the next state depends on the unknowns of the stage, sparse, (state_size, unknowns_size)."""
         positions = [weight * self.places.T for weight in self.method.position_weights.tolist()]
         velocities = [weight * self.places.T for weight in self.method.weights.tolist()]
         matrix: ca.DM = ca.vertcat(ca.horzcat(*positions), ca.horzcat(*velocities))
@@ -231,8 +231,8 @@ class MotionStage:
         """The function of :attr:`equations`, by a function that evaluates the equations of motion at an instant.
 
         Args:
-            inverse_dynamics: with the arguments and the result of that of :attr:`dynamics`.
-            name: of the function.
+            inverse_dynamics: with the arguments and the result of inverse dynamics of :attr:`dynamics`.
+            name: name of the function.
         """
         arguments = self.symbols
         state, unknowns, inputs, *p, rate = arguments
@@ -326,9 +326,9 @@ def motion_stage(
 
     Args:
         model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely. Parameters
-            have the values of the scene, or those of ``model.at(…)``, unless they are asked for.
-        duration: of the stage, s.
-        method: by default that of the simulator, Radau IIA with three stages, ``radau(3)``; in exact contact
+            have the values of the scene, or of ``model.at(…)``, unless they are asked for.
+        duration: duration of the stage, s.
+        method: by default the simulator's, Radau IIA with three stages, ``radau(3)``; in exact contact
             ``radau(1)``, Euler's implicit method.
         parameters: whether the parameters of the scene, if it names some, are an argument of the equations.
         sections: stretches of a rod, at whose ends it may touch an obstacle without a width.

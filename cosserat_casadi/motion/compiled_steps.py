@@ -39,7 +39,7 @@ MOST_TRIES = 64
 """Steps that are tried in one call: then an interrupt is seen."""
 
 FEW_TRIES = 32
-"""The same while a program may yet be written: then its cost is weighed again."""
+"""Steps that are tried in one call while a program may yet be written: then its cost is weighed again."""
 
 OUTCOMES = (
     None,
@@ -287,7 +287,7 @@ class CompiledSteps:
 
 
 def _evaluate(call: RepeatedCall, state: Sequence[FloatArray], rows: FloatArray, _: float) -> None:
-    """Have CasADi's virtual machine write the residual, of the unknowns of the model without those of contacts."""
+    """Have CasADi's virtual machine write the residual, of the unknowns of the model without unknowns of contacts."""
     for array, values in zip(call.arguments, state, strict=False):
         if array is not values:
             array[:] = values[: len(array)]

@@ -62,9 +62,9 @@ class Closing:
 
         Args:
             instant: of the motion, in the unknowns of the model.
-            inputs: then, shape (model.inputs.size,).
+            inputs: inputs at that instant, shape (model.inputs.size,).
             equations: of motion, of which some rows are the constraints.
-            near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many of them.
+            near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many instants.
         """
         x = instant.x
         if not len(self.rows):
@@ -103,7 +103,7 @@ class Closing:
         return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
 
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
-        """As :meth:`_answer`, at an end of a step; that of the last one asked for is remembered."""
+        """Displacements that answer to gaps, as :meth:`_answer`, at an end of a step; the last answer is remembered."""
         time, answer = self._remembered.get("last", (None, None))
         if answer is None or time != near.time:
             answer = self._answer(equations.linearised(near).stiffness)

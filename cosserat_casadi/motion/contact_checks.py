@@ -101,13 +101,13 @@ def too_deep(history: History, duration: float) -> str:
 def told_passage(history: History, duration: float, model: Model | None = None) -> str:
     """A sentence on rods that pass through smooth bars, balls or each other; else nothing.
 
-    The straight ways between times that are watched and ends of steps are looked at; where one is barred, those between
-    times that are closer.
+    The straight ways between times that are watched and ends of steps are looked at; where one is barred, ways between
+    closer times.
 
     Args:
         history: the motion.
-        duration: of the motion, s.
-        model: that of the motion with its parameters bound; where that has parameters.
+        duration: duration of the motion, s.
+        model: the model of the motion with its parameters bound, where it has parameters.
     """
     barriers = SmoothBarriers(model or history.model)
     if not barriers.any:

@@ -50,9 +50,9 @@ class Followed(NamedTuple):
     """Where contacts are that were followed to a state.
 
     Attributes:
-        places: abscissae, one for each.
-        gaps: their gaps there, over the length of their rods.
-        gone: which of them are elsewhere than where they were, see :meth:`Follower.gone`.
+        places: abscissae, one for each contact.
+        gaps: gaps of the contacts there, over the length of their rods.
+        gone: whether a contact is elsewhere than where it was, see :meth:`Follower.gone`.
     """
 
     places: list[float]
@@ -150,7 +150,7 @@ class Follower:
         return np.array(own).reshape(len(gaps), len(x))
 
     def open_by(self, gaps: Sequence[SectionGap]) -> list[float]:
-        """By how much gaps are wider than the heights that the contacts keep, over the lengths."""
+        """Excess of gaps over the heights that the contacts keep, over the lengths."""
         return [gap.value - touch.height for gap, touch in zip(gaps, self.touches, strict=True)]
 
     def pushed(self, gaps: Sequence[SectionGap], forces: FloatArray) -> dict[MovingPoints, FloatArray]:
@@ -210,7 +210,7 @@ class Follower:
 
         Args:
             x: unknowns, shape (n,).
-            v: their rates, likewise, 1/s.
+            v: rates of the unknowns, shape (n,), 1/s.
             inputs: the stacked inputs, their rates and their accelerations, shape (k,) each.
         """
         _, gaps = self.gaps(x, inputs[0])
@@ -223,11 +223,11 @@ class Follower:
 
 
 class BaseOfSteps(NamedTuple):
-    """The base of a rod that nothing holds, whose unknowns in steps are others than those of the model.
+    """The base of a rod that nothing holds, whose unknowns in steps are not the model's.
 
     Attributes:
-        call: unknowns of the steps ↦ those of the base in the model.
-        begin: the first of these.
+        call: unknowns of the steps ↦ unknowns of the base in the model.
+        begin: the first of the base's unknowns in the model.
     """
 
     call: RepeatedCall
@@ -242,8 +242,8 @@ class PushedResidual:
         rows: residual of the equations of the model.
         size: number of its unknowns n.
         follower: the contacts.
-        piece: of the inputs.
-        base: whose unknowns are others in x; None where all are those of the model.
+        piece: piece of the inputs.
+        base: base whose unknowns in x are not the model's; None where all are the model's.
     """
 
     rows: Residual
@@ -283,9 +283,9 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
     these balances, which are in units of the same energy, what its gap gains from these unknowns.
 
     Args:
-        plain: those of the model.
+        plain: equations of the model.
         follower: the contacts.
-        piece: of the inputs.
+        piece: piece of the inputs.
     """
     size = plain.size
     count = len(follower.touches)

@@ -1,8 +1,9 @@
 """A rod or a body that an obstacle faces, and the gap between the two with its derivatives.
 
-A gap is that of a point that moves with the unknowns, less what the surface lies outside of it. The least gap over a
-stretch of a rod is a function of the unknowns alone: its gradient is that of the gap at the place where it is least,
-and its second derivative is less by what that place slides (E. Polak, *Optimization*, Springer 1997, section 3.1).
+A gap is the distance of a point that moves with the unknowns, less what the surface lies outside of it. The least gap
+over a stretch of a rod is a function of the unknowns alone: its gradient is the gradient of the gap at the place where
+it is least, and its second derivative is less by what that place slides (E. Polak, *Optimization*, Springer 1997,
+section 3.1).
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from cosserat_casadi.motion.moving_points import MovingPoints
 FLATTEST = 1e-3
 """Least second derivative of the gap with X, over the length, at a place that slides: it slides ever faster.
 
-A rod that rolls loses nothing; one that is held at sections instead is a polygon, and each of them strikes. From 2e-2
+A rod that rolls loses nothing; one that is held at sections instead is a polygon, and each section strikes. From 2e-2
 on these blows took a twentieth of the energy of a rubber rod as it rolled onto its end, on 40 modes.
 """
 
@@ -238,7 +239,7 @@ class Facing(ABC):
         return self.points.by_inputs(x, inputs, self.weights(gap))
 
     def turning(self, by_nodes: FloatArray, gap: SectionGap, *, slides: bool) -> FloatArray:
-        """Second derivative of a gap with the unknowns without that of the points, shape (n, n).
+        """Second derivative of a gap with the unknowns without the second derivative of the points, shape (n, n).
 
         Args:
             by_nodes: derivative of the points with the unknowns, shape (M, 3, n), m.
@@ -260,7 +261,7 @@ class Facing(ABC):
 
         Args:
             x: unknowns, shape (n,).
-            v: their rates, likewise, 1/s.
+            v: rates of the unknowns, shape (n,), 1/s.
             inputs: the stacked inputs, their rates and their accelerations, shape (m,) each.
             gap: the gap.
             slides: whether its place is where the gap is least, and not a given one.

@@ -23,7 +23,7 @@ from cosserat_casadi.motion.steps_library import steps_library
 from cosserat_casadi.scene.accuracy import MOST_NODES
 
 NAME = "moving_contacts"
-"""Of the library in the cache."""
+"""Name of the library in the cache."""
 
 INCLUDED = ("contact_gaps.c", "square_systems.c", "least_pushes.c")
 """Files that exported steps have too."""
@@ -204,7 +204,7 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
         tolerance: rate below zero that counts as none.
 
     Returns:
-        the forces; None where rounding keeps them from settling. Constraints that no forces stop close all the same.
+        the forces; None where rounding keeps them from settling. Constraints that no forces stop close anyway.
     """
     count = len(rates)
     forces = np.zeros(count)

@@ -24,7 +24,7 @@ from cosserat_casadi.numerics.consistent_start import (
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 STILL = 1e-9
-"""Speed of opening, over that of approach or in lengths per interval, that counts as none."""
+"""Speed of opening, over the speed of approach or in lengths per interval, that counts as none."""
 
 STEADY = 1e-6
 """Acceleration of opening, over the largest of all sections that touch, that counts as none."""
@@ -42,10 +42,10 @@ Stiff modes that are damped hard answer to a blow, and forget it, in far less: a
 """
 
 LONGER = 2.0
-"""Factor on that time with each change of contact in a moment: what presses is then decided over longer times."""
+"""Factor on the time over which accelerations decide what presses, with each change of contact in a moment."""
 
 LONGEST = 0.1
-"""The longest such time, over the interval."""
+"""Longest time over which accelerations decide what presses, over the interval."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Onset:
         return min(BRIEF * LONGER**self.changes, LONGEST) * self.interval
 
     def at(self, v: FloatArray) -> Onset:
-        """The same state with other velocities."""
+        """This state with other velocities."""
         return replace(self, before=replace(self.before, v=v))
 
     def start(self, pressing: Touches) -> ConsistentStart:
@@ -119,7 +119,7 @@ class Onset:
         return consistent_start(equations, self.before.time, x, v, self.interval, saddle)
 
     def held_still(self, touches: Touches) -> Onset:
-        """With velocities at which some sections neither approach nor leave.
+        """This state with velocities at which some sections neither approach nor leave.
 
         Steps keep gaps at zero, and their rates as far as the steps are exact: the rates that remain would pass for an
             impact.
@@ -133,7 +133,7 @@ class Onset:
 
         Args:
             touching: these sections.
-            known: how many of them, the first ones, touched before: what presses them on in the blow does not rebound.
+            known: how many sections, the first ones, touched before: what presses them on in the blow does not rebound.
         """
         if not touching:
             return Struck(self.before.v, np.zeros(0), np.zeros(0), ())
@@ -191,7 +191,7 @@ class Onset:
         """Second derivatives of gaps without forces, by forces, and the one that counts as none, 1/s².
 
         What counts as none is judged by the accelerations and forces of this instant: how long the motion goes on says
-        nothing of them.
+        nothing of these.
         """
         _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
         gradients = self._gradients(touches)

@@ -81,7 +81,7 @@ class ContactRecord:
 
     Attributes:
         model: the model, built for a motion.
-        stretches: of the motion, one after the other.
+        stretches: stretches of the motion, one after the other.
         to_model: a state in the unknowns of the model, with forces of contact behind them, from one of the steps.
     """
 

@@ -1,6 +1,6 @@
 """A rod or a body in motion against one obstacle: the sections of the rod that may touch it, or the ball of the body.
 
-Positions between the nodes are those of the polynomials through the nodes, as results have them.
+Positions between the nodes follow the polynomials through the nodes, as results have them.
 
 A rod on polynomials cannot lie flat along a part of an element: its gap is zero at points and ripples between them. It
 is kept out at sections that are close beside the ripples, and the remaining ripples are checked at the end.
@@ -122,7 +122,7 @@ class BodyFacing(Facing):
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Its radius, twice, m."""
+        """Radius of the ball at base and tip, twice one number, m."""
         return self.radius, self.radius
 
     @property
@@ -132,7 +132,7 @@ class BodyFacing(Facing):
 
     @property
     def laid_at(self) -> FloatArray:
-        """None: a ball touches at one point."""
+        """Places that a body lies at, shape (0,): a ball touches at one point."""
         return np.zeros(0)
 
     def describe(self, held: Held) -> None:

@@ -1,11 +1,11 @@
 """Eigenvalues of (λ² M + λ C + K) z = 0, where M may be singular and K singular or indefinite.
 
-Coordinates without mass, and high frequencies, are what K resolves best: the eigenvalues that are sought are those of
-the inverse. With F = (K + s M)⁻¹ and M = N Nᵀ the nonzero eigenvalues ν of Nᵀ F N are 1/(s − λ²), however singular M
+Coordinates without mass, and high frequencies, are what K resolves best: eigenvalues of the inverse are sought. With
+F = (K + s M)⁻¹ and M = N Nᵀ the nonzero eigenvalues ν of Nᵀ F N are 1/(s − λ²), however singular M
 is: directions without mass drop out. The shift s, about the square of the lowest frequency, keeps rigid motions and
 critical equilibria from making the matrix singular.
 
-With damping, λ = √s + s₁ gives the same for the quadratic problem: μ² z + μ F C₁ z + F M z = 0 with μ = 1/s₁,
+With damping, λ = √s + s₁ shifts the quadratic problem alike: μ² z + μ F C₁ z + F M z = 0 with μ = 1/s₁,
 C₁ = C + 2 √s M and F = (K + √s C + s M)⁻¹, solved in the companion form (F. Tisseur, K. Meerbergen, *SIAM Review* 43
 (2001) 235–286).
 """
@@ -29,7 +29,7 @@ INFINITE = 1e-14
 """An inverse square below this share of the largest belongs to a direction without mass."""
 
 NOTHING = 1e-12
-"""Stiffness and mass, relative to those of the rods, below which a direction has none."""
+"""Stiffness and mass, over stiffness and mass of the rods, below which a direction has none."""
 
 REAL = 1e-9
 """A real part below this share of an eigenvalue without damping is rounding."""
@@ -124,7 +124,7 @@ def undamped_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray,
 
 
 def _undamped(stiffness: FloatArray, mass: FloatArray, conservative: bool) -> Eigenpairs:
-    """Eigenvalues in pairs ±λ, from those of λ²."""
+    """Eigenvalues in pairs ±λ, from the eigenvalues λ²."""
     shift = natural_shift(mass)
     if conservative:
         real_squares, real_vectors = undamped_modes(stiffness, mass)
@@ -155,7 +155,7 @@ def _asymmetric_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[ComplexA
 
 
 def _roots_of(square: complex, shift: float) -> list[complex]:
-    """The eigenvalues λ that a λ² stands for, without those of negative imaginary part."""
+    """The eigenvalues λ that a λ² stands for, without eigenvalues of negative imaginary part."""
     if abs(square) <= ZERO * shift:
         return [0j]
     root = complex(np.sqrt(complex(square)))
@@ -199,7 +199,7 @@ def _damped(stiffness: FloatArray, damping: FloatArray, mass: FloatArray) -> Eig
 
 
 def _without_conjugates(values: ComplexArray, shapes: ComplexArray, shift: float) -> Eigenpairs:
-    """One of each conjugate pair, and zeros as often as they have independent shapes."""
+    """Eigenvalues with one of each conjugate pair, and zeros as often as they have independent shapes."""
     zero = np.abs(values) ** 2 <= ZERO * shift
     kept_values: list[complex] = []
     kept_shapes: list[ComplexArray] = []

@@ -75,7 +75,7 @@ def _in_impacts(history: History, times: FloatArray, before: float) -> tuple[Flo
 
 
 def _still(model: Model, moving: frozenset[str]) -> FloatArray:
-    """One for each load that no moving input changes, else zero, shape (loads,)."""
+    """1 for each load that no moving input changes, else 0, shape (loads,)."""
     lengths = {entry.name for entry, _ in model.inputs if entry.of_rod and entry.field == "length"}
     # A rod that grows is weighed by more and more of it.
     if lengths & moving:
@@ -92,7 +92,7 @@ def _integrals(
     Args:
         history: the motion.
         times: shape (T,), s.
-        working: one for each load whose work counts, shape (loads,).
+        working: 1 for each load whose work counts, else 0, shape (loads,).
         account: of the energies up to the begin of the motion.
     """
     if not history.steps:
@@ -113,11 +113,11 @@ def _integrals(
 
 
 def _powers_are_constant(model: Model, working: FloatArray) -> bool:
-    """Whether the powers that count depend on nothing that moves: they are those of one instant then.
+    """Whether the powers that count depend on nothing that moves: the powers of one instant are enough then.
 
     Args:
         model: the model.
-        working: one for each load whose work counts, shape (loads,).
+        working: 1 for each load whose work counts, else 0, shape (loads,).
     """
     function = model.powers
     if model.scene.touches_exactly or np.any(working):

@@ -16,7 +16,7 @@ Phases = TypeVar("Phases")
 """State of the switches for a while: the cables that are taut and the joints at their stops, or the contacts."""
 
 HeldPhases = TypeVar("HeldPhases", covariant=True)
-"""The same, of what only holds and does not take it."""
+"""Phases of what only holds phases and does not take them."""
 
 
 LAID_DOWN = "laid_down"
@@ -37,9 +37,9 @@ class ContactEvent:
         owner: name of the rod, or of the body, that touches; or of the cable or the joint.
         obstacle: name of the obstacle, "lower_stop" or "upper_stop"; empty of a cable.
         place: abscissa X of the section; 0 of a body, a cable or a joint.
-        energy: kinetic energy that the impact took, or the cable that became taut, J; zero of the others.
+        energy: kinetic energy that the impact took, or the cable that became taut, J; zero for other events.
         impulse: of the obstacle on the rod, along its normal there, N s, or of the stop on the joint, N s or N m s;
-            zero of the others.
+            zero for other events.
         of_body: whether it is a body that touches.
     """
 
@@ -61,7 +61,7 @@ class Restart(Generic[HeldPhases]):
         start: state with accelerations and tensions, or forces of contact.
         phases: which cables are taut and which joints at their stops, or what touches.
         lost: energy that an impact has taken, J.
-        work: that a base or another input in motion has done in it, J.
+        work: work that a base or another input in motion has done in the event, J.
         events: changes of contact.
         stalled: why there is nothing to go on with; None where there is.
     """
@@ -75,7 +75,7 @@ class Restart(Generic[HeldPhases]):
 
 
 class Switching(Protocol[Phases]):
-    """Cables and stops, or contacts, that switch between equations of motion, each of them smooth for a while."""
+    """Cables and stops, or contacts, that switch between equations of motion, each smooth for a while."""
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
         """The phases at a state."""

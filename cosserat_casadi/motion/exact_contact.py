@@ -1,6 +1,6 @@
 """Exact contact in motion, without friction: rods touch obstacles at sections for a while, and what happens between.
 
-Between events the sections that touch are the same, and the equations are smooth. Where a gap comes to zero there is an
+Between events the sections that touch stay, and the equations are smooth. Where a gap comes to zero there is an
 impact: impulses along the normals take the speed of approach, and give back the share of it that is the obstacle's
 coefficient of restitution, none by default; they are as small as keeps all that touch apart
 (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5 and 6). Where a force
@@ -56,13 +56,13 @@ CLOSED = 1e-13
 """Gap, over the length, that counts as closed at the end of a step."""
 
 CLOSINGS = 3
-"""Most changes of the positions that close it: the first leaves its square."""
+"""Most changes of the positions that close a gap: the first leaves its square."""
 
 MOST_IN_A_MOMENT = 8
 """Changes of contact in a moment from which on rods that touch at sliding sections lie down."""
 
 MOMENT = 0.1
-"""Such a moment, over the interval after an event."""
+"""A moment in which such changes are counted, over the interval after an event."""
 
 
 @dataclass(frozen=True)
@@ -213,10 +213,10 @@ class ExactContacts:
 
         Args:
             known: the contacts.
-            number: of the contact.
-            element: that it slides in.
+            number: number of the contact.
+            element: element that it slides in.
             before: state before the event.
-            inputs: at its time.
+            inputs: inputs at the time of that state.
         """
         end = known.held[number]
         ends = self.facings[end.facing].ends
@@ -360,7 +360,7 @@ class ExactContacts:
         return Restart(onset.start(()), ContactPhase(), events=known.events, stalled=why)
 
     def _on_sections(self, touches: Touches, laid: frozenset[int]) -> Touches:
-        """Contacts of rods that lie at their sections: a place between two of them is given up where one touches."""
+        """Contacts of rods that lie at their sections: a place between two sections is given up where one touches."""
         kept = []
         for touch in touches:
             at = self.facings[touch.facing].laid_at
@@ -458,8 +458,8 @@ class _Known:
     Attributes:
         held: contacts that go on, at their places at the event.
         laid: numbers of the pairs of a rod and an obstacle in which the rod lies from now on.
-        left: the one that lifts off, if one does.
-        events: of them.
+        left: the contact that lifts off, if one does.
+        events: events of these contacts.
     """
 
     held: Touches
@@ -469,7 +469,7 @@ class _Known:
 
 
 def _one_of_each(touches: Sequence[MovingContact]) -> list[MovingContact]:
-    """One of the contacts of each rod with each obstacle."""
+    """One contact, the last, of each rod with each obstacle."""
     return list({touch.facing: touch for touch in touches}.values())
 
 

@@ -32,13 +32,13 @@ ORDER_OF_WAVES = 2.3
 """Power with which errors fall by waves of all lengths, of a sudden load or a blow, that no damping takes."""
 
 SAFETY = 1.5
-"""Factor on the error that is extrapolated from it."""
+"""Factor on the error that is extrapolated from a power."""
 
 REST = SAFETY / UNKNOWN_ORDER
 """Displacement by all further coefficients over that by the last one and their number."""
 
 LAST = 3
-"""One of so many coefficients counts as one of the last."""
+"""Number of coefficients of which one counts as one of the last."""
 
 AT_FRONT = 0.6
 """Displacement that is missing where a front arrives, over that by the last of many coefficients and their number.
@@ -49,7 +49,7 @@ rods of tests/motion/test_wave_estimates.py.
 """
 
 LAST_AT_FRONT = 4
-"""At most so many coefficients, and half of them, count as the last ones there: by the root of their mean square."""
+"""Most coefficients, and half of all at most, that count as the last ones there: by the root of their mean square."""
 
 ANGLES = np.pi * np.arange(1, 40) / 40.0
 """Angles θ of the sections at which an element is asked for its impedance."""
@@ -71,13 +71,13 @@ TINY = float(np.finfo(float).tiny)
 
 
 ByStrain = dict[str, list[FloatArray]]
-"""Of every rod and each of its strains: a number for the coefficients of each degree."""
+"""A number for the coefficients of each degree, of every rod and each of its strains."""
 
 
 def told_by_modes(modes: int, others: int, order: float) -> float:
     """Error of a motion over its distance from one on other modes, from above, if errors go as modes^−order.
 
-    The error of the others is (modes / others)^order times that of the motion.
+    The motion on other modes has (modes / others)^order times the error of the motion.
     """
     others_error: float = (modes / others) ** order
     return SAFETY / abs(1.0 - others_error)
@@ -113,7 +113,7 @@ def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
 
 
 def _factors(model: Model, name: str) -> list[float]:
-    """Factor on a displacement by each strain of a rod, over its length, for that of what goes along.
+    """Factor on a displacement by each strain of a rod, over its length, for the displacement of what goes along.
 
     It is over the length of the shortest rod that goes along: its path is watched over its own length. A twist moves
     what goes along by its distance from the axis.
@@ -133,7 +133,7 @@ class MovedAlong(NamedTuple):
 
 
 def moved_along(scene: Scene, rod: str) -> MovedAlong:
-    """This rod, which a strain of it moves, rods that start on it, and the rods and bodies that joints tie to them."""
+    """Rods and bodies that a strain of a rod moves: the rod, rods that start on it, what joints tie to these."""
     moved: set[tuple[str, str]] = {("rod", rod)}
     ties = []
     for joint in scene.joints:
@@ -228,7 +228,7 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
 
 def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
-    """The same of every strain of every rod alone; zero of curvatures, whose fronts make no kinks.
+    """Displacement that is missing at fronts, by rod and strain; zero for curvatures, whose fronts make no kinks.
 
     A sudden load sends fronts along a rod by its twist, its stretch and its shear. Where one arrives at the tip, turn
     or place has a kink, which any polynomials meet with the first power of their number: what two motions differ by
@@ -252,7 +252,7 @@ def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
 
 
 def _fronts_over_seen(model: Model, name: str) -> dict[int, float]:
-    """As :func:`front_over_seen`, of the strains whose fronts make kinks; every level of a search asks."""
+    """:func:`front_over_seen` by strain, for strains whose fronts make kinks; every level of a search asks."""
     fronts: dict[str, dict[int, float]] = kept_with(model, "_fronts_over_seen", dict)
     if name not in fronts:
         strains = [strain for strain in model.discrete.rods[name].admitted if strain not in BENDING]
@@ -303,7 +303,7 @@ def front_over_seen(model: Model, name: str, strain: int) -> float:
 
 
 def _let_through(model: Model, name: str) -> list[float]:
-    """As :func:`let_through_at_tip`, of all strains of a rod; every level of a search asks."""
+    """:func:`let_through_at_tip` for all strains of a rod; every level of a search asks."""
     known_of: dict[str, list[float]] = kept_with(model, "_let_through_at_tips", dict)
     if name not in known_of:
         known_of[name] = [let_through_at_tip(model, name, strain) for strain in model.discrete.rods[name].admitted]
@@ -311,7 +311,7 @@ def _let_through(model: Model, name: str) -> list[float]:
 
 
 def let_through_at_tip(model: Model, name: str, strain: int) -> float:
-    """Motion of a tip with a body over that of a free one, by waves that coefficients of a strain lack.
+    """Motion of a tip with a body over motion of a free tip, by waves that coefficients of a strain lack.
 
     A body of mass m ends a rod of impedance Z: by a wave of frequency ω it moves 1/√(1 + (ω m / Z)²) times as much as
     a free tip. The waves that n coefficients of an element lack have frequencies above n / T, with the time T in which

@@ -1,7 +1,7 @@
 """A motion that goes on from the end of another, with the very digits of one motion over all of the time.
 
-The motions that told the error of the first part go on beside it, so that they tell that of the whole. Modes and steps
-stay as they were.
+The motions that told the error of the first part go on beside it, so that they tell the error of the whole. Modes and
+steps stay as they were.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def go_on(
     Args:
         subject: the scene, or a model of it on the modes of the checkpoint.
         checkpoint: where the motion goes on from.
-        simulation: duration, frames, tolerance; None for those of the scene.
+        simulation: duration, frames, tolerance; None for the scene's.
         tell: is told of every step.
         source: chooses the kernels.
         events: of the user.

@@ -65,7 +65,7 @@ SHORTER = 0.25
 """Factor of a step after one in which a cable changed where the step began."""
 
 AT_ONCE = 1e-6
-"""Such a time, relative to the duration."""
+"""Time, over the duration, that counts as next to no time for changes."""
 
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
 """The remedy where nothing can follow an input that has a speed."""
@@ -78,9 +78,9 @@ def equations_of(
 
     Args:
         model: the model.
-        piece: of its inputs.
-        p: stacked parameters; those of a model that has some.
-        kernels: inverse dynamics and its derivatives; by default those of CasADi's virtual machine.
+        piece: piece of its inputs.
+        p: stacked parameters of a model that has some; else None.
+        kernels: inverse dynamics and its derivatives; by default in CasADi's virtual machine.
     """
     kernels = kernels or interpreted(model)
     parameters = [] if p is None else [p]
@@ -142,7 +142,7 @@ class Leg:
 
     @property
     def start(self) -> ConsistentStart:
-        """How it begins."""
+        """State in which the leg begins."""
         return self.restart.start
 
     @property
@@ -183,7 +183,7 @@ class History:
 
     @property
     def resume(self) -> Resume:
-        """Where it would go on."""
+        """Where the motion would go on."""
         leg = self.legs[-1]
         ended = leg.integration
         phases = leg.restart.phases
@@ -418,7 +418,7 @@ def functions_of_flight(model: Model) -> list[ca.Function]:
 
 
 def derivatives_of_flight(model: Model) -> list[ca.Function]:
-    """The functions that equations of what flies free are linearised with, beside those of the model."""
+    """The functions that equations of what flies free are linearised with, beside functions of the model."""
     return [CentredCoordinates(model).derivatives] if can_be_centred(model) else []
 
 
@@ -442,17 +442,17 @@ def integrated(
 
     Args:
         model: the model.
-        pieces: of its inputs, one after the other.
+        pieces: pieces of its inputs, one after the other.
         x: unknowns at the start, shape (size,); multipliers and tensions are a guess.
-        v: their rates, shape (size,), 1/s.
+        v: rates of the unknowns, shape (size,), 1/s.
         method: the collocation method.
         settings: how to step.
         after_step: told of every step.
-        p: stacked parameters; those of a model that has some.
+        p: stacked parameters of a model that has some; else None.
         phases: what touches at the start; None where that is looked for, and in a scene without exact contact.
         kernels: as for :func:`equations_of`.
         resume: where a motion goes on; x, v and phases count for nothing then. None for one that begins.
-        flight: that of the model; None for a new one.
+        flight: free flight of the model; None for a new one.
         stops: makes the values at whose zeros the motion stops; None where it goes to its end.
         begun: how another motion of the model began that has the same start; None where that is not known.
 
@@ -583,7 +583,7 @@ def _switching(
 
 
 def _joined(changes: Guards | None, ends: Guards | None, begin: Instant) -> tuple[Guards | None, int]:
-    """Guards of what changes the equations, then those of what ends the motion, and how many the former are."""
+    """Guards of what changes the equations, then guards of what ends the motion; and the number of the first kind."""
     if changes is None or ends is None:
         return changes or ends, 0 if changes is None else len(changes(begin))
     return lambda instant: np.concatenate([changes(instant), ends(instant)]), len(changes(begin))
@@ -612,7 +612,7 @@ def _chatters(legs: Sequence[Leg], duration: float) -> bool:
 
 
 def _inputs_that_move(model: Model, piece: Piece, time: float) -> list[str]:
-    """Names of inputs with a speed at a time (s), without those of loads, which move no support, joint or cable."""
+    """Names of inputs with a speed at a time (s), without inputs of loads, which move no support, joint or cable."""
     rate = piece.at(time).rate
     loads = {load.name for load in model.scene.loads}
     slices = model.inputs.slices.items()

@@ -21,7 +21,7 @@ from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.velocity_record import InitialVelocity
 
 POINTS = 200
-"""Abscissae at which the rates of strains are fitted by those of the modes."""
+"""Abscissae at which the rates of strains are fitted by rates of the modes."""
 
 
 def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
@@ -61,7 +61,7 @@ def with_velocities(model: Model, start: Start, piece: Piece) -> Start:
 
 
 def _strain_rates(rod: DiscreteRod, velocity: InitialVelocity) -> FloatArray:
-    """Rates of the strain coordinates of a rod that fit those of its strains, shape (n,), for its own length."""
+    """Rates of the strain coordinates of a rod that fit rates of its strains, shape (n,), for its own length."""
     X = gauss_legendre(POINTS)[0] / 2.0 + 0.5
     rates = velocity.strain_rates(X)
     q = np.zeros(rod.size)

@@ -1,7 +1,7 @@
 """A scene linearised about an equilibrium, for control: ẋ = A x + B u, y = C x + D u of deviations from it.
 
 The states are modal coordinates η of the undamped motion and their rates: with Φᵀ M Φ = I no mass matrix is inverted,
-so that coordinates without mass do no harm. Those follow the others at once, or relax where damping meets them alone.
+so that coordinates without mass do no harm. These follow the rest at once, or relax where damping meets them alone.
 
 Inputs that move a base or the length of a cable move the rods with them: δx = Z z + X_c δu with any X_c that the
 constraints allow. The inertia of that motion asks for the rate and the acceleration of such an input, which become
@@ -31,7 +31,7 @@ from cosserat_casadi.motion.vibration_modes import check_mass, small_motions
 from cosserat_casadi.result import Shown
 
 QUICK = 1e-10
-"""Share of the square of a frequency, to that of the slowest motions, from which on it has no modal coordinate."""
+"""Ratio of the slowest motions' squared frequency to a mode's, up to which the mode has no modal coordinate."""
 
 UNHELD = 1e-7
 """Share of what an input moves a constraint by that may be left open, as rounding."""
@@ -77,8 +77,8 @@ class LinearModel(Shown, StateSpace):
     """ẋ = A x + B u in modal coordinates, their rates, then what relaxes.
 
     Attributes:
-        modes: number of modal coordinates, those of lowest frequency first.
-        descriptor: the same in the unknowns of the scene.
+        modes: number of modal coordinates, the lowest frequencies first.
+        descriptor: the model in the unknowns of the scene.
     """
 
     modes: int
@@ -91,16 +91,16 @@ class LinearModel(Shown, StateSpace):
         return np.asarray(values[np.argsort(np.abs(values), kind="stable")])
 
     def reduced(self, modes: int) -> LinearModel:
-        """The same with the first modes alone; what all others do statically is kept, in C, D and A.
+        """This model with the first modes alone; what all other modes do statically is kept, in C, D and A.
 
-        Eigenvalues stay those of the whole where the loads have a potential and the damping is proportional to the
-        stiffness, or there is none; else they change the less the more modes are kept.
+        Eigenvalues do not change where the loads have a potential and the damping is proportional to the stiffness, or
+        there is none; else they change the less the more modes are kept.
 
         Args:
             modes: number of modes that are kept, rigid motions among them.
 
         Raises:
-            ValueError: the number is not from 1 to that of the modes.
+            ValueError: the number is not from 1 to the number of the modes.
         """
         if not 1 <= modes <= self.modes:
             raise ValueError(f"from 1 to {self.modes} modes can be kept, got {modes}")
@@ -132,7 +132,7 @@ def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) 
         solution: the equilibrium, with the model.
         outputs: positions of sections as ``("rod", 0.5)``; ``rod.tip.position``, ``body.position``, or
             ``actuator.length`` and the like by the name of what the actuator does work on. By default the positions of
-            all tips, of rods whose tip is held those of the middle.
+            all tips, and of the middle of rods whose tip is held.
 
     Raises:
         SolveError: the solution is no equilibrium, or a contact is neither pressed nor open.
@@ -321,7 +321,7 @@ def _linear_model(equations: _Equations, watched: Outputs) -> LinearModel:
 def _first_order(
     stiffness: FloatArray, damping: FloatArray, forces: FloatArray, modal: int
 ) -> tuple[FloatArray, FloatArray]:
-    """A and B of the states η, η̇, ψ, where the first coordinates have unit mass and the others have none."""
+    """A and B of the states η, η̇, ψ, where the first coordinates have unit mass and the rest have none."""
     count = len(stiffness)
     relaxing = count - modal
     # Rows of ψ: C_ψψ ψ̇ = f − C_ψη η̇ − K_ψ a.
@@ -346,7 +346,7 @@ def _first_order(
 
 
 def _descriptor(equations: _Equations, watched: Outputs) -> DescriptorModel:
-    """The model in the unknowns: coordinates, their rates, then multipliers and tensions, those of contacts last."""
+    """The model in the unknowns: coordinates, their rates, then multipliers and tensions, forces of contacts last."""
     motions = equations.motions
     contacts = equations.contacts
     moving = motions.moving

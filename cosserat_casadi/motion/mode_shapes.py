@@ -107,7 +107,7 @@ def normalised(
 
 
 def end_of_cluster(values: NumberArray, count: int | None) -> int:
-    """Number of eigenvalues, at least the count, such that equal eigenvalues stay together; all of them for None."""
+    """Number of eigenvalues, at least the count, such that equal eigenvalues stay together; all for None."""
     if count is None or count >= len(values):
         return len(values)
     for cluster in _clusters(values):

@@ -1,6 +1,6 @@
 """The momentum of free rods and bodies, put right after each step: exact to rounding, not to the order of the steps.
 
-The positions of bases and the strains are coordinates, and momentum is no quadratic function of them, so that no method
+The positions of bases and the strains are coordinates, and momentum is no quadratic function of both, so that no method
 of collocation keeps it. The error of a step is the momentum of a small rigid motion of all rods and bodies together:
 added to the velocities, that motion leaves the strains, the joints and their rates as they are. The momentum after the
 step is the momentum before it plus the impulse of the loads by the quadrature of the step, which has the order of the
@@ -30,7 +30,7 @@ MOMENTA = 6
 """Entries of momentum and angular momentum."""
 
 OF_A_BODY = [0, 3, 4, 5]
-"""Rigid motions whose momenta are those of all six: mass times speed is the same along any axis."""
+"""Rigid motions whose momenta tell the momenta of all six: mass times speed is equal along any axis."""
 
 CORRECTIONS = 2
 """Corrections of the velocities after one step: momentum is linear in them, so that the second is one of rounding."""
@@ -76,8 +76,8 @@ class MomentumKeeper:
 
     Args:
         model: of what flies free, see :func:`flies_free`.
-        to_model: a state in the unknowns of the model, from one in those of the steps; None where they are the same.
-            In both a frame moves with what flies free, and its pose has the same entries.
+        to_model: a state in the unknowns of the model, from a state in the unknowns of the steps; None where these are
+            the model's. In both a frame moves with what flies free, and its pose has the same entries.
         library: shared object that has the functions of :func:`functions_of_momentum`; None without one.
     """
 
@@ -156,7 +156,7 @@ class MomentumKeeper:
         return motions
 
     def _momenta_of(self, motions: FloatArray, instant: Instant, piece: Piece) -> FloatArray:
-        """Momentum of rigid motions, in which it is linear, shape (6, 6): that of a rigid body, symmetric."""
+        """Momentum of rigid motions, in which it is linear, shape (6, 6), symmetric as of a rigid body."""
         value = piece.remembered(instant.time).value
         still = np.zeros_like(value)
         # Column after column, as CasADi has them.

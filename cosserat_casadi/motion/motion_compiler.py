@@ -59,7 +59,7 @@ INSTRUCTION = 7e-9
 """Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 5e-9 of few to 11e-9 of many."""
 
 AS_MANY_RESIDUALS = 10.0
-"""Time of its derivatives there, over that of inverse dynamics: 6 to 15 in robots of one to six rods."""
+"""Time of derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 in robots of one to six rods."""
 
 SAVED = {PROGRAM: 0.75, RESIDUAL: 0.2, JACOBIANS: 0.9}
 """Share of the virtual machine's time that a program saves, machine code beyond a program, and machine code."""
@@ -77,10 +77,10 @@ MOTIONS_TO_COME = 2.0
 """Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
 
 MOTIONS_AFTER_FIRST = 4.0
-"""Work of a search after its first motion, over that of it: 2.3 to 5.2 in searches for modes."""
+"""Work of a search after its first motion, over the work of that motion: 2.3 to 5.2 in searches for modes."""
 
 TELLING_SHARE = 0.1
-"""Share of a piece of its inputs after which the work so far tells that of a motion."""
+"""Share of a piece of its inputs after which the work so far tells the work of a motion."""
 
 TO_BEGIN = 40
 """Iterations of the first steps, which are short, beyond the usual number: they foretell nothing."""
@@ -162,8 +162,8 @@ class MotionCompiler:
         """The steps in machine code for the rest of a motion and of the search, where they are foreseen to pay.
 
         Args:
-            iterations: that Python has taken in a piece of the inputs.
-            share: of the piece that is done.
+            iterations: iterations that Python has taken in a piece of the inputs.
+            share: share of the piece that is done.
         """
         if share < TELLING_SHARE:
             return None
@@ -218,7 +218,7 @@ class MotionCompiler:
         """Whether machine code saves more time than it takes to compile.
 
         That is foreseen where the next motions would take as long as the last one, or where earlier motions of this
-        model have taken so long, of any process where it is kept for others: more of them are likely.
+        model have taken so long, of any process where it is kept for others: more motions are likely.
         """
         if self.last is None:
             return False

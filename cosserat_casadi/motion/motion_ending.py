@@ -58,7 +58,7 @@ def independence(history: History) -> float:
 
 
 def independence_of(derivatives: FloatArray) -> float:
-    """How independent rows are: 0 where one follows from the others, at most 1, infinite where there are none.
+    """How independent rows are: 0 where one follows from other rows, at most 1, infinite where there are none.
 
     The smallest singular value over the largest, each row of unit length.
 

@@ -89,7 +89,7 @@ TOLD_ERROR = 0.14
 """Usual error of the paths, as a coarser motion tells it, over the power SLOPE of that one's tolerance of a step."""
 
 TOLD_ERROR_OF_DAMPED = 0.06
-"""The same of rods that are all damped."""
+"""Usual error of the paths of rods that are all damped, as a coarser motion tells it, over that power."""
 
 FINE = 2e-4
 """Tolerance below which the search begins on the second rung: the first one would not do."""
@@ -101,19 +101,19 @@ TOLD_AFTER = 3
 """Levels after which further ones are computed with steps whose error was told: it would blur their distances."""
 
 HOPED = 4.0
-"""Least power with which a search gives up: that of short waves is below 1 until modes see them, and then 3 to 5."""
+"""Least power that a search hopes for before it gives up: of short waves it is below 1 until modes see them."""
 
 SLOWEST = 0.25
-"""Smallest such power: below it nothing converges."""
+"""Smallest power of the modes that is believed: below it nothing converges."""
 
 FASTEST = 8.0
-"""Largest such power that is believed."""
+"""Largest power of the modes that is believed."""
 
 FASTEST_OF_WAVES = 4.0
-"""The same of waves of sudden loads that no damping takes: theirs falls from 5 to 2 as modes become more."""
+"""Largest power that is believed of waves of sudden loads that no damping takes: it falls from 5 to 2 on more modes."""
 
 ORDERS = 200
-"""Powers between these that are compared with two distances."""
+"""Number of powers between the smallest and the largest that are compared with two distances."""
 
 FEW_MODES = 4
 """Modes of the first level of rods that are cut into short elements, each of which sees less of a rod."""
@@ -122,7 +122,7 @@ MOST_RUNGS = 3
 """Most rungs of the ladder of modes that are climbed at once."""
 
 ORDER_OF_FRONTS = 1.0
-"""The same where a front arrives, on any elements."""
+"""Power with which errors fall where a front arrives, on any elements."""
 
 BLOWS = ("impact", "stop_hit")
 """Kinds of events that are blows, whatever energy they take."""
@@ -181,13 +181,13 @@ class ResolvedMotion:
     """A motion on one set of modes.
 
     Attributes:
-        simulator: that computed it.
+        simulator: the simulator that computed it.
         history: the motion.
         paths: paths of tips and bodies, which are compared with the paths of the next motion.
         rung: place of the modes on the ladder.
         modes: most polynomials of a strain in an element.
-        distance: of the paths from those of the level before; infinite for the first, zero where strains have
-            modes enough.
+        distance: distance of the paths from the paths of the level before; infinite for the first, zero where strains
+            have modes enough.
         unseen: displacement over the length by coefficients that strains lack, as their last ones tell: of strains that
             have no more modes than on the level before the distance tells nothing.
         waves: whether sudden loads send waves along rods without damping.
@@ -312,7 +312,7 @@ class _Search:
     def hopeless(self) -> str | None:
         """Why waves without damping keep motions on more modes far apart; None where they do not.
 
-        Those of impacts and of sudden loads have all lengths, so that errors fall slowly on any number of modes.
+        Waves of impacts and of sudden loads have all lengths, so that errors fall slowly on any number of modes.
         """
         if self.is_damped or len(self.levels) < 2:
             return None
@@ -329,7 +329,7 @@ class _Search:
         )
 
     def finer_modes(self, order: float) -> float:
-        """Modes that the tolerance asks for, over those of the last level, if errors fall with this power of them."""
+        """Modes that the tolerance asks for, over modes of the last level, if errors fall with this power of modes."""
         allowed = SPACE_SHARE * self.tolerance
         by_distance = self.foreseen(self.last.modes, order) / allowed
         at_fronts = self.last.fronts / allowed
@@ -375,8 +375,8 @@ def simulate(
     """Motion of a scene, or of a model on its modes and nodes.
 
     A scene is simulated to its tolerance, on modes, nodes and steps that are chosen for it. Where the scene fixes modes
-    or nodes they are used as they are, and their error is estimated; where it fixes the step, likewise. Of a model only
-    the error of the time steps is controlled, and told.
+    or nodes they are used as they are, and their error is estimated; so is a step that it fixes. Of a model only the
+    error of the time steps is controlled, and told.
 
     Args:
         subject: a validated scene with a table ``[simulation]``; or a model of a scene with motions, built with
@@ -586,7 +586,7 @@ def _allowed(search: _Search, history: History) -> float:
 
 
 def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
-    """Whether exact steps tell that fronts lack more than those of the level did, and more modes may be tried."""
+    """Whether exact steps tell that fronts lack more than the level's steps told, and more modes may be tried."""
     if not search.last.waves or not timed.history.completed or search.climb() is None:
         return False
     are_exact = timed.error <= _allowed(search, timed.history)
@@ -690,7 +690,7 @@ def _first_step_tolerance(search: _Search) -> float:
 
 
 def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
-    """Tolerance of a step that a motion was computed with; where its steps were given, that of the paths."""
+    """Tolerance of a step that a motion was computed with; where its steps were given, the paths' share."""
     if np.isfinite(timed.tolerance):
         return timed.tolerance
     return TIME_SHARE * search.tolerance
@@ -707,7 +707,7 @@ def _timed(search: _Search) -> TimedHistory:
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
     """The motion on modes that are enough, as :func:`_timed`; None where more exact steps tell that they are not.
 
-    The level is then that of the more exact steps: long ones damp growth, and waves.
+    The level is then computed with the more exact steps: long ones damp growth, and waves.
 
     Args:
         search: whose last level has modes enough.
@@ -735,7 +735,7 @@ def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
 
 
 def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
-    """So many modes of every strain."""
+    """Discretisation with the same number of modes for every strain."""
     return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
 
 

@@ -80,7 +80,7 @@ def resumed_start(model: Model, resume: Resume) -> Start:
 
 
 def unloaded_start(model: Model) -> Start:
-    """At rest in the unloaded shape."""
+    """Start at rest in the unloaded shape."""
     asked = model.scene.simulation is not None and model.scene.simulation.start is not None
     return Start(_own_unloaded(model), UNLOADED if asked else SWINGS)
 
@@ -88,7 +88,7 @@ def unloaded_start(model: Model) -> Start:
 def equilibrium_start(
     model: Model, inputs: FloatArray, near: Solution | None = None, residual: Residual | None = None
 ) -> Start:
-    """At rest in the equilibrium of the inputs, free bases held where the scene puts them.
+    """Start at rest in the equilibrium of the inputs, free bases held where the scene puts them.
 
     Args:
         model: of the scene in motion.
@@ -132,7 +132,7 @@ def _rests(model: Model, unloaded: FloatArray, inputs: FloatArray, residual: Res
 
 
 def given_start(model: Model, solution: Solution) -> Start:
-    """At rest in an equilibrium of the same scene, at the inputs that it was solved for.
+    """Start at rest in an equilibrium of the same scene, at the inputs that it was solved for.
 
     Args:
         model: of the scene in motion.
@@ -170,7 +170,7 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
 
 
 def _touching(model: Model, solution: Solution, sentence: str) -> Start:
-    """The start in an equilibrium in contact: that of the motion's own modes, next to it."""
+    """Start in an equilibrium in contact on the motion's own modes, next to a solution."""
     names = set(model.inputs.names)
     # The forces of contacts are inputs of the solution's model.
     given = solution.model.inputs.unpack(solution.inputs)

@@ -25,11 +25,10 @@ SAME_TIME = 1e-12
 """Distance of two times, relative to the duration, at which they are one: pieces are longer."""
 
 MOST_CUTS = 50
-"""Kinks of a table up to which steps end at each of them; a table with more is a record, and steps have their own pace.
-"""
+"""Kinks of a table up to which steps end at each kink; a table with more is a record, and steps have their own pace."""
 
 REMEMBERED_TIMES = 16
-"""Times at which the inputs are remembered: those of a step and some more."""
+"""Times at which the inputs are remembered: times of a step and some more."""
 
 
 class InputState(NamedTuple):

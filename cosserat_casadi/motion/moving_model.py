@@ -15,7 +15,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 
 MOST_KEPT = 24
-"""Models whose functions are kept: those of a few searches for modes, in motion and at rest."""
+"""Models whose functions are kept: models of a few searches for modes, in motion and at rest."""
 
 
 def moving_model(scene: Scene, discretisation: Mapping[str, Discretisation]) -> Model:

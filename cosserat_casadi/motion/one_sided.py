@@ -4,7 +4,7 @@ A slack cable and a stop off its joint are open and have no push. A taut cable a
 leave no gap: between these the equations are smooth, and the corner that statics rounds is never passed. A pair whose
 push comes to zero opens. A gap that comes to zero closes: an impact takes the velocity that would go on, and the
 energy that goes with it. A cable does not rebound; a stop gives back its coefficient of restitution, until a bounce is
-as low as those of exact contact that are not followed. An elastic pair takes nothing: its push grows from zero.
+as low as bounces of exact contact that are not followed. An elastic pair takes nothing: its push grows from zero.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 Closed = tuple[bool, ...]
-"""Of each cable that may go slack, and then of each stop, whether it is taut, or holds its joint."""
+"""Whether each cable that may go slack is taut, and then whether each stop holds its joint."""
 
 TOUCHING = 1e-9
 """Gap, relative to the rod's length or in rad, from which on a pair counts as closed where a motion starts."""
@@ -51,7 +51,7 @@ class Pair:
         unit: unit of its push, N or N m.
         restitution: share of its speed that an impact leaves.
         coordinate: entry of the joint's coordinate; of a cable none, −1.
-        sign: of the rate of the gap in that of the coordinate.
+        sign: sign of the gap's rate for a positive rate of the coordinate.
     """
 
     name: str
@@ -101,7 +101,7 @@ class OneSided:
 
     @cached_property
     def pairs(self) -> list[Pair]:
-        """These cables, then the stops."""
+        """Pairs of the cables that may go slack, then of the stops."""
         return [
             *(self._of_cable(cable) for cable in self.cables),
             *(self._of_stop(stop) for stop in self.model.discrete.stops),
@@ -136,9 +136,9 @@ class OneSided:
         """Equations of motion in which each pair is either closed or open.
 
         Args:
-            plain: those of the model.
-            piece: of its inputs.
-            phases: which are closed.
+            plain: equations of the model.
+            piece: piece of its inputs.
+            phases: which pairs are closed.
         """
         if not self.pairs:
             return plain
@@ -167,7 +167,7 @@ class OneSided:
         return self.equations(plain, piece, phases), self.guards(piece, phases)
 
     def settling(self, plain: MotionEquations, piece: Piece, phases: Closed) -> None:
-        """No correction of the ends of steps: pairs stay closed as far as the steps are exact."""
+        """Return no correction of the ends of steps: pairs stay closed as far as the steps are exact."""
         return
 
     def guards(self, piece: Piece, phases: Closed) -> Guards | None:
@@ -365,7 +365,7 @@ def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray
         model: the model.
         x: unknowns, shape (size,).
         inputs: stacked, shape (model.inputs.size,).
-        p: stacked parameters; those of a model that has some.
+        p: stacked parameters of a model that has some; else None.
     """
     cables = [cable.tendon for cable in model.discrete.cables if getattr(cable.tendon, "axial_stiffness", None) is None]
     if not cables:
@@ -378,5 +378,5 @@ def sags_by_cable(model: Model, x: FloatArray, inputs: FloatArray, p: FloatArray
 
 
 def _changed(phases: Closed, numbers: Sequence[int]) -> Closed:
-    """Which pairs are closed after some of them have changed."""
+    """Which pairs are closed after some pairs have changed."""
     return tuple(closed != (k in numbers) for k, closed in enumerate(phases))

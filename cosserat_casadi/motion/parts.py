@@ -1,7 +1,7 @@
 """A long motion in parts, each of which is written to a file and then forgotten.
 
-Memory holds one part: its steps, and those of the motions that tell its error. A part goes on where the last one ended,
-on the modes that were chosen in the first one; the error is that of the whole so far.
+Memory holds one part: its steps, and steps of the motions that tell its error. A part goes on where the last one ended,
+on the modes that were chosen in the first one; the error covers the whole so far.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def check_parts(output: Path | None, length: float) -> None:
 
 
 def _whole(progress: Tell, duration: float) -> Tell:
-    """Tells the progress of a part as that of the whole motion."""
+    """A function that tells the progress of a part as progress of the whole motion."""
 
     def tell(part: MotionProgress) -> None:
         progress(replace(part, duration=duration))

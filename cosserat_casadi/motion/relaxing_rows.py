@@ -2,8 +2,8 @@
 
 A branch moves by τ ẅ + ẇ − ξ̇ = 0 (rod/relaxation.py), which leaves open how far w is from ξ. Of motions about rest,
 where its spring is free, the integral is τ ẇ + w − ξ = 0: no rigid motions come in by it. In units of its spring's
-stiffness, and taken out of the balance of the strains, it makes stiffness and damping symmetric, as those of a spring
-and a dashpot are.
+stiffness, and taken out of the balance of the strains, it makes stiffness and damping symmetric, as for a spring and a
+dashpot.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ def integrated(
     """Derivatives of the residual by some arguments, by their first and by their second rates, of integrated rows.
 
     Args:
-        branches: whose rows are integrated.
-        matrices: the three derivatives, a row for each unknown; those of branches by the arguments themselves are zero.
+        branches: branches whose rows are integrated.
+        matrices: the three derivatives, a row for each unknown; the first is zero in rows of branches.
     """
     by_value, by_rate, by_acceleration = (matrix.copy() for matrix in matrices)
     for branch in branches:

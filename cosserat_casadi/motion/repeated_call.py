@@ -32,10 +32,10 @@ class MachineCode:
         address: of the function.
         arguments: addresses of its arguments.
         results: addresses of its results.
-        integers: memory of the function.
-        scratch: likewise.
-        library: that has the function.
-        path: of its file.
+        integers: memory of the function for whole numbers.
+        scratch: memory of the function for real numbers.
+        library: the library that has the function.
+        path: path of the library's file.
     """
 
     address: int
@@ -58,7 +58,7 @@ class RepeatedCall:
     Attributes:
         arguments: arrays that the arguments are read from.
         results: matrices that the results are written to.
-        evaluate: reads the one and writes the other.
+        evaluate: reads the arguments and writes the results.
         code: the function in machine code; None where CasADi's virtual machine runs it.
         program: of the function, for a loop in C; None where none was written.
         program_after: gives the program, or None, when a motion has taken so many iterations without one; None where
@@ -133,7 +133,7 @@ class Libraries(NamedTuple):
 
 
 INTERPRETED = Libraries()
-"""No shared objects."""
+"""Functions in CasADi's virtual machine, without shared objects."""
 
 
 @lru_cache(maxsize=MOST_LOADED)
@@ -156,7 +156,7 @@ def renamed(function: ca.Function, name: str) -> ca.Function:
 
 
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
-    """A function: that of its name in a shared object, or, without one, in CasADi's virtual machine.
+    """A call of a function: by its name in a shared object, or, without one, in CasADi's virtual machine.
 
     Args:
         function: the function.

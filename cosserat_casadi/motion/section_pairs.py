@@ -14,7 +14,7 @@ being none. With another coefficient e the gap is that at
     (x₊ + e x₋)/(1 + e),    x₊ at the end of the stage and x₋ at the beginning of the last one,
 
 which gives the share e of the speed back (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
-more instants have no such pairs: a force at the first of them throws back a section without restitution.
+more instants have no such pairs: a force at the first instant throws back a section without restitution.
 """
 
 from __future__ import annotations
@@ -66,8 +66,8 @@ class TouchingSections:
 class TouchingPairs:
     """The equations of motion of a model at the end of a stage, with pairs of force and gap.
 
-    Their unknowns x are those of the model and behind them Λ of all pairs; parameters are those of the model and behind
-    them the smoothing ε.
+    Their unknowns x are unknowns of the model and behind these Λ of all pairs; parameters are the model's and behind
+    these the smoothing ε.
 
     Attributes:
         model: the model, with or without parameters.
@@ -107,7 +107,7 @@ class TouchingPairs:
 
     @cached_property
     def gaps(self) -> ca.Function:
-        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the lengths; x is that of the model."""
+        """(x, inputs), with parameters (x, inputs, p), ↦ gaps of all pairs over the lengths; x is the model's."""
         return self._gaps(self.touching, "gaps")
 
     @cached_property
@@ -118,7 +118,7 @@ class TouchingPairs:
 
     @cached_property
     def softness(self) -> FloatArray:
-        """By what EI/ℓ² moves each section, or body, within a stage, over the length, shape (count,)."""
+        """Distance that EI/ℓ² moves each section, or body, within a stage, over the length, shape (count,)."""
         discrete = self._nominal.discrete
         units = [
             np.full(len(touching.places), discrete.contact_unit(touching.owner, of_body=touching.of_body))
@@ -128,14 +128,14 @@ class TouchingPairs:
 
     @cached_property
     def inverse_dynamics(self) -> ca.Function:
-        """As that of the model, with the pairs behind its equations: (x, v, a, inputs, p, rates) ↦ residual."""
+        """(x, v, a, inputs, p, rates) ↦ residual of the model's inverse dynamics, the pairs behind its equations."""
         arguments = self._symbols
         plain = ca.vertcat(self.model.inverse_dynamics(*self._of_model(arguments)), ca.MX(self.count, 1))
         return self._function("inverse_dynamics", arguments, [plain + self._rows(arguments)], ["residual"])
 
     @cached_property
     def dynamics_jacobian(self) -> ca.Function:
-        """As that of the model: derivatives of :attr:`inverse_dynamics` with x, v and a, and the residual."""
+        """Arguments of :attr:`inverse_dynamics` ↦ its derivatives with x, v and a, and the residual."""
         arguments = self._symbols
         *matrices, residual = self.model.dynamics_jacobian(*self._of_model(arguments))
         rows = self._rows(arguments)
@@ -249,7 +249,7 @@ class TouchingPairs:
 
     @cached_property
     def _lengths(self) -> FloatArray:
-        """The same of each pair, shape (count,)."""
+        """Length that the gap of each pair is counted in, m, shape (count,)."""
         lengths = [np.full(len(touching.places), self._length(touching)) for touching in self.touching]
         return np.concatenate([np.zeros(0), *lengths])
 

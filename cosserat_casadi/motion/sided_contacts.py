@@ -1,4 +1,4 @@
-"""Exact contact beside cables that may go slack and stops of joints: one kind of event at a time, all of them kept.
+"""Exact contact beside cables that may go slack and stops of joints: one kind of event at a time, all kinds kept.
 
 A cable that becomes taut, or a joint that meets its stop, takes its impact as if nothing touched; what touches then
 takes another one, in which taut cables and held joints stay so: obstacles push, and a section jerked off leaves.
@@ -39,12 +39,12 @@ class SidedContacts:
 
     @cached_property
     def contacts(self) -> ExactContacts:
-        """Its contacts with obstacles."""
+        """Contacts of the model with obstacles."""
         return ExactContacts(self.model, self.libraries)
 
     @cached_property
     def sided(self) -> OneSided:
-        """Its cables and stops."""
+        """Cables and stops of the model."""
         return OneSided(self.model)
 
     def first_phases(self, x: FloatArray, inputs: FloatArray) -> ContactPhase:
@@ -79,7 +79,7 @@ class SidedContacts:
         guard: int | None,
         interval: float,
     ) -> Restart[ContactPhase]:
-        """How a motion goes on, or begins; arguments are those of :meth:`ExactContacts.restarted`."""
+        """How a motion goes on, or begins; arguments are as of :meth:`ExactContacts.restarted`."""
         size = self.model.size
         before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
         count = len(self.sided.pairs)

@@ -1,6 +1,6 @@
 """Simulate: the motion of a model in time, with steps chosen for a tolerance, or given.
 
-The error of the steps is not foreseen from one of them: the motion is computed twice, once more exactly, and the
+The error of the steps is not foreseen from one step: the motion is computed twice, once more exactly, and the
 distance of the paths of the tips estimates the error. See docs/theory.md, section 11.
 """
 
@@ -63,25 +63,25 @@ TIGHTER = 10.0
 """Factor between the tolerances of a step of the first two motions that are compared."""
 
 LEAST_TIGHTENING = 3.0
-"""Least factor between those of further ones."""
+"""Least factor between the tolerances of a step of further motions."""
 
 SLOPE = 0.8
 """Power of a step's tolerance that the error of the paths is taken to go with."""
 
 LEAST_SLOPE = 0.3
-"""Power that it is at least taken to go with, where two motions tell an error.
+"""Least power that the error of the paths is taken to go with, where two motions tell an error.
 
 It is 0.8 in the mean, but less between some motions: steps of one may happen to suit the motion.
 """
 
 LEAST_SLOPE_AFTER_IMPACTS = 0.08
-"""The same of motions with impacts: what errs little before one may err much after some more.
+"""Least power for motions with impacts: what errs little before one may err much after some more.
 
 Until steps tell the waves along a rod, motions may be nearer to each other than to the true one.
 """
 
 LEAST_SLOPE_OF_ALIKE = 0.2
-"""The same of two motions whose impacts are alike: neither is off by an impact that the other one has elsewhere."""
+"""Least power for two motions whose impacts are alike: neither is off by an impact that the other has elsewhere."""
 
 LYING = ("lie_down", LAID_DOWN)
 """Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
@@ -90,19 +90,19 @@ FEW_STEPS = 10.0
 """Number of steps at which a told error counts twice: a few steps may happen to suit the motion."""
 
 ALIKE = 1.25
-"""Steps of a motion over those of a coarser one, from which on they are shorter by its tolerance, not by its events.
+"""Steps of a motion over steps of a coarser one, from which on they are shorter by its tolerance, not by its events.
 
-Steps grow by a bounded factor after each event: over the first few any tolerance has the same.
+Steps grow by a bounded factor after each event: over the first few no tolerance differs.
 """
 
 MOST_ALIKE = 2
-"""Further motions, each TIGHTER times as exact, that are looked at for such steps."""
+"""Further motions, each TIGHTER times as exact, that are looked at for steps that their tolerance shortens."""
 
 HALVED = 4.0 / 3.0
 """Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
 
 LEFT_BY_HALF = 1.0 / 3.0
-"""Error of the motion with the shorter steps over that distance."""
+"""Error of the motion with the shorter steps over its distance to one of twice the step."""
 
 MOST_TIGHTENINGS = 6
 """Motions, each more exactly computed than the last, before a tolerance is given up."""
@@ -111,13 +111,13 @@ NOT_NEARER = 0.5
 """Share of the distance of two motions from which on the next two, ten times as exact, count as no nearer."""
 
 FAR_APART = 10.0
-"""Distance of theirs, over the error allowed, from which on that tells of a motion that rounding decides."""
+"""Distance of the next two, over the error allowed, from which on that tells of a motion that rounding decides."""
 
 FIRST_GAUSS_STEPS = 50
 """Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
 
 MOST_HALVINGS = 10
-"""Times that they are halved before a tolerance is given up."""
+"""Times that steps of Gauss's method are halved before a tolerance is given up."""
 
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
@@ -126,9 +126,10 @@ NEWTON = 1e-3
 """Error of Newton's method over the tolerance of a step."""
 
 NEWTON_OF_CLOSED = 1e-4
-"""The same where supports and joints are to stay closed: their openings are errors of velocities over a step too.
+"""Error of Newton's method over the tolerance of a step where supports and joints are to stay closed.
 
-They fall with the tolerance of a step, as its other errors do, so that two motions that tell an error tell them too.
+Their openings are errors of velocities over a step too. They fall with the tolerance of a step, as its other errors
+do, so that two motions that tell an error tell them too.
 """
 
 CLOSED = 1e-10
@@ -152,8 +153,8 @@ class Companion:
 
     Attributes:
         history: the motion.
-        factor: error of the other one over the distance of their paths.
-        impacts: energy that its impacts took more than those of the other one before both went on, J.
+        factor: error of the other motion over the distance of their paths.
+        impacts: energy that its impacts took more than impacts of the other motion before both went on, J.
     """
 
     history: History
@@ -170,7 +171,7 @@ class TimedHistory:
         error: estimated error of the paths that the steps leave, over the length; nan where none was made.
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
         companion: the motion by which the error was told; None where none was made.
-        distance: of the paths from those of that motion, over the length; nan without one.
+        distance: distance of the paths from that motion's paths, over the length; nan without one.
     """
 
     history: History
@@ -190,7 +191,7 @@ class Simulator:
         start: how the motion begins.
         stage: what the user is told that is being done.
         tell: is told of every step.
-        source: chooses the kernels of every motion; None for those of CasADi's virtual machine.
+        source: chooses the kernels of every motion; None for kernels in CasADi's virtual machine.
         begun: where the motion goes on from; None for one that begins.
         events: of the user.
     """
@@ -221,7 +222,7 @@ class Simulator:
 
     @cached_property
     def _begun(self) -> dict[Libraries, Restart[Any]]:
-        """How motions begin, by the same shared objects: what follows contact would be moved by the first of them."""
+        """How motions begin, by the same shared objects: what follows contact would be moved by the first motion."""
         return {}
 
     @cached_property
@@ -436,7 +437,7 @@ def hangs_on_rounding(history: History, distance: float, before: float, toleranc
     Args:
         history: the motion.
         distance: between the paths of two motions, over the length, of which one has steps TIGHTER times as exact.
-        before: the same of two that are TIGHTER times as coarse; infinite where it is not known.
+        before: between the paths of two motions TIGHTER times as coarse; infinite where it is not known.
         tolerance: error of the paths allowed, over the length.
     """
     return is_struck(history) and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
@@ -505,7 +506,7 @@ def simulate(
         simulation: duration, frames, tolerance; by default the scene's.
         progress: told of every step.
         source: as in :class:`Simulator`.
-        events: likewise.
+        events: events of the user, as in :class:`Simulator`.
 
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
@@ -572,7 +573,7 @@ def started(
 
 
 def _along(model: Model, start: Start, rates: FloatArray) -> Start:
-    """A start that tells whether rods move along with their bases and lengths; rates are those of the inputs."""
+    """A start that tells whether rods move along with their bases and lengths, by rates of the inputs."""
     of_rods = ("length", "base.position", "base.quaternion")
     moved = [span for entry, span in model.inputs if entry.of_rod and entry.field in of_rods and np.any(rates[span])]
     return replace(start, sentence=start.sentence + ALONG) if moved and start.found else start
@@ -620,7 +621,7 @@ def judged(
     """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
 
     Args:
-        simulator: that computed it.
+        simulator: the simulator that computed it.
         history: the motion.
         error: estimated error of the paths over the length; no finite number where none could be made.
         bound: error up to which it is the motion that was asked for.

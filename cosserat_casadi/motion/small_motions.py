@@ -26,7 +26,7 @@ A straight rod that cannot stretch is not held along its axis to first order: th
 """
 
 TAUT = 1e9
-"""Stiffness of a cable, relative to that of the rods, above which it counts as one that does not yield."""
+"""Stiffness of a cable, over the stiffness of the rods, above which it counts as one that does not yield."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class SmallMotions:
             columns: derivatives of all rows of the residual with k arguments, shape (size, k).
 
         Returns:
-            shape (n, k), no unit but for that of the columns.
+            the rows, shape (n, k), no unit but for the unit of the columns.
         """
         rows = columns[self.moving]
         if not self.yielding.size:

@@ -40,7 +40,7 @@ SETTLED = 1e-11
 ROUNDED = 1e-8
 """Change of the unknowns that counts as none where the turn before did not change them more: it is rounding.
 
-Sections close beside each other, as those at the tip of a rod on many modes, make as much of that of their gaps.
+Sections close beside each other, as at the tip of a rod on many modes, make as much of the rounding of their gaps.
 """
 
 LEAST_STIFFNESS = 1e-3
@@ -138,7 +138,7 @@ def _balanced(
 
 
 def _candidates(contacts: ExactContacts, x: FloatArray, inputs: FloatArray, laid: frozenset[int]) -> Touches:
-    """Sections that may press: those of rods that lie, and the nearest ones of the others."""
+    """Sections that may press: near sections of rods that lie; elsewhere the sections where gaps are least."""
     lying: list[MovingContact] = []
     nearest: list[MovingContact] = []
     for number, facing in enumerate(contacts.facings):

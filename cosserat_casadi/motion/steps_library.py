@@ -16,7 +16,7 @@ from cosserat_casadi.numerics import stage_newton, step_control, step_matrices, 
 from cosserat_casadi.numerics.collocation import STAGES, radau
 
 NAME = "controlled_steps"
-"""Of the library in the cache."""
+"""Name of the library in the cache."""
 
 CALL = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double)
 

@@ -40,7 +40,7 @@ def time_between_events(model: Model, duration: float) -> float:
 
 
 def _by_its_own_numbers(model: Model, rod: Rod) -> DiscreteRod:
-    """A rod whose equations are scaled by the numbers that parameters give it, not by those of the file."""
+    """A rod whose equations are scaled by the numbers that parameters give it, not by numbers of the file."""
     discrete_rod = model.at().discrete.rods[rod.name]
     own = replace(rod_properties(rod), fixed_masses=discrete_rod.properties.fixed_masses)
     return replace(discrete_rod, properties=own)

@@ -1,4 +1,4 @@
-"""The paths that a tolerance of a motion binds: those of tips, of bases that move and of bodies, and how they turn.
+"""The paths that a tolerance of a motion binds: paths of tips, of bases that move and of bodies, and how they turn.
 
 A tip that a support or a joint holds is where it is held: such a rod is watched between its ends too, at the sections
 of :func:`watched_sections`, as at rest.
@@ -216,7 +216,7 @@ def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
 
     Args:
         first: x and y axes of sections, shape (T, sections, 3, 2).
-        second: those of the others.
+        second: x and y axes of the other sections, shape (T, sections, 3, 2).
     """
     # cos and sin of the turn, twice: what the tangents are apart enters by its square alone.
     aligned = np.einsum("trja,trja->tr", first, second)

@@ -148,12 +148,12 @@ class StepStatistics:
     """Numbers and sizes of the time steps of a motion.
 
     Attributes:
-        steps: that were accepted.
-        rejected: that were tried again with a smaller size.
+        steps: number of accepted steps.
+        rejected: number of steps that were tried again with a smaller size.
         iterations: Newton iterations of all steps together.
         jacobians: evaluations of the Jacobian.
         smallest_step: size of the smallest accepted step, s; nan where there is none.
-        largest_step: likewise of the largest.
+        largest_step: size of the largest accepted step, s; nan where there is none.
     """
 
     steps: int
@@ -174,8 +174,8 @@ class Motion(Result):
         message: a sentence for the user.
         times: of the rows below, shape (T,), s.
         x: unknowns, shape (T, model.size).
-        v: their rates, likewise, 1/s; without meaning for multipliers and tensions.
-        a: their second derivatives, likewise, 1/s².
+        v: rates of the unknowns, shape (T, model.size), 1/s; without meaning for multipliers and tensions.
+        a: second derivatives of the unknowns, shape (T, model.size), 1/s².
         inputs: stacked inputs, shape (T, model.inputs.size).
         error_estimate: estimated error of the paths of tips, bases that move and bodies, and of sections between held
             ends, relative to the rods' lengths, of space and time together; nan where none was made.
@@ -215,7 +215,7 @@ class Motion(Result):
 
     @property
     def end(self) -> Checkpoint | None:
-        """How far it has come, for a motion that goes on; None where it was not started."""
+        """How far the motion has come, for another to go on from; None where it was not started."""
         return self._account[1]
 
     @cached_property

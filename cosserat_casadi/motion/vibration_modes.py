@@ -1,7 +1,7 @@
 """Vibration modes of a scene about its equilibrium, with how well the model resolves each.
 
-The strains that a mode asks for have nothing to do with those of the equilibrium: modes per strain are raised, level
-by level, until all frequencies that are asked for agree with those of the level before.
+The strains that a mode asks for have nothing to do with strains of the equilibrium: modes per strain are raised, level
+by level, until all frequencies that are asked for agree with the level before.
 """
 
 from __future__ import annotations
@@ -146,8 +146,8 @@ class Modes(Result):
         outcome: how the search ended.
         stability: sentences on what becomes of small motions; where there is no equilibrium, why.
         modes: ordered by |λ|, multiplicities repeated, conjugate pairs once; the creep of branches is not among them.
-        spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones are not those of
-            the rods, 1/s.
+        spectrum: all eigenvalues of the model, with that creep, in the same order; the larger ones do not belong to the
+            rods, 1/s.
         slowest: least size of an eigenvalue that is told from zero, 1/s.
     """
 
@@ -212,9 +212,9 @@ def small_motions(
         model: the scene.
         x: the unknowns, shape (model.size,).
         inputs: stacked inputs.
-        inputs_rate: their rate, as of a base that spins steadily; zero where it is left out.
-        inputs_acceleration: their acceleration, likewise.
-        p: stacked parameters; those of a model that has some.
+        inputs_rate: rate of the inputs, as of a base that spins steadily; zero where it is left out.
+        inputs_acceleration: acceleration of the inputs; zero where it is left out.
+        p: stacked parameters of a model that has some; else None.
         contacts: contacts that press, whose forces are among the inputs.
     """
     x = model.with_flows(x)
@@ -403,7 +403,7 @@ def _finer_equilibrium(coarser: Solution, more: int, report: Report | None) -> S
 
 
 def _on_level(coarser: Solution, polynomials: int, report: Report | None) -> Solution:
-    """The same equilibrium with so many polynomials for each strain and element."""
+    """The equilibrium of a coarser solution, with this number of polynomials for each strain and element."""
     scene = without_contacts(coarser.model.scene)
     nodes = nodes_for_turn(polynomials, largest_turn(coarser)) + SPARE_NODES
     transport = "magnus8" if scene.accuracy.tolerance < TIGHT else "magnus6"
@@ -435,7 +435,7 @@ def _most_modes(solution: Solution) -> int:
 
 
 def _judged(modes: Modes, witness: Modes, safety: float = 1.0) -> Modes:
-    """Modes with the errors that those of another discretisation give them, times a factor of safety."""
+    """Modes with the errors that modes of another discretisation give them, times a factor of safety."""
     if not witness.converged:
         return witness
     if not modes.converged:

@@ -33,7 +33,7 @@ DECREASE = 1e-13
 """Predicted decrease of half the sum of squares at which to stop: a step in standard deviations is about its root."""
 
 RELATIVE_DECREASE = 1e-14
-"""The same relative to half the sum of squares."""
+"""Predicted decrease over half the sum of squares at which to stop."""
 
 FIRST_DAMPING = 1e-3
 """Damping of the first step relative to the squares of the columns."""

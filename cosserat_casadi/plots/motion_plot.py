@@ -48,7 +48,7 @@ LEGEND_ROWS = 8
 """Entries of a legend beside a panel, in one column."""
 
 MOST_NAMED = 2 * LEGEND_ROWS
-"""Curves of a panel that are all named; of more, as of coefficients of a wave, a column names those that vary most."""
+"""Curves of a panel that are all named; of more, as of coefficients of a wave, one column names the most varying."""
 
 REST = "0.6"
 """Grey of curves that are not named."""

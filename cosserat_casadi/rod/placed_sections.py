@@ -39,7 +39,7 @@ class PlacedSections:
 
     @cached_property
     def interpolation(self) -> ca.DM:
-        """The same, k×M, without zeros: a section reads the nodes of its element."""
+        """Matrix :attr:`to_sections`, k×M, without zeros: a section reads the nodes of its element."""
         return sparse(self.to_sections)
 
     @cached_property
