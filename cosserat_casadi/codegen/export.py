@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.kernels import differentiable, kernels
 from cosserat_casadi.codegen.lanes import in_lanes
 from cosserat_casadi.codegen.library import FolderContents, library_sources
 from cosserat_casadi.codegen.manifest import manifest, with_manifest
-from cosserat_casadi.codegen.motion_parts import motion_in_c
+from cosserat_casadi.codegen.motion_parts import check_motion, motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import library_names, model_names, scene_names
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
@@ -179,9 +179,11 @@ def folder_files(
     Raises:
         ExportError: the scene has no motion, and that is asked for.
     """
-    if not dynamics:
+    if dynamics:
+        check_motion(model)
+        model = model.in_motion
+    else:
         refuse_obstacles(model.scene, "exported C")
-    model = model.in_motion if dynamics else model
     names = model_names(name, model, dynamics=dynamics, estimate_errors=estimate_errors)
     parts = assembled(model, names)
     motion = motion_in_c(model, names) if dynamics else None

@@ -58,12 +58,7 @@ class MotionInC:
 
 
 def motion_in_c(model: Model, names: Names) -> MotionInC:
-    """The equations of motion of a model in parts.
-
-    Raises:
-        ExportError: they cannot be computed in motion.
-    """
-    check_motion(model)
+    """The equations of motion of a model in parts."""
     state, inputs, factor, arguments = _symbols(model)
     matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
     pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity() + contact_pattern(model)
@@ -105,7 +100,7 @@ def _flows_apart(discrete: DiscreteScene) -> list[int]:
 
 
 def check_motion(model: Model) -> None:
-    """Refuse a scene that has no motion.
+    """Refuse a scene that has no motion in C.
 
     Raises:
         ExportError: with every fault.

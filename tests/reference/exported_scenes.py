@@ -25,7 +25,8 @@ def exported_scene(seed: int, *, moving: bool = False) -> Table:
 
     Args:
         seed: of the numbers.
-        moving: whether its equations of motion are exported, which none has with the literal linear system.
+        moving: whether its equations of motion are exported, which none has with the literal linear system, nor with
+            stops that are rigid.
     """
     rng = np.random.default_rng([seed, 29])
     tables = robot_scene(seed)
@@ -40,6 +41,8 @@ def exported_scene(seed: int, *, moving: bool = False) -> Table:
         tables = _if_legal(tables, {"loads": [*tables["loads"], load]}, chance=0.2, rng=rng)
     tables = _if_legal(tables, {"obstacles": [_ball(rng, rod)]}, chance=0.2, rng=rng)
     tables = _if_legal(tables, _carrying(rng, tables), chance=0.3, rng=rng)
+    if moving:
+        tables = {**tables, "joints": [_with_elastic_stops(joint) for joint in tables.get("joints", [])]}
     for name in BASES:
         inputs = [*scene_from_dict(tables).input_names(), name]
         tables = _if_legal(tables, {"inputs": inputs}, chance=0.2, rng=rng)
@@ -94,6 +97,13 @@ def _carrying(rng: np.random.Generator, tables: Table) -> Table:
     tip = next(load for load in tables["loads"] if load["kind"] == "tip_wrench")
     push = {**tip, "name": "push", "rod": "arm", "force": (0.3 * np.array(tip["force"])).tolist()}
     return {"rods": [rod, arm], "loads": [*tables["loads"], push]}
+
+
+def _with_elastic_stops(joint: Table) -> Table:
+    """The joint with stops that steps of given length resolve, if it has some."""
+    if "lower_stop" not in joint:
+        return joint
+    return {**joint, "stop_stiffness": 10 * joint["stiffness"]}
 
 
 def _names_of_numbers(tables: Table) -> Iterator[str]:
