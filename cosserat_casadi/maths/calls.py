@@ -16,8 +16,8 @@ MOST_MAPPED = 64
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
 
-CasADi differentiates kernels itself where rotations follow from the literal linear system. The C of a joint would be
-megabytes otherwise, which compilers take minutes for.
+CasADi differentiates kernels itself where rotations follow from the literal linear system. The C of a joint,
+or of a material's law, would be megabytes otherwise, which compilers take minutes for.
 """
 
 

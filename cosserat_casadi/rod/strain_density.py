@@ -14,6 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.calls import ONE_DIRECTION
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, reciprocal
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -103,7 +104,10 @@ class StrainDensityOnRod(Conjugate):
     def _at_nodes(self) -> tuple[Matrix, Matrix, Matrix]:
         """Density, 1×k, its gradient, 6×k, and its second derivatives column by column, 36×k, at the nodes."""
         present = [c for c, row in enumerate(self._strain_rows) if row is not None]
-        kernel = self._kernel(present).map(len(self.quantity.nodes))
+        mapped = self._kernel(present).map(len(self.quantity.nodes))
+        symbols = mapped.mx_in()
+        # A map itself takes no options.
+        kernel = ca.Function("densities", symbols, mapped.call(symbols), ONE_DIRECTION)
         density, gradient, second = kernel.call([self.strain, as_matrix(self.quantity.data)])
         return density, gradient, second
 
