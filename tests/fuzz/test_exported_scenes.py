@@ -13,6 +13,7 @@ from cosserat_casadi import Compiled, Model, SceneError, build, export, load, sc
 from cosserat_casadi.codegen.compiled_motion import StepState
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import GENERATED, gcc
+from tests.conftest import c_flags, quickest_compiler
 from tests.families import mostly_slow
 from tests.reference.exported_scenes import exported_scene
 
@@ -52,7 +53,7 @@ def compiled(model: Model, folder: Path, **options: bool) -> Compiled:
     export(model, folder / "lib", "lib", **options)
     for source in sorted((folder / "lib").glob("lib*.c")):
         gcc(*GENERATED, "-Werror", "-fsyntax-only", source)
-    found = load(folder / "lib")
+    found = load(folder / "lib", " ".join([quickest_compiler(), *c_flags()]))
     assert isinstance(found, Compiled)
     return found
 
