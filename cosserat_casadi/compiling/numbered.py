@@ -53,7 +53,9 @@ class Value:
 
     def part(self, rows: Numbers, columns: Numbers) -> Value:
         """The entries of some rows and columns, as a dense matrix."""
-        entries = self.dense.numbers.reshape(self.pattern.shape, order="F")[np.ix_(rows, columns)]
+        if not self.pattern.is_dense():
+            return _of_matrix(ca.densify(self._matrix[rows.tolist(), columns.tolist()]))
+        entries = self.numbers.reshape(self.pattern.shape, order="F")[np.ix_(rows, columns)]
         return Value(ca.Sparsity.dense(*entries.shape), entries.ravel(order="F"))
 
     @property

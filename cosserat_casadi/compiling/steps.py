@@ -275,14 +275,14 @@ class _Reading:
 
     def _product_of(self, added: Value, left: Value, right: Value) -> Value:
         """The sum added + left right, in the quickest way."""
-        turned_left = left.transposed
-        turned_right = right.transposed.dense
-        along_rows = self._time(turned_right, turned_left)
-        along_columns = self._time(left.dense, right)
-        if min(along_rows, along_columns) > self._sparse_time(left, right):
+        turned_left, turned_right = left.transposed, right.transposed
+        looked_up = self._sparse_time(left, right)
+        along_rows = self._time(turned_right, turned_left, looked_up)
+        along_columns = self._time(left, right, looked_up)
+        if min(along_rows, along_columns) > looked_up:
             return self._multiplied(added, left, right)
         if along_rows < along_columns:
-            turned = self._multiplied(added.transposed.dense, turned_right, turned_left)
+            turned = self._multiplied(added.transposed.dense, turned_right.dense, turned_left)
             return turned.transposed.projected(added.pattern)
         return self._multiplied(added.dense, left.dense, right).projected(added.pattern)
 
@@ -353,16 +353,19 @@ class _Reading:
 
     def _least_time(self, left: Value, right: Value) -> float:
         """Time of a product in the quickest way, ns."""
-        along_rows = self._time(right.transposed.dense, left.transposed)
-        return min(along_rows, self._time(left.dense, right), self._sparse_time(left, right))
+        looked_up = self._sparse_time(left, right)
+        along_rows = self._time(right.transposed, left.transposed, looked_up)
+        return min(along_rows, self._time(left, right, looked_up), looked_up)
 
-    def _time(self, left: Value, right: Value) -> float:
-        """Time of a product of which left is dense, ns."""
+    def _time(self, left: Value, right: Value, bound: float) -> float:
+        """Time of a product of which left is made dense, ns; where it is above a bound, a part of it that is so too."""
         rows = left.pattern.shape[0]
         rate = DENSE_RATE if rows >= LONG else SHORT_RATE
         if rows < 2:
             rate = SPARSE_RATE
-        return rows * len(right.numbers) / rate + self._move_time(left, right)
+        computed = rows * len(right.numbers) / rate
+        # All entries of a large diagonal matrix are far more than those that it has.
+        return computed if computed > bound else computed + self._move_time(left.dense, right)
 
     def _sparse_time(self, left: Value, right: Value) -> float:
         """Time of a product that looks up every entry, ns."""
