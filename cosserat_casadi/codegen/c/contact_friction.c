@@ -478,8 +478,8 @@ static real stops_after(const real shares[STAGES], real most) {
 
 /* By how much the size of a stretch that was solved is to change so that it ends where a section comes to rest or turns
    back, which is where the law changes: 1 where nothing does, or where it ends there. First it is made shorter until all
-   slides on, then it is as long as that motion lasts. */
-static real to_the_turn(const step_start *start, real whole, turn_search *search, workspace *work) {
+   slides on, then it is as long as that motion lasts, and no longer than the rest of the step. */
+static real to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
   int turned = 0;
   real shorter = MOST_OF_A_TURN, stops = search->turned_after / start->size;
   for (int k = 0; k < work->touch_count; k++) {
@@ -496,7 +496,8 @@ static real to_the_turn(const step_start *start, real whole, turn_search *search
   if (!turned) {
     if (!(search->turned_after > 0)) return 1;
     search->is_aimed = 1;
-    return stops * (1 + BEYOND_TURN);
+    const real aimed = stops * (1 + BEYOND_TURN);
+    return aimed * start->size < rest ? aimed : rest / start->size;
   }
   if (search->is_aimed || start->size * shorter < LEAST_OF_A_TURN * whole) return 1;
   search->turned_after = start->size;
