@@ -26,6 +26,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.simulate import moving_inputs
 from tests.motion.test_exact_contact_in_motion import beam_on_a_stop
+from tests.moving_scenes import gaps_along
 
 LENGTH = 0.4
 WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -9.81]}
@@ -419,7 +420,7 @@ def test_a_rod_that_is_thrown_on_the_floor_comes_to_lie(friction: float, dt: flo
     assert min(depths) >= -1e-4
     contacts = compiled.step_contacts(memory)
     assert_allclose(sum(contact.force for contact in contacts), 1100 * np.pi * 8e-3**2 * LENGTH * 9.81, rtol=1e-2)
-    assert np.abs(facing.gaps(facing.nodes(state.x, inputs.value))).max() < 1e-5
+    assert np.abs(gaps_along(facing, facing.nodes(state.x, inputs.value))).max() < 1e-5
     along = model.tip["rod"](state.x + state.v, inputs.value)[0] - model.tip["rod"](state.x, inputs.value)[0]
     # A smaller coefficient has not stopped it by then.
     assert friction < 0.3 or np.abs(along.full()[:, 0]).max() < 1e-2
