@@ -102,7 +102,7 @@ HALVED = 4.0 / 3.0
 """Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
 
 LEFT_BY_HALF = 1.0 / 3.0
-"""Error of the motion with the shorter steps over its distance to one of twice the step."""
+"""Error of a motion over its distance to one of twice the step, which has four times the error."""
 
 MOST_TIGHTENINGS = 6
 """Motions, each more exactly computed than the last, before a tolerance is given up."""
@@ -111,7 +111,7 @@ NOT_NEARER = 0.5
 """Share of the distance of two motions from which on the next two, ten times as exact, count as no nearer."""
 
 FAR_APART = 10.0
-"""Distance of the next two, over the error allowed, from which on that tells of a motion that rounding decides."""
+"""Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
 
 FIRST_GAUSS_STEPS = 50
 """Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""

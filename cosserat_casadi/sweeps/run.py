@@ -447,7 +447,7 @@ def _machine(scheduler: str | None, cores: int | None, device: str | None) -> Co
 def _begun(
     plan: Plan, work: Sequence[Chunk], store: Store, progress: StageProgress, choice: Choice | None = None
 ) -> Choice:
-    """Ready a store for more; the sweep's discretisation, for a new sweep ``choice`` or, without it, one chosen now."""
+    """Ready a store for more results; return its discretisation: a new sweep's is ``choice``, or is chosen now."""
     head = store.head()
     if head is not None:
         rows = {chunk.number: len(chunk.rows) for chunk in work}

@@ -37,7 +37,7 @@ static void add_touch(int number, int slides, real place, workspace *work) {
     work->too_many = 1;
     return;
   }
-  const touch added = {.facing = number, .slides = slides, .presses = 0, .place = place, .end_place = place, .gap = 0, .height = 0, .force = 0, .forces = {0, 0}, .places = {place, place}};
+  const touch added = {.facing = number, .slides = slides, .place = place, .end_place = place, .places = {place, place}};
   work->touches[work->touch_count++] = added;
 }
 
