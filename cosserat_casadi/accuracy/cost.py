@@ -45,7 +45,7 @@ on a loaded machine.
 """
 
 TOGETHER = 4
-"""Columns that are computed together."""
+"""Columns that are computed together: LANES of compiling/listing.py, which a solve does not load."""
 
 PLANAR = "planar"
 """Stands for the method of a rod that turns about one axis, where all methods are one."""

@@ -64,7 +64,7 @@ class Robot:
         start = Instant(0.0, self.now.x, self.now.v, self.now.a)
         moved = integrate(equations_of(self.model, piece), start, STEP, radau(3), self.settings)
         if moved.outcome is not StepOutcome.COMPLETED:
-            raise RuntimeError(moved.message)
+            raise RuntimeError(moved.outcome.value)
         self.now, self.tensions = moved.end, ends
 
 

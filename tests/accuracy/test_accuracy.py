@@ -15,6 +15,7 @@ from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.cost import (
     MOST_IN_COLUMNS,
     TIME_IN_COLUMNS,
+    TOGETHER,
     foreseen_operations,
     foreseen_statements,
     foreseen_time,
@@ -25,6 +26,7 @@ from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.kernels import dense
+from cosserat_casadi.compiling.listing import LANES
 from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
 from cosserat_casadi.equilibrium.metrics import pose_distance
 from cosserat_casadi.maths.pose_change import change_size
@@ -235,6 +237,7 @@ def test_no_cliff_is_foreseen() -> None:
 
 def test_columns_are_foreseen_in_fours() -> None:
     """Three components with four modes are three groups of four columns, with five modes four groups."""
+    assert TOGETHER == LANES
     intervals = 12
     times = np.array([foreseen_times(modes, [intervals])[0] for modes in (4, 5)])
     law = TIME_IN_COLUMNS

@@ -11,12 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from swing_free import plans, task, with_motion
+from swing_free import plans, robot, task, with_motion
 from swing_free.robot import Run, simulate
 
 from cosserat_casadi import solve
 from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, poses_functions
 from cosserat_casadi.control import MotionStage
+from cosserat_casadi.numerics.integration import StepOutcome, stalled_at
 from examples import tendon_robot_swing_free as example
 from tests.codegen.test_load import cached, needs_compiler
 from tests.conftest import ROOT
@@ -67,6 +68,14 @@ def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
     lost = controller.step(run.plans[-1], nowhere, np.tile(task.START, (task.STAGES, 1)))
     assert lost.fault == "the state at the next step was not found"
     assert_allclose(lost.first, 0.0, rtol=0, atol=0)
+
+
+def test_a_robot_whose_motion_ends_early_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = task.moved_model(modes=3)
+    moved = robot.Robot(model, task.start_tensions(model))
+    monkeypatch.setattr(robot, "integrate", lambda *_: stalled_at(moved.now))
+    with pytest.raises(RuntimeError, match=StepOutcome.STALLED.value):
+        moved.advance(np.zeros(task.COUNT))
 
 
 @needs_compiler
