@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.control import motion_stage
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_sections import facings
 from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
 
@@ -100,6 +101,25 @@ def test_what_touches_keeps_its_gap_in_the_shortest_step(tmp_path: Path) -> None
     # A state that is deeper than the tolerance is none of this motion.
     refused = made.compiled.step(begun(-1.1 * SMALL["tolerance"]), 1e-5, weights(0.0, 1)[0])
     assert refused.status is MotionStatus.NOT_SOLVED
+
+
+@pytest.mark.slow
+def test_a_step_in_whose_last_instant_a_block_stops_ends_with_the_step(tmp_path: Path) -> None:
+    """A rod that falls beside the block tells how long the step was."""
+    friction, dt, speed = 0.3, 1e-3, 1.0
+    tables = block(friction)
+    (slides,) = tables["rods"]
+    tables["obstacles"][0]["rods"] = ["rod"]
+    tables["rods"] = [slides, {**slides, "name": "falls", "base": {**FREE, "position": [0, 0, 1]}}]
+    made = Moving(tables, tmp_path)
+    start, unknowns = made.compiled.contact_start(), made.model.discrete.unknowns
+    v = start.v.copy()
+    v[unknowns.slice_of(BlockKind.POSE, "rod rod")][0] = friction * G * dt * (1 - 1e-7) / LENGTH
+    v[unknowns.slice_of(BlockKind.POSE, "rod falls")][2] = -speed / LENGTH
+    step = made.compiled.step(StepState(start.x, v, start.a), dt, weights(0.0, 1)[0])
+    assert step.done
+    tip, _, _ = made.model.tip["falls"](step.state.x, made.model.pack())
+    assert_allclose(float(tip[2]), 1 - speed * dt - G * dt**2 / 2, rtol=0, atol=1e-11)
 
 
 @pytest.mark.slow
