@@ -1,8 +1,8 @@
 """Programs of some entries of a function's result, and one program for all that compute alike.
 
-Two programs compute alike where their steps (steps.py) are equal but for constants. Constants that differ become an
-argument, with a piece for each matrix of constants, that the steps read where it lies. So a kernel that several rods
-share may be as long as it likes.
+Two programs compute alike where their steps (compiling/steps.py) are equal but for constants. Constants that differ
+become an argument, with a piece for each matrix of constants, that the steps read where it lies. So a kernel that
+several rods share may be as long as it likes.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Functions of scalars as C that computes four intervals of a rod, or four columns of a Jacobian, at once.
 
 Calls of one function that do not wait for each other, as for the intervals of a rod, are made four at a time, and so
-are the columns of a Jacobian (columns.py). Each number comes from the operations of the function in their order, and
-equals CasADi's to the last digit.
+are the columns of a Jacobian (codegen/columns.py). Each number comes from the operations of the function in their
+order, and equals CasADi's to the last digit.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def scalars_in_c(
         function: the function.
         signature: a function with the name, arguments and first result that it has in C.
         arithmetic: of the numbers that it computes.
-        kernels: kernels that it calls by the hash of their functions (shared_values.py).
+        kernels: kernels that it calls by the hash of their functions (codegen/shared_values.py).
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.

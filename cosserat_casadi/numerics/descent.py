@@ -2,7 +2,7 @@
 
 A trust region: the step minimises the quadratic model of the energy in a ball; at a saddle it leaves along the
 eigenvector of the lowest eigenvalue. Where symmetry leaves no slope there, the way out is chosen, and by the largest
-coordinate rather than by rounding (directions.py): the same on every discretisation. The energy need not be written:
+coordinate rather than by rounding (neutral.py): the same on every discretisation. The energy need not be written:
 its change over a step is the work of the gradient along it. J. Nocedal, S. J. Wright, *Numerical Optimization*, 2nd
 ed., Springer 2006, sections 4.1 and 4.3.
 See docs/theory.md, section 9.

@@ -1,7 +1,7 @@
 /* Newton's method for the stages of a step, with one Jacobian and Broyden's updates of it. Steps of libraries include it
    (step.c), and those of simulated motions (controlled_steps.c).
 
-   cosserat_casadi/numerics holds the same algorithm in Python: stage_newton.py and secant_updates.py.
+   cosserat_casadi/numerics/stage_newton.py holds the same algorithm in Python.
 
    Uses of the step: N unknowns in each of STAGES, STAGED in all of them, IS_SHAPE and DISPLACEMENTS of each unknown,
    STAGE_MATRIX; residuals_of_stages, corrections_of; in the workspace stage_residuals, stage_corrections, stage_changes,

@@ -1,7 +1,7 @@
 /* The error of an answer: how far the tips lie from those of half as many steps, which leave far more. The equilibrium with
    half of the steps is a step of Newton's method away, with the Jacobian of the answer.
 
-   cosserat_casadi/tubes/solve.py solves with both numbers of steps, and compares the same.
+   cosserat_casadi/tubes/tube_solve.py solves with both numbers of steps, and compares the same.
 
    Uses of the equations: halved_residual_at, halved_change_at. */
 
