@@ -72,6 +72,16 @@ class ParameterLayout(StackedLayout[scenes.NamedNumbers]):
             p[span] /= max(float(np.linalg.norm(p[span])), float(np.finfo(float).tiny))
         return p
 
+    def rate_between(self, first: FloatArray, last: FloatArray, share: float) -> FloatArray:
+        """Derivative of the parameters on that line with the share."""
+        rate = last - first
+        p = (1.0 - share) * first + share * last
+        for _, span in self._turns:
+            norm = max(float(np.linalg.norm(p[span])), float(np.finfo(float).tiny))
+            unit = p[span] / norm
+            rate[span] = (rate[span] - unit * (unit @ rate[span])) / norm
+        return rate
+
     @property
     def turning_axes(self) -> list[tuple[str, int]]:
         """Parameters that turn the axis of a joint, by name, with the joint's place in the scene's list."""

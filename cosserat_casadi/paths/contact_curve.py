@@ -28,13 +28,14 @@ from cosserat_casadi.equilibrium.stability import ConstrainedVariations, admissi
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.paths.gaps_along import GapsAlong
+from cosserat_casadi.rod.strain import DiscreteRod
 
 EQUILIBRATIONS = 6
 """Times that rows and columns are made of one size."""
@@ -55,22 +56,24 @@ class Nodes:
         positions: world axes, shape (M, 3), m.
         rates: their derivatives with the coordinate that integrals run over, shape (M, 3), m.
         quaternions: world_Q_section, shape (M, 4).
-        moments: internal moment in the sections' frames, shape (M, 3), N m.
+        curvatures: by the internal moment, in the sections' frames, shape (M, 3), 1/m; those that the rod does not
+            admit are its own.
     """
 
     positions: FloatArray
     rates: FloatArray
     quaternions: FloatArray
-    moments: FloatArray
+    curvatures: FloatArray
 
 
 @dataclass(frozen=True)
 class Arrangement:
-    """One arrangement of contacts while an input grows.
+    """One arrangement of contacts while an input grows, or inputs and parameters move together.
 
     Attributes:
-        equations: equations with its contacts, at the inputs of load factor 0.
-        change: stacked inputs of the scene at load factor 1 less inputs at 0.
+        equations: equations with its contacts, at the inputs and parameters of load factor 0.
+        change: stacked inputs of the scene, and parameters behind them where these move too, at load factor 1 less their
+            values at 0. Parameters change no length, no section and no obstacle.
         potential: whether all loads have a potential along the path.
         settings: limits of the curve.
         near: z where the arrangement begins, or nearly so.
@@ -99,9 +102,28 @@ class Arrangement:
         """Rods that go on where others end, by the names of these."""
         return continuations(self.scene)
 
-    def inputs(self, load_factor: float) -> FloatArray:
-        """Stacked inputs of the scene at a load factor."""
-        return np.asarray(self.equations.given + load_factor * self.change)
+    def at(self, load_factor: float) -> ContactEquations:
+        """The equations at the inputs and parameters of a load factor."""
+        equations = self.equations
+        inputs, parameters = self._changes
+        theta = equations.theta
+        if parameters.size:
+            theta = equations.parameters.between(theta, theta + parameters, load_factor)
+        return equations.at(equations.given + load_factor * inputs, theta)
+
+    @cached_property
+    def _changes(self) -> tuple[FloatArray, FloatArray]:
+        """Changes of inputs, and of parameters; none where they stay."""
+        inputs, parameters = np.split(self.change, [len(self.equations.given)])
+        return inputs, parameters
+
+    def rate(self, z: FloatArray, load_factor: float) -> FloatArray:
+        """Derivative of the residual with the load factor."""
+        inputs, parameters = self._changes
+        if parameters.size:
+            theta = self.equations.theta
+            parameters = self.equations.parameters.rate_between(theta, theta + parameters, load_factor)
+        return self.at(load_factor).rate(z, inputs, parameters)
 
     @cached_property
     def _scales(self) -> tuple[FloatArray, FloatArray]:
@@ -113,15 +135,15 @@ class Arrangement:
         nominal = self.equations.nominal
         size = nominal.model.size
         forces = slice(size, size + len(nominal.force_units))
-        inputs = self.inputs(self.load_factor)
-        rate = self.equations.rate(self.near, inputs, self.change)
+        here = self.at(self.load_factor)
+        rate = self.rate(self.near, self.load_factor)
         load = float(np.linalg.norm(rate[:size]))
         scale = np.ones(len(self.near))
         # So that a strain counts as the angle by which its element turns, however wide that comes to be.
         scale[:size] = 1.0 / self.equations.nominal_widths
         # Otherwise a strong load on a held rod would make a long way of small steps.
         scale[variations(nominal.model).held] = max(1.0, load)
-        matrix = np.abs(self.equations.jacobian(self.near, inputs)) * scale
+        matrix = np.abs(here.jacobian(self.near, here.given)) * scale
         rows = np.ones(len(matrix))
         for _ in range(EQUILIBRATIONS):
             rows = _inverse(np.maximum(matrix.max(axis=1), np.abs(rate)))
@@ -140,12 +162,11 @@ class Arrangement:
     @cached_property
     def curve(self) -> Curve:
         """The curve of the scaled equations in y; the start of its path is not read."""
-        equations = self.equations
         scale, rows = self._scales
         path = Path(
-            residual=lambda y, t: equations.residual(scale * y, self.inputs(t)),
-            jacobian=lambda y, t: equations.jacobian(scale * y, self.inputs(t)) * scale,
-            rate=lambda y, t: equations.rate(scale * y, self.inputs(t), self.change),
+            residual=lambda y, t: self.at(t).equations.residual(scale * y),
+            jacobian=lambda y, t: self.at(t).equations.jacobian(scale * y) * scale,
+            rate=lambda y, t: self.rate(scale * y, t),
             start=self.near / scale,
         )
         monitor = DETERMINANT
@@ -170,12 +191,13 @@ class Arrangement:
 
     def equilibrium_at(self, z: FloatArray, load_factor: float) -> ContactEquilibrium:
         """A point of the curve solved on new elements, which answers all questions that a solution answers."""
-        return contact_equilibrium(self.equations, z, self.inputs(load_factor))
+        equations = self.at(load_factor)
+        return contact_equilibrium(equations, z, equations.given)
 
     def resolution_index(self, z: FloatArray, load_factor: float) -> float:
         """Resolution index of a point, above 1 where the nodes do not resolve the rods."""
         model = self.equations.model
-        x, inputs, p = self.equations.arguments(z, self.inputs(load_factor))
+        x, inputs, p = self.at(load_factor).arguments(z)
         # Without contacts no place moves.
         places = [p] if model.parameters.size else []
         return float(model.resolution_index(x, inputs, *places))
@@ -188,7 +210,7 @@ class Arrangement:
 
     @cached_property
     def _poses(self) -> ca.Function:
-        """(x, f, p, inputs) ↦ what :class:`Nodes` holds of every rod, one column a node."""
+        """(x, f, p and parameters, inputs) ↦ what :class:`Nodes` holds of every rod, one column a node."""
         written = self.equations.written
         results: list[Matrix] = []
         for name, shape in written.system.shapes.items():
@@ -199,18 +221,24 @@ class Arrangement:
             results.append(ca.repmat(base.position, 1, count) + rotation @ shape.position)
             results.append(rotation @ shape.tangent)
             results.append(quaternion_product(quaternions, ca.densify(shape.quaternion)))
-            results.append(written.system.rods[name].statics.internal_wrench()[:3, :])
+            moment = written.system.rods[name].statics.internal_wrench()[:3, :]
+            results.append(_curvatures(shape.rod, moment))
         return ca.Function("poses", written.arguments, results)
 
     def _nodes(self, z: FloatArray, load_factor: float) -> dict[str, Nodes]:
         """The nodes of every rod."""
-        outputs = self._poses(*self.equations.parts(z), self.inputs(load_factor))
+        outputs = self._poses(*self._arguments(z, load_factor))
         arrays = [output.full().T for output in outputs]
         nodes = {}
         for number, name in enumerate(self.equations.written.system.shapes):
-            positions, rates, quaternions, moments = arrays[4 * number : 4 * number + 4]
-            nodes[name] = Nodes(positions, rates, quaternions, moments)
+            nodes[name] = Nodes(*arrays[4 * number : 4 * number + 4])
         return nodes
+
+    def _arguments(self, z: FloatArray, load_factor: float) -> list[FloatArray]:
+        """Arguments of the functions of :attr:`equations` at a point."""
+        here = self.at(load_factor)
+        x, f, places = here.parts(z)
+        return [x, f, np.concatenate([places, here.theta]), here.given]
 
     def ends(self, rod: str, z: FloatArray) -> FloatArray:
         """Abscissae of the ends of a rod's elements."""
@@ -261,22 +289,14 @@ class Arrangement:
         is_actuated = any(actuator.rod == rod for actuator in self.scene.actuators)
         if is_actuated or discrete_rod.properties.beyond_hooke is not None:
             return np.asarray(chebyshev.differentiation_matrix(intervals) @ tangents / widths)
-        properties = discrete_rod.properties
-        local = chebyshev.nodes(intervals)
-        X = (ends[:-1, None] + np.diff(ends)[:, None] * local).ravel()
-        stiffness = np.broadcast_to(known(properties.hooke(X)), (len(X), 6))
-        curvature = np.array(known(properties.intrinsic_curvature(X)))
-        for axis in properties.admitted:
-            if axis in ANGULAR:
-                curvature[:, axis] += nodes.moments[:, axis] / stiffness[:, axis]
         unit = nodes.quaternions / np.linalg.norm(nodes.quaternions, axis=1, keepdims=True)
-        in_world = np.einsum("kij,kj->ki", rotations(unit), curvature)
-        bends = properties.length * np.cross(in_world, tangents.reshape(-1, 3))
+        in_world = np.einsum("kij,kj->ki", rotations(unit), nodes.curvatures)
+        bends = discrete_rod.properties.length * np.cross(in_world, tangents.reshape(-1, 3))
         return np.asarray(bends.reshape(tangents.shape))
 
     @cached_property
     def _body_poses(self) -> ca.Function:
-        """(x, f, p, inputs) ↦ positions, m, and quaternions of the bodies of the scene, one column each."""
+        """(x, f, p and parameters, inputs) ↦ positions, m, and quaternions of the bodies, one column each."""
         written = self.equations.written
         poses = [written.system.body(body.name) for body in self.scene.bodies]
         positions = ca.horzcat(*[pose.position for pose in poses])
@@ -287,7 +307,7 @@ class Arrangement:
         """Poses of the bodies of the scene by name."""
         if not self.scene.bodies:
             return {}
-        outputs = self._body_poses(*self.equations.parts(z), self.inputs(load_factor))
+        outputs = self._body_poses(*self._arguments(z, load_factor))
         positions, quaternions = (output.full().T for output in outputs)
         poses = [SolvedPoses(*pose) for pose in zip(positions, map(rotations, quaternions), quaternions, strict=True)]
         return {body.name: pose for body, pose in zip(self.scene.bodies, poses, strict=True)}
@@ -379,6 +399,26 @@ class Arrangement:
             else:
                 hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
         return admissible_eigenvalues(*restricted(hessian, held, self._variations))
+
+
+def _curvatures(rod: DiscreteRod, moment: Matrix) -> Matrix:
+    """Curvatures at the nodes of a rod that obeys Hooke's law, 3×M, 1/m.
+
+    Args:
+        rod: whose nodes may have moved, and whose numbers may be parameters.
+        moment: internal moment at the nodes, 3×M, N m.
+    """
+    stiffness = as_matrix(rod.properties.hooke(rod.grid.nodes))
+    if stiffness.shape[0] == 1:
+        stiffness = ca.repmat(stiffness, rod.grid.size, 1)
+    own = as_matrix(rod.properties.intrinsic_curvature(rod.grid.nodes))
+    rows = []
+    for axis in ANGULAR:
+        row = own[:, axis].T
+        if axis in rod.admitted:
+            row = row + moment[axis, :] / stiffness[:, axis].T
+        rows.append(row)
+    return ca.MX(ca.vertcat(*rows))
 
 
 def _inverse(sizes: FloatArray) -> FloatArray:

@@ -316,8 +316,8 @@ def follow_contact_path(
 
     Args:
         model: of the scene.
-        name: the input that grows.
-        base: stacked inputs at load factor 0.
+        name: the input that grows, or the first of the inputs and parameters that move.
+        base: stacked inputs at load factor 0, and parameters behind them if the model has any.
         change: their increments at load factor 1.
         branch: as in :func:`cosserat_casadi.follow`.
         settings: limits.
@@ -326,8 +326,9 @@ def follow_contact_path(
     limits = settings or ArcSettings()
     scene = without_contacts(model.scene)
     grids = Grids(model.discretisation)
-    values = model.inputs.unpack(base)
-    potential = model.has_potential(base) and model.has_potential(base + change)
+    given, theta = np.split(base, [model.inputs.size])
+    values = model.inputs.unpack(given)
+    potential = all(model.has_potential((base + share * change)[: len(given)]) for share in (0.0, 1.0))
     empty = ContactPath(
         model=model,
         name=name,
@@ -341,12 +342,13 @@ def follow_contact_path(
         neutral=np.zeros(0, dtype=np.bool_) if potential else None,
         events=(),
     )
-    start = solve_contact(scene, grids, values)
+    numbers = model.parameters.set_in(scene, model.parameters.unpack(theta)) if theta.size else scene
+    start = solve_contact(numbers, grids, values)
     if not start.converged:
         return replace(empty, message=f"{empty.message} {start.message}")
     state = state_in(start.model.scene)
-    settling = Settling(scene, base, grids, NewtonSettings(), max(scene.accuracy.tolerance, LEAST_TOLERANCE))
-    equations = ContactEquations(scene, base, grids, state)
+    settling = Settling(scene, given, grids, NewtonSettings(), max(scene.accuracy.tolerance, LEAST_TOLERANCE))
+    equations = ContactEquations(scene, given, grids, state, theta)
     z = settling.solved(equations, start)
     if z is None:
         return empty

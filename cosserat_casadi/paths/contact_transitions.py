@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.contact_alternatives import instead_of_pulling
-from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, load_sections
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.maths.typing import FloatArray
@@ -177,13 +176,13 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Transition) -> Ar
     if not change.state.in_order:
         return None
     z = arrangement.z(point)
-    equations = ContactEquations(
-        arrangement.scene, arrangement.equations.given, arrangement.equations.grids, change.state
-    )
+    equations = replace(arrangement.equations, state=change.state)
     found = arrangement.equilibrium_at(z, point.load_factor)
     x = projected(found.solution, equations.nominal.model)
-    near = equations.start_from(x, arrangement.inputs(point.load_factor))
-    following = replace(arrangement, equations=equations, near=near, load_factor=point.load_factor)
+    following = replace(arrangement, equations=equations, load_factor=point.load_factor)
+    here = following.at(point.load_factor)
+    near = here.start_from(x, here.given)
+    following = replace(following, near=near)
     guess = following.y(near, point.load_factor)
     met = _met(following, guess, _plane(following, change, point.load_factor))
     if met is None:

@@ -25,6 +25,8 @@ from tests.codegen.contact_libraries import (
     BAR,
     FLAT,
     PUSH,
+    TABLE,
+    WEIGHT,
     ContactLibrary,
     assert_same,
     exported_contact,
@@ -619,6 +621,21 @@ def test_load_cases_may_name_parameters(tmp_path: Path) -> None:
         folder = export(model, tmp_path / name, load_cases=case, estimate_errors=False)
         arrangements = json.loads((folder / "manifest.json").read_text())["arrangements"]
         assert [[contact["obstacle"] for contact in entry["contacts"]] for entry in arrangements] == known
+
+
+def test_contacts_on_the_way_to_other_parameters(tmp_path: Path) -> None:
+    """A rod that grows soft comes to a table with its tip, and then lies: one load case, the soft rod, tells both."""
+    light = {**WEIGHT, "force": [0, 0, -0.5]}
+    wanted = scene(rods=[FLAT], loads=[light], obstacles=[TABLE], parameters=["rod.stiffness.bending_y"])
+    soft = np.array([[*light["force"], 0.003]])
+    library = exported_contact(wanted, tmp_path / "soft", soft, 3, 6, estimate_errors=False)
+    found = library.loaded.start()
+    kinds = []
+    for stiffness in (0.4, 0.1, 0.006):
+        found = library.loaded.solve(light["force"], found, parameters=[stiffness])
+        assert_same(found, solve(library.model, parameters={"rod.stiffness.bending_y": stiffness}))
+        kinds.append([contact.kind for contact in found.contacts])
+    assert kinds == [[], ["point"], ["line"]]
 
 
 def test_load_knows_the_folder_by_its_manifest(bar: ContactLibrary, tmp_path: Path) -> None:

@@ -12,11 +12,13 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from cosserat_casadi import build, discretise, follow, parse_scene, solve
-from cosserat_casadi.paths.contact_path import ContactPath
+from cosserat_casadi.numerics.trace import PathOutcome
+from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 from cosserat_casadi.plots.path_plot import plot_path
 from tests.commands import cosserat
 from tests.contact.test_contact import PUSH, ROD
 from tests.contact.test_contact import TABLE as HEAVY_ROD
+from tests.scenes import rod, scene
 
 BENDING, LENGTH, WEIGHT, HEIGHT = 0.03, 1.2, 0.981, 0.08
 
@@ -276,3 +278,32 @@ def test_without_a_next_arrangement_the_path_ends_and_says_so(monkeypatch: pytes
     assert path.outcome.label == "contact_unsettled"
     assert "no arrangement of contacts" in path.message
     assert len(path.factor) > 2
+
+
+def test_parameters_move_along_a_path() -> None:
+    """A rod grows soft while its base turns, until its tip touches: equations and gaps are those of the numbers there."""
+    base = {"position": [0, 0, 0], "quaternion": [np.sqrt(0.5), 0, np.sqrt(0.5), 0]}
+    weight = {"name": "weight", "kind": "distributed_wrench", "rod": "rod", "force": [0, 0, -0.5]}
+    table = {"name": "table", "kind": "plane", "point": [0, 0, -0.1], "normal": [0, 0, 1]}
+    bent = rod("planar", base=base, intrinsic={"curvature": [0, 0.1, 0]})
+    named = ["rod.stiffness.bending_y", "rod.base.quaternion", "rod.intrinsic.curvature.y[0]"]
+    heavy = scene(weight, rods=[bent], obstacles=[table], parameters=named)
+    model = build(heavy, discretise(heavy, 4, 8))
+    angle = np.radians(80.0)
+    last = [0.02, np.cos(angle / 2), 0, np.sin(angle / 2), 0, 0.1]
+    begin = np.append(model.pack(), model.parameters.pack())
+    change = np.append(np.zeros(model.inputs.size), last - model.parameters.pack())
+    path = follow_contact_path(model, named[0], begin, change)
+    assert path.outcome is PathOutcome.CONVERGED
+    wanted = solve(model, parameters=dict(zip(named, np.split(np.array(last), [1, 5]), strict=True)))
+    assert_allclose(path.solution(-1).tip().position, wanted.tip().position, rtol=0, atol=1e-9)
+    for index in range(0, len(path.factor), 9):
+        factor = float(path.factor[index])
+        arrangement = path.arrangements[path.arrangement[index]]
+        z = path.x[index]
+        ends = [arrangement.at(factor + step) for step in (1e-5, -1e-5)]
+        over, under = (end.residual(z, end.given) for end in ends)
+        assert_allclose(arrangement.rate(z, factor), (over - under) / 2e-5, rtol=0, atol=1e-8)
+        gaps = arrangement.gaps(z, factor)["rod", "table"]
+        slopes = [gaps.at(0.5 + step)[1] for step in (1e-5, -1e-5)]
+        assert_allclose(gaps.at(0.5)[2], (slopes[0] - slopes[1]) / 2e-5, rtol=2e-2)

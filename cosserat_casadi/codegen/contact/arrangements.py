@@ -1,8 +1,7 @@
 """Which arrangements of contacts a library in C holds: all that its scene meets, and no contact.
 
-The scene is solved at its own inputs, and followed from there to each load case, one after the other, along straight
-lines of inputs, as the solver in C moves them too, each at the parameters of its load case. The arrangements on the way
-are collected.
+The scene is solved at its own inputs and parameters, and followed from there to each load case, one after the other,
+along straight lines of both, as the solver in C moves them too. The arrangements on the way are collected.
 """
 
 from __future__ import annotations
@@ -125,29 +124,30 @@ def chosen_arrangements(
     # Contacts are found for numbers; equations that take parameters are written at the end.
     scene = named.model_copy(update={"parameters": ()})
     grids = Grids(model.discretisation)
+    free = build(named, grids.discretisation(named))
     layout = input_layout(scene)
     given = layout.pack(None)
     met = _Met(scene, grids)
+    names = [*layout.names, *parameters.names]
     own = solve_contact(scene, grids, layout.unpack(given))
     _check(own, "the scene's own inputs")
     first = state_in(own.model.scene)
     met.add(first)
-    free = build(scene, grids.discretisation(scene))
-    before = given
-    for number, row in enumerate(np.zeros((0, layout.size)) if load_cases is None else load_cases, start=1):
-        inputs, of_case = np.split(row, [layout.size])
-        if of_case.size:
-            in_case = parameters.set_in(named, parameters.unpack(of_case)).baked()
-            free = build(in_case, grids.discretisation(in_case))
+    own_values = before = np.append(given, theta)
+    for number, row in enumerate([] if load_cases is None else load_cases, start=1):
+        # Of a row without parameters they are the scene's own.
+        values = np.append(row, own_values[len(row) :])
+        inputs, of_case = np.split(values, [layout.size])
+        in_case = parameters.set_in(named, parameters.unpack(of_case)) if of_case.size else scene
         # Where a path ends early, at a fold or a change that it does not find, the load case is solved all the same.
-        case = solve_contact(free.scene, grids, layout.unpack(inputs))
+        case = solve_contact(in_case, grids, layout.unpack(inputs))
         if leave_out and not case.converged:
             continue
         _check(case, f"load case {number}")
-        if not np.array_equal(inputs, before):
-            met.add_path(follow_contact_path(free, free.inputs.names[0], before, inputs - before))
+        if not np.array_equal(values, before):
+            met.add_path(follow_contact_path(free, names[0], before, values - before))
         met.add(state_in(case.model.scene))
-        before = inputs
+        before = values
     met.add(ContactState(()))
     _refuse_lines(list(met.states.values()))
     count = len(met.states)
@@ -163,7 +163,7 @@ def chosen_arrangements(
         scene=scene,
         layout=layout,
         parameters=parameters,
-        given=np.append(given, theta),
+        given=own_values,
         equations=answers,
         richer=finer if estimate_errors else [],
         start=start,

@@ -455,9 +455,12 @@ class ContactEquations:
         x, f, p = self.parts(z)
         return np.asarray(self._by_arguments(x, f, np.concatenate([p, self.theta]), given).full())
 
-    def rate(self, z: FloatArray, given: FloatArray, change: FloatArray) -> FloatArray:
-        """Rate of the residual as the inputs change, shape (len(z),)."""
-        return np.asarray(self.by_inputs(z, given) @ change)
+    def rate(self, z: FloatArray, change: FloatArray, of_parameters: FloatArray) -> FloatArray:
+        """Rate of the residual as inputs and parameters of these equations change, shape (len(z),)."""
+        rate = self.by_inputs(z, self.given) @ change
+        if of_parameters.size:
+            rate = rate + self._derivatives(z, self.given)[:, len(z) :] @ of_parameters
+        return np.asarray(rate)
 
     def moved(self, z: FloatArray, by_inputs: FloatArray, by_parameters: FloatArray) -> FloatArray:
         """Derivatives of the solution z with m arguments of the scene while its contacts stay, (len(z), m).
