@@ -73,8 +73,9 @@ def export(
             where the equations have a form for that; a compiler takes about twice as long. Without that, cases are
             solved one after the other; in exact contact there is that function with it alone.
         cuda: whether the folder holds the source of batches on a GPU too. Experimental: it was never run on one.
-        load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
-            arrangements of contacts that it meets on the way from its own inputs to each case, one after the other.
+        load_cases: stacked inputs, a row for each case, shape (k, m), or with parameters behind them, (k, m + p): of a
+            scene in exact contact the library knows the arrangements of contacts that it meets on the way from its own
+            inputs and parameters to each case, one after the other.
         period: time, s, that the longest turn of a control loop may take: by default it may evaluate what fits, as is
             measured with the compiler of this machine, or foreseen where there is none.
         estimate_errors: whether the library estimates the errors of its answers; the code of its kernels is about half

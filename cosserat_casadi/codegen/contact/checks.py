@@ -105,7 +105,7 @@ def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None
 
     Args:
         scene: the scene.
-        load_cases: stacked inputs, a row for each case.
+        load_cases: stacked inputs, a row for each case; parameters may stand behind them.
 
     Raises:
         ExportError: they are refused.
@@ -116,7 +116,6 @@ def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None
         problem = "load cases say which contacts are exported; no rod of this scene touches an obstacle exactly"
         raise ExportError(Problem("--over", problem, "leave them out"))
     inputs = input_layout(without_contacts(scene)).size
-    # Parameters may stand behind the inputs.
     sizes = sorted({inputs, inputs + parameter_layout(scene).size})
     if load_cases.ndim != 2 or load_cases.shape[1] not in sizes or not np.isfinite(load_cases).all():
         shapes = " or ".join(f"(k, {size})" for size in sizes)

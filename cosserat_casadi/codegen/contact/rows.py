@@ -31,8 +31,8 @@ def contact_row_library(
     Args:
         model: on the discretisation of all rows.
         load_cases: stacked inputs with parameters behind them, a row for each case, shape (k, m): the library knows the
-            arrangements of contacts that it meets on the way from the scene's own inputs to each case that has an
-            equilibrium, one after the other.
+            arrangements of contacts that it meets on the way from the scene's own inputs and parameters to each case
+            that has an equilibrium, one after the other.
         estimate_errors: whether rows have :data:`cosserat_casadi.codegen.rows.ERRORS`.
         stability: whether they end with :data:`cosserat_casadi.codegen.rows.STABILITY`.
 
