@@ -343,7 +343,9 @@ class RodMotion:
     def _integrated(self, base: Matrix, rate: Matrix) -> Matrix:
         """A field of positions, 3×M, from its value at the base, 3×1, and the same field of the tangents, 3×M."""
         grid = self.rod.grid
-        return ca.repmat(base, 1, grid.size) + grid.integrated(rate)
+        along = grid.integrated(rate)
+        # The velocity of a base that only turns has no entries: what repeats none is no sound C as CasADi writes it.
+        return along if base.nnz() == 0 else ca.repmat(base, 1, grid.size) + along
 
 
 def _swept(base: Matrix, added: Matrix) -> Matrix:

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from cosserat_casadi import build, discretise, export
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.compiling.texts import resource
-from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, gcc, run
+from tests.codegen.libraries import C99, GENERATED, QUICK, RECIPES, Exported, gcc, run
 from tests.families import mostly_slow
+from tests.scenes import push, rod, scene
 
 Library = Callable[[str], Exported]
 
@@ -179,3 +181,16 @@ def test_shell_line_of_the_readme(library: Library, tmp_path: Path) -> None:
         (tmp_path / path.name).write_bytes(path.read_bytes())
     line = re.findall(r"```sh\n(.*?)```", (made.folder / "README.md").read_text(), re.DOTALL)[0]
     assert '"status": "converged"' in run("sh", "-c", line, cwd=tmp_path)
+
+
+@pytest.mark.slow
+def test_motion_of_a_base_that_turns_alone_compiles_without_a_warning(tmp_path: Path) -> None:
+    """Its origin has no velocity, not even a zero: gcc 14 refuses what CasADi writes to repeat that along the rod."""
+    turned = {"position": [0, 0, 0], "quaternion": [0.6, 0, 0.8, 0]}
+    coil = {"kind": "magnet", "rod": "rod", "at": 1.0, "field": [0.1, 0, 0], "moment": [0, 0.2, 0.1]}
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "offset": [0.01, 0], "holes": [0.3, 0.4], "tension": 1.0}
+    inputs = ["push.force", "push.moment", "coil.field", "coil.moment", "cable.tension", "rod.base.quaternion"]
+    loads = [push(moment=[0, 0, 0]), {"name": "coil", **coil}]
+    turning = scene(*loads, rods=[rod("planar", base=turned)], actuators=[cable], inputs=inputs)
+    folder = export(build(turning, discretise(turning, 2, 4), moving=True), tmp_path / "turning", dynamics=True)
+    gcc(*GENERATED, "-Werror", "-fsyntax-only", folder / "turning_kernels.c")

@@ -281,7 +281,7 @@ def test_without_a_next_arrangement_the_path_ends_and_says_so(monkeypatch: pytes
 
 
 def test_parameters_move_along_a_path() -> None:
-    """A rod grows soft while its base turns, until its tip touches: equations and gaps are those of the numbers there."""
+    """A rod grows soft while its base turns, until its tip touches: equations and gaps are those there."""
     base = {"position": [0, 0, 0], "quaternion": [np.sqrt(0.5), 0, np.sqrt(0.5), 0]}
     weight = {"name": "weight", "kind": "distributed_wrench", "rod": "rod", "force": [0, 0, -0.5]}
     table = {"name": "table", "kind": "plane", "point": [0, 0, -0.1], "normal": [0, 0, 1]}
