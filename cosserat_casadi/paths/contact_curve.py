@@ -56,8 +56,8 @@ class Nodes:
         positions: world axes, shape (M, 3), m.
         rates: their derivatives with the coordinate that integrals run over, shape (M, 3), m.
         quaternions: world_Q_section, shape (M, 4).
-        curvatures: by the internal moment, in the sections' frames, shape (M, 3), 1/m; those that the rod does not
-            admit are its own.
+        curvatures: by the internal moment, in the sections' frames, shape (M, 3), 1/m; curvatures that the rod does not
+            admit are those of the unloaded rod.
     """
 
     positions: FloatArray
