@@ -20,7 +20,7 @@ ELSEWHERE = {
     "motion.md": "test_guide.py",
     "notebook.md": "test_notebook.py",
     "control.md": "test_control_page.py",
-    "sweeps.md": "sweep/test_page.py",
+    "sweeps.md": "sweeps/test_page.py",
     "view.md": "view/test_view_page.py",
 }
 """Pages that a test of their own runs."""

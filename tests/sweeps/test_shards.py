@@ -19,7 +19,7 @@ from cosserat_casadi.sweeps.run import Plan, merge_shards, plan_sweep, run_shard
 from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.store import StoreChangedError
 from cosserat_casadi.sweeps.table import table_of
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 pytestmark = pytest.mark.usefixtures("few_checked")
 

@@ -18,7 +18,7 @@ from numpy.testing import assert_array_equal
 from cosserat_casadi import SceneError, sweep
 from cosserat_casadi.sweeps.cluster import ClusterError, _connected
 from cosserat_casadi.sweeps.store import Store
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 distributed = pytest.importorskip("distributed")
 

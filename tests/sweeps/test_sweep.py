@@ -28,7 +28,7 @@ from cosserat_casadi.sweeps.store import Store
 from cosserat_casadi.sweeps.table import table_of
 from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, rod, scene
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 pytestmark = pytest.mark.usefixtures("few_checked")
 
@@ -390,7 +390,7 @@ def test_what_lacks_an_extra_says_which(tmp_path: Path, monkeypatch: pytest.Monk
 def test_no_process_outlives_a_killed_sweep(tmp_path: Path) -> None:
     """Rows in Python run in processes beside the sweep; they end with it."""
     code = (
-        "from tests.sweep.conftest import PLANAR; from cosserat_casadi import sweep; import numpy as np; "
+        "from tests.sweeps.conftest import PLANAR; from cosserat_casadi import sweep; import numpy as np; "
         "sweep(PLANAR, {'rod.stiffness.bending_y': np.linspace(1, 2, 400)}, 'a.csv', cores=1)"
     )
     process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)

@@ -18,7 +18,7 @@ from cosserat_casadi.sweeps.scratch import Scratch
 from cosserat_casadi.sweeps.table import crossed, range_table, read_table, table_of
 from cosserat_casadi.sweeps.variants import Variants, variants_of
 from tests.scenes import push, rod, scene
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 
 def grid_of(text: str) -> tuple[tuple[str, ...], np.ndarray]:

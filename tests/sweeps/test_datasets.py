@@ -16,7 +16,7 @@ from cosserat_casadi.sweeps.outcome_file import write_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.run import plan_sweep
 from cosserat_casadi.sweeps.table import table_of
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 pytestmark = pytest.mark.usefixtures("few_checked")
 

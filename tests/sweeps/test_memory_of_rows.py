@@ -30,7 +30,7 @@ from cosserat_casadi.sweeps.store import Store, StoreChangedError
 from cosserat_casadi.sweeps.table import read_table, table_of
 from tests.conftest import ROOT
 from tests.families import mostly_slow
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 ROWS = 40_000
 
@@ -164,7 +164,7 @@ RESIDENT = """
 import resource, sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[3])
-from tests.sweep.test_memory_of_rows import answers_at_once, grid_of_rows, swept
+from tests.sweeps.test_memory_of_rows import answers_at_once, grid_of_rows, swept
 rows, folder = int(sys.argv[1]), Path(sys.argv[2])
 answers_at_once(setattr)
 swept(rows, grid_of_rows(rows, folder / "over.toml"), folder / "rows.csv")

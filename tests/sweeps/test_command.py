@@ -16,7 +16,7 @@ from cosserat_casadi import SceneError, Solution, solve, sweep
 from cosserat_casadi.cli.main import INTERRUPTED, REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import rod, scene
-from tests.sweep.conftest import PLANAR
+from tests.sweeps.conftest import PLANAR
 
 
 @pytest.fixture
