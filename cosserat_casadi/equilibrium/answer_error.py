@@ -254,7 +254,7 @@ def enough_for(model: Model) -> float:
 
     Thin layers are so far from linear that the first one tells down to half of the change: there none is believed.
     """
-    if model.discrete.closer_sections:
+    if model.discrete.has_layers:
         return ROUNDING
     return max(model.scene.accuracy.tolerance / SAFETY, ROUNDING)
 

@@ -18,7 +18,7 @@ from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.rod.placed_sections import EqualSections
+from cosserat_casadi.rod.placed_sections import SummedSections
 
 GAUSS_POINTS = 24
 """Points at which the force along a stretch is summed."""
@@ -86,7 +86,7 @@ def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
 
 
 def _push_between(
-    solution: Solution, layer: ContactLayer, sections: EqualSections | None, between: tuple[float, float]
+    solution: Solution, layer: ContactLayer, sections: SummedSections | None, between: tuple[float, float]
 ) -> FloatArray:
     """Force of a layer on a rod between two abscissae, over the length, shape (3,), N/m."""
     X, weights = _summed_at(sections, *between)
@@ -99,7 +99,7 @@ def _push_between(
     return push
 
 
-def _summed_at(sections: EqualSections | None, start: float, end: float) -> tuple[FloatArray, FloatArray]:
+def _summed_at(sections: SummedSections | None, start: float, end: float) -> tuple[FloatArray, FloatArray]:
     """Abscissae at which the force along a stretch is summed, and their weights, shape (k,) each.
 
     Where the equations sum it between nodes, it is their sum: it holds the rod in balance.

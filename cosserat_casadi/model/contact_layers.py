@@ -13,7 +13,7 @@ from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_pairs import pair_widths
-from cosserat_casadi.rod.placed_sections import EqualSections
+from cosserat_casadi.rod.placed_sections import SummedSections
 from cosserat_casadi.rod.strain import DiscreteRod
 
 SURFACE_FORCE = 10.0
@@ -174,7 +174,7 @@ def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) ->
 
 def closer_sections(
     obstacle: scenes.ObstacleRecord, rod: DiscreteRod, *, moved: bool, stretched: bool
-) -> EqualSections | None:
+) -> SummedSections | None:
     """The sections of a rod at which the layer of an obstacle is summed; None where that is at the nodes.
 
     Args:
@@ -193,7 +193,7 @@ def closer_sections(
     shares = np.ones(len(lengths)) if moved else lengths / lengths.max()
     spare = SPARE_SECTIONS if stretched else 1
     counts = np.ceil(spare * ratio * rod.grid.intervals * shares).astype(int)
-    return EqualSections(rod, tuple(counts.tolist()))
+    return SummedSections(rod, tuple(counts.tolist()))
 
 
 def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> int:

@@ -8,7 +8,7 @@ rods whose stress relaxes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -44,7 +44,7 @@ from cosserat_casadi.model.scene_rods import fixed_masses, rod_properties
 from cosserat_casadi.model.unknowns import BlockKind, UnknownBlock, Unknowns
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import Shape, shape
-from cosserat_casadi.rod.placed_sections import EqualSections
+from cosserat_casadi.rod.placed_sections import SummedSections
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.strain_density import StiffnessBeyondHooke, stiffness_beyond_hooke
 from cosserat_casadi.scene.constraint_records import STOP_KEYS, AxisJoint
@@ -58,7 +58,7 @@ NO_SOFTNESS = 1e-9
 
 
 FINER_SECTIONS = 3
-"""Sections of a richer scene for each one at which a scene sums a thin layer: the error of the sum shows as well."""
+"""Sections of a richer scene for each section, or interval, at which a scene sums a layer: the error of the sum shows."""
 
 
 STEPS_OF_LAWS = 3
@@ -147,7 +147,8 @@ class DiscreteScene:
         moving: whether it is for a motion, in which stress that relaxes has flows.
         memory: grids of the rods at whose nodes loads remember sections along a path; None for the scene's own grids.
         layers: factor on the widths of smooth contact of the scene.
-        fewest_sections: least sections of each element at which thin layers are summed, by the name of the load.
+        given_sections: sections at which layers are summed, by the name of the load; None for the sections that the scene
+            asks for.
     """
 
     scene: scenes.Scene
@@ -158,7 +159,7 @@ class DiscreteScene:
     moving: bool = False
     memory: Mapping[str, Grid] | None = None
     layers: float = 1.0
-    fewest_sections: Mapping[str | None, tuple[int, ...]] = field(default_factory=dict)
+    given_sections: Mapping[str | None, SummedSections] | None = None
 
     def __reduce__(self) -> tuple[Callable[..., DiscreteScene], tuple[Any, ...]]:
         """How pickle and copy make the scene anew: from its description, since CasADi's symbols cannot be stored."""
@@ -226,10 +227,14 @@ class DiscreteScene:
         return (*self.scene.loads, *(layer.widened(self.layers) for layer in layers))
 
     @cached_property
-    def closer_sections(self) -> dict[str | None, EqualSections]:
+    def closer_sections(self) -> dict[str | None, SummedSections]:
         """Sections at which layers are summed that come and go between the nodes of a rod, by the name of the load."""
+        if self.given_sections is not None:
+            return {
+                name: replace(own, rod=self.rods[own.rod.properties.name]) for name, own in self.given_sections.items()
+            }
         # Of the scene's own numbers: parameters and other widths change no number of sections.
-        found: dict[str | None, EqualSections] = {}
+        found: dict[str | None, SummedSections] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is None or layer.at is not None:
                 continue
@@ -240,9 +245,7 @@ class DiscreteScene:
                 stretched=layer.name in self.stretched_layers,
             )
             if sections is not None:
-                fewest = self.fewest_sections.get(layer.name, sections.counts)
-                counts = tuple(map(max, sections.counts, fewest))
-                found[layer.name] = EqualSections(self.rods[layer.rod], counts)
+                found[layer.name] = replace(sections, rod=self.rods[layer.rod])
         return found
 
     @cached_property
@@ -497,11 +500,23 @@ class DiscreteScene:
         discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        fewest = {
-            name: tuple(FINER_SECTIONS * count for count in sections.counts)
-            for name, sections in self.closer_sections.items()
-        }
-        return Richer(self, replace(discrete, memory=self.remembered, fewest_sections=fewest))
+        return Richer(self, replace(discrete, memory=self.remembered, given_sections=self._finer_sections))
+
+    @property
+    def _finer_sections(self) -> dict[str | None, SummedSections]:
+        """Sections of the richer scene at which layers are summed, by the name of the load: their error shows."""
+        finer = {}
+        for layer in contact_layers(self.nominal.scene, self.nominal.rods):
+            # Friction hangs on rotations, and on what nodes remember: it is summed at nodes.
+            rubs = layer.obstacle.rubs and (self.moving or self.layout.memory is not None)
+            if layer.rod is None or layer.at is not None or rubs:
+                continue
+            sections = self.closer_sections.get(layer.name)
+            if sections is None:
+                rod = self.rods[layer.rod]
+                sections = SummedSections(rod, (rod.grid.intervals,) * rod.grid.elements, gauss=True)
+            finer[layer.name] = sections.finer(FINER_SECTIONS)
+        return finer
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:
         """Unit of contact forces on a rod, or on a body, N."""

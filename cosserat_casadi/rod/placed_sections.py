@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.block_operators import sparse
-from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.grid import Indices, gauss_legendre
 from cosserat_casadi.maths.numbers import Numbers, each_times
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -54,28 +54,42 @@ class PlacedSections:
 
 
 @dataclass(frozen=True)
-class EqualSections:
-    """Sections in the middle of equal parts of each element, in which a load per length is summed.
+class SummedSections:
+    """Sections of each element, in which a load per length is summed: in the middle of equal parts, or Gauss points.
 
-    A load that comes and goes within an element is summed by equal parts more exactly than by nodes as many.
+    A load that comes and goes within an element is summed by equal parts more exactly than by nodes as many. One along
+    all of an element is summed by Gauss points as exactly as by nodes.
 
     Attributes:
         rod: the rod.
         counts: sections of each element.
+        gauss: whether they are at Gauss points.
     """
 
     rod: DiscreteRod
     counts: tuple[int, ...]
+    gauss: bool = False
+
+    def finer(self, factor: int) -> SummedSections:
+        """So many times as many."""
+        return replace(self, counts=tuple(factor * count for count in self.counts))
 
     @cached_property
     def placed(self) -> PlacedSections:
         """The sections."""
         ends = self.rod.grid.breaks
-        middles = [
-            start + (end - start) * (np.arange(count) + 0.5) / count
+        places = [
+            start + (end - start) * self._rule(count)[0]
             for count, start, end in zip(self.counts, ends[:-1], ends[1:], strict=True)
         ]
-        return PlacedSections(self.rod, np.concatenate(middles))
+        return PlacedSections(self.rod, np.concatenate(places))
+
+    def _rule(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Places in an element from 0 to 1, and the share of it that each stands for, shape (count,) each."""
+        if self.gauss:
+            points, weights = gauss_legendre(count)
+            return (points + 1) / 2, weights / 2
+        return (np.arange(count) + 0.5) / count, np.full(count, 1.0 / count)
 
     @property
     def size(self) -> int:
@@ -96,6 +110,6 @@ class EqualSections:
 
     @cached_property
     def _reference_lengths(self) -> FloatArray:
-        counts = np.array(self.counts)
-        of_each = self.rod.length * np.diff(self.rod.grid.breaks) / counts
-        return np.repeat(of_each, counts)
+        elements = self.rod.length * np.diff(self.rod.grid.breaks)
+        shares = [self._rule(count)[1] for count in self.counts]
+        return np.concatenate([element * share for element, share in zip(elements, shares, strict=True)])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from cosserat_casadi.maths.numbers import Numbers, Scalar
 from cosserat_casadi.maths.typing import Matrix, check_shape
-from cosserat_casadi.rod.placed_sections import EqualSections
+from cosserat_casadi.rod.placed_sections import SummedSections
 from cosserat_casadi.rod.rod_motion import RodMotion
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
@@ -111,7 +111,7 @@ class PoseWrench:
     motion: RodMotion | SeenMotion | None = None
     growth: Callable[[], int] | None = None
     borne_by: str | None = None
-    sections: EqualSections | None = None
+    sections: SummedSections | None = None
 
     def __post_init__(self) -> None:
         check_shape("base_position", self.base_position, 3, 1)
