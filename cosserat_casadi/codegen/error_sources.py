@@ -54,7 +54,7 @@ def error_words(model: Model, names: Names) -> Words:
         "scene_tolerance": f"{tolerance:g}",
         "error_sweeps": answer_error.MOST_SWEEPS,
         "error_safety": answer_error.SAFETY,
-        "error_settled": answer_error.SETTLED,
+        "error_settled": answer_error.settled_for(model),
         "error_followed": FOLLOWED,
         "error_contracting": answer_error.CONTRACTING,
         "error_enough": answer_error.enough_for(model),

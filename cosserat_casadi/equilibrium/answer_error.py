@@ -41,6 +41,9 @@ MOST_STEPS = 6
 SETTLED = 0.2
 """Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
 
+SETTLED_IN_LAYERS = 0.1
+"""The same where layers push, whose stiffness is another one after each step."""
+
 CONTRACTING = 0.5
 """Largest ratio of two steps of the missing modes, one after the other, with which a correction is believed."""
 
@@ -234,6 +237,7 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
     """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model."""
     # A look that leaves the answer within its tolerance need not be repeated.
     enough = enough_for(solution.model)
+    settled = settled_for(solution.model)
     # Far from an answer the equations overflow: what comes out then is not settled.
     with np.errstate(all="ignore"):
         for corrections in (_sweeps(solution), _newton_steps(solution)):
@@ -241,7 +245,7 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
             for correction in corrections:
                 if not np.isfinite(correction.change):
                     break
-                if correction.contracts and abs(correction.change - before) <= SETTLED * correction.change:
+                if correction.contracts and abs(correction.change - before) <= settled * correction.change:
                     return True, replace(correction, settled=True)
                 if correction.contracts and correction.change <= enough:
                     return True, correction
@@ -249,10 +253,15 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
     return False, correction
 
 
+def settled_for(model: Model) -> float:
+    """Relative difference of two changes, one after the other, below which the last is believed."""
+    return SETTLED_IN_LAYERS if model.discrete.has_layers else SETTLED
+
+
 def enough_for(model: Model) -> float:
     """Change below which the first sweep is believed: the estimate that it gives is within the tolerance.
 
-    Thin layers are so far from linear that the first one tells down to half of the change: there none is believed.
+    Layers are so far from linear that the first one tells down to half of the change: there none is believed.
     """
     if model.discrete.has_layers:
         return ROUNDING

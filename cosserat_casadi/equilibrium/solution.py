@@ -22,6 +22,12 @@ from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.result import Result
 
+SECTIONS_APART = (
+    "sections at which contact is summed lie too far apart for this length, radius or width: build the scene with "
+    "these numbers."
+)
+"""Remedy where inputs or parameters have drawn sections too far apart."""
+
 ModelType = TypeVar("ModelType", bound=SystemFunctions)
 
 
@@ -231,11 +237,19 @@ class Solution(Equilibrium[Model]):
     @property
     def remedy(self) -> str:
         """The remedy where the error is above the tolerance."""
+        if self.sections_lie_apart:
+            return SECTIONS_APART
         if self.model.scene.accuracy.fixed_by_hand:
             return "the scene fixes its modes, nodes or rotation: leave them out, or choose them for a range of inputs."
         if self._is_in_chosen_ranges:
             return "the modes were chosen for these inputs too: choose them for less, or ask for a larger tolerance."
         return "the modes were chosen for other inputs: choose them for the range of these inputs."
+
+    @property
+    def sections_lie_apart(self) -> bool:
+        """Whether inputs or parameters have drawn sections at which contact is summed too far apart."""
+        apart = self.model.sections_apart
+        return apart is not None and bool(apart(self.x, self.inputs))
 
     @property
     def _is_in_chosen_ranges(self) -> bool:

@@ -12,9 +12,11 @@ from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_layers import LOOSEST_SECTIONS, pressed
+from cosserat_casadi.model.contact_layers import LOOSEST_POINTS, LOOSEST_SECTIONS, pressed
+from cosserat_casadi.model.contact_pairs import LOOSEST_SPACING
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.pair_terms import PairTerms
 from cosserat_casadi.model.system import System
 from cosserat_casadi.obstacles.registry import SURFACES
 
@@ -35,20 +37,36 @@ def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
 
 
 def sections_lie_apart(system: System) -> Matrix | None:
-    """Whether sections at which thin layers are summed are too far apart by the inputs and parameters, 1×1.
+    """Whether sections at which thin layers, or rods that touch, are summed are too far apart by the inputs, 1×1.
 
-    None where none of these can draw them apart.
+    By the parameters, too. None where none of these can draw them apart.
     """
-    apart: list[Matrix] = []
-    for layer in thin_layers(system.discrete):
-        sections = system.discrete.closer_sections.get(layer.name or "")
-        if sections is None or layer.name not in system.discrete.stretched_layers:
-            continue
-        rod = sections.rod
-        radius = ca.mmin(as_matrix(section_radii(rod.properties, sections.placed.X)))
-        longest = ca.mmax(as_matrix(sections.lengths)) * system.length(rod.properties.name) / rod.length
-        apart.append(ca.MX(longest > LOOSEST_SECTIONS * pressed(layer.obstacle, radius)))
+    discrete = system.discrete
+    layers = [layer for layer in thin_layers(discrete) if layer.name in discrete.stretched_layers]
+    apart = [_layer_lies_apart(system, layer) for layer in layers if layer.name in discrete.finer_sections]
+    apart += [_pair_lies_apart(terms) for terms in system.pairs if any(map(discrete.is_stretched, terms.pair.rods))]
     return ca.mmax(ca.vertcat(*apart)) if apart else None
+
+
+def _layer_lies_apart(system: System, layer: ContactLayer) -> Matrix:
+    """Whether sections at which a layer is summed are too far apart to show their error, 1×1."""
+    sections, loosest = system.discrete.closer_sections.get(layer.name), LOOSEST_SECTIONS
+    if sections is None:
+        # The scene sums it at nodes.
+        sections, loosest = system.discrete.finer_sections[layer.name], LOOSEST_POINTS
+    rod = sections.rod
+    radius = ca.mmin(as_matrix(section_radii(rod.properties, sections.placed.X)))
+    longest = ca.mmax(as_matrix(sections.lengths)) * system.length(rod.properties.name) / rod.length
+    return ca.MX(longest > loosest * pressed(layer.obstacle, radius))
+
+
+def _pair_lies_apart(terms: PairTerms) -> Matrix:
+    """Whether sections of rods that push each other are too far apart to show the error of their sum, 1×1."""
+    longest = [ca.mmax(side.sections.data[0, :]) for side in terms.sides]
+    radii = [ca.mmin(side.sections.data[1, :]) for side in (terms.sides[0], terms.sides[-1])]
+    touching, width = sum(radii), terms.pair.width
+    half = ca.sqrt((touching + width) ** 2 - touching**2)
+    return ca.MX(ca.mmax(ca.vertcat(*longest)) > LOOSEST_SPACING * half)
 
 
 def _depth(system: System, layer: ContactLayer) -> Matrix:

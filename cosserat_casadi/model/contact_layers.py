@@ -47,6 +47,10 @@ LOOSEST_SECTIONS = 0.75
 """Distance of sections over half of the stretch that a layer presses, up to which an error of their sum shows: where
 they are farther apart, the stiffness that they give the layer hangs on where they are."""
 
+LOOSEST_POINTS = 1.0
+"""The same of the Gauss points of a richer scene, in the middle of an element: the nodes of the scene itself may lie
+three times as far apart."""
+
 FEWEST_NODES = 8
 """Fewest intervals of an element: as many as three modes take. On more intervals sections are as much closer."""
 
@@ -194,6 +198,19 @@ def closer_sections(
     spare = SPARE_SECTIONS if stretched else 1
     counts = np.ceil(spare * ratio * rod.grid.intervals * shares).astype(int)
     return SummedSections(rod, tuple(counts.tolist()))
+
+
+def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSections:
+    """Gauss points of each element, as many as intervals that see the layer of an obstacle: no fewer than the rod has.
+
+    Args:
+        obstacle: the obstacle.
+        rod: with the scene's own numbers.
+    """
+    widest = float(rod.properties.length * np.diff(rod.grid.breaks).max())
+    radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
+    seeing = ceil(min(_nodes_for(obstacle, radius, widest), MOST_LAYER_NODES))
+    return SummedSections(rod, (max(seeing, rod.grid.intervals),) * rod.grid.elements, gauss=True)
 
 
 def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> int:

@@ -32,6 +32,9 @@ SURFACE_STIFFNESS = 30.0
 SPACING = 0.25
 """Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""
 
+LOOSEST_SPACING = 0.6
+"""The same where inputs or parameters have drawn sections apart, up to which the error of their sum shows."""
+
 FROM_ITSELF = 2.0
 """Distance along a rod, relative to its diameter and the width, below which its sections do not touch.
 
@@ -80,6 +83,11 @@ class ContactPair:
     def widened(self, ratio: float) -> ContactPair:
         """The pair with a width so many times as large, which pushes about as hard where the gap is zero."""
         return self if ratio == 1.0 else replace(self, width=ratio * self.width, stiffness=self.stiffness / ratio)
+
+    def finer(self, factor: int) -> ContactPair:
+        """The pair with so many times as many sections."""
+        first, second = self.sections
+        return replace(self, sections=(factor * first, factor * second))
 
     @property
     def itself(self) -> bool:

@@ -24,7 +24,7 @@ from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_layers import closer_sections, contact_layers
+from cosserat_casadi.model.contact_layers import closer_sections, contact_layers, points_for
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
@@ -56,6 +56,9 @@ UNEVEN = 1e4
 NO_SOFTNESS = 1e-9
 """Softness below which a rod does not yield to a cable, but for rounding."""
 
+
+FINER_PAIRS = 2
+"""Sections of a richer scene for each one at which a scene sums the push of rods that inputs or parameters stretch."""
 
 FINER_SECTIONS = 3
 """Sections of a richer scene for each section, or interval, at which a scene sums a layer: the error of the sum shows."""
@@ -251,15 +254,17 @@ class DiscreteScene:
     @cached_property
     def stretched_layers(self) -> list[str | None]:
         """Names of the layers whose width, or the length or a radius of whose rod, inputs or parameters change."""
-        found: list[str | None] = []
-        for layer in contact_layers(self._named.scene, self.nominal.rods):
-            if layer.rod is None:
-                continue
-            properties = self._named.rods[layer.rod].properties
-            is_longer = properties.ratio is not None or self.layout.of_rod(layer.rod, "length") is not None
-            if is_longer or any_symbolic([layer.obstacle.width, section_radii(properties, np.zeros(1))]):
-                found.append(layer.name)
-        return found
+        return [
+            layer.name
+            for layer in contact_layers(self._named.scene, self.nominal.rods)
+            if layer.rod is not None and (any_symbolic([layer.obstacle.width]) or self.is_stretched(layer.rod))
+        ]
+
+    def is_stretched(self, rod: str) -> bool:
+        """Whether inputs or parameters change the length or a radius of a rod."""
+        properties = self._named.rods[rod].properties
+        is_longer = properties.ratio is not None or self.layout.of_rod(rod, "length") is not None
+        return is_longer or any_symbolic([section_radii(properties, np.zeros(1))])
 
     @cached_property
     def _named(self) -> DiscreteScene:
@@ -296,8 +301,15 @@ class DiscreteScene:
         """Pairs of rods that push each other."""
         if not self.scene.rod_contacts:
             return ()
-        pairs = contact_pairs(self.scene, self.nominal.rods, self.rods)
-        return tuple(pair.widened(self.layers) for pair in pairs)
+        pairs = [pair.widened(self.layers) for pair in contact_pairs(self.scene, self.nominal.rods, self.rods)]
+        if not self.is_richer:
+            return tuple(pairs)
+        return tuple(pair.finer(FINER_PAIRS) if any(map(self.is_stretched, pair.rods)) else pair for pair in pairs)
+
+    @property
+    def is_richer(self) -> bool:
+        """Whether it is there to show the errors of another scene."""
+        return self.given_sections is not None
 
     @property
     def has_layers(self) -> bool:
@@ -500,10 +512,10 @@ class DiscreteScene:
         discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
         if self.scaling is not None:
             discrete = with_numbers(discrete, self.scene, self.parameters)
-        return Richer(self, replace(discrete, memory=self.remembered, given_sections=self._finer_sections))
+        return Richer(self, replace(discrete, memory=self.remembered, given_sections=self.finer_sections))
 
-    @property
-    def _finer_sections(self) -> dict[str | None, SummedSections]:
+    @cached_property
+    def finer_sections(self) -> dict[str | None, SummedSections]:
         """Sections of the richer scene at which layers are summed, by the name of the load: their error shows."""
         finer = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
@@ -513,8 +525,8 @@ class DiscreteScene:
                 continue
             sections = self.closer_sections.get(layer.name)
             if sections is None:
-                rod = self.rods[layer.rod]
-                sections = SummedSections(rod, (rod.grid.intervals,) * rod.grid.elements, gauss=True)
+                points = points_for(layer.obstacle, self.nominal.rods[layer.rod])
+                sections = replace(points, rod=self.rods[layer.rod])
             finer[layer.name] = sections.finer(FINER_SECTIONS)
         return finer
 

@@ -173,6 +173,12 @@ class ModelFunctions:
         depths = contact_depths(written.system)
         return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
+    @scene_function(Output("apart"))
+    def sections_apart(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ whether sections at which thin layers are summed are too far apart; None where none can be."""
+        apart = sections_lie_apart(written.system)
+        return None if apart is None else [apart]
+
     @scene_function(Output("history"), Output("slips"), Output("friction", "N/m"))
     def memory(self, written: Expressions) -> list[Matrix] | None:
         """(x, inputs) ↦ inputs ``history`` at the next point of a path, stacked, slip and friction at nodes.

@@ -21,7 +21,7 @@ from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
-from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_inside, told_passage, too_deep
+from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_apart, told_inside, told_passage, too_deep
 from cosserat_casadi.motion.contact_guards import SAME_PLACE
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
@@ -644,6 +644,9 @@ def judged(
     elif entered:
         outcome = MotionOutcome.CONTACT_UNSETTLED
         message = entered
+    elif apart := told_apart(history, duration):
+        outcome, error = MotionOutcome.UNRESOLVED, float("inf")
+        message = f"{outcome.value} {apart}"
     elif not error <= bound:
         outcome = MotionOutcome.UNRESOLVED
         found = f"The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."

@@ -23,7 +23,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, with
 from cosserat_casadi.equilibrium.contact.pressing_contacts import PressingContacts, marginal_contact, pressing_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.metrics import largest_turn, prolong
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import SECTIONS_APART, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -299,10 +299,12 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
     # The larger half of a discretisation's eigenvalues are not those of the rods, whose oscillations they judge.
     believed = np.arange(len(pairs.values)) < ceil(len(pairs.values) / 2)
     slowest = slowest_told(motions.free_mass)
+    stability = stability_sentences(pairs.values, believed, solution, slowest)
+    apart = solution.sections_lie_apart
     return Modes(
         solution,
-        ModesOutcome.NOT_ESTIMATED,
-        stability_sentences(pairs.values, believed, solution, slowest),
+        ModesOutcome.UNRESOLVED if apart else ModesOutcome.NOT_ESTIMATED,
+        f"{stability} Their error is not known; {SECTIONS_APART}" if apart else stability,
         tuple(modes[:count]),
         pairs.values,
         slowest,
