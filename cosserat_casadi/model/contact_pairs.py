@@ -32,7 +32,7 @@ SURFACE_STIFFNESS = 30.0
 SPACING = 0.25
 """Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""
 
-LOOSEST_SPACING = 0.6
+LOOSEST_SPACING = 1.0
 """The same where inputs or parameters have drawn sections apart, up to which the error of their sum shows."""
 
 FROM_ITSELF = 2.0
