@@ -38,7 +38,7 @@ from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, layer_nodes,
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
-from cosserat_casadi.equilibrium.answer_error import with_notes
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error, with_notes
 from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
@@ -368,12 +368,31 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
             smallest_eigenvalue=reference.smallest_eigenvalue,
             message=reference.message,
         )
+        judged = _with_sums(judged)
         if judged.error_estimate is not None and judged.error_estimate <= solver.tolerance:
             return judged
+    return _with_sums(
+        replace(
+            reference,
+            error_estimate=reference_error + ROUNDING,
+            shape_error_estimate=resolution.shape_error + ROUNDING,
+        )
+    )
+
+
+def _with_sums(solution: Solution) -> Solution:
+    """A solution whose estimated errors contain what sums of layers miss, which nodes of a reference miss as well."""
+    if not solution.model.discrete.finer_sections or solution.error_estimate is None:
+        return solution
+    error = answer_error(solution)
+    if error.watched == UNKNOWN:
+        # The finer solution has told it.
+        return solution
+    assert solution.shape_error_estimate is not None, "told with that of the tips"
     return replace(
-        reference,
-        error_estimate=reference_error + ROUNDING,
-        shape_error_estimate=resolution.shape_error + ROUNDING,
+        solution,
+        error_estimate=max(solution.error_estimate, error.watched),
+        shape_error_estimate=max(solution.shape_error_estimate, error.shape),
     )
 
 

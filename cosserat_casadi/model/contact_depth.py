@@ -42,9 +42,13 @@ def sections_lie_apart(system: System) -> Matrix | None:
     By the parameters, too. None where none of these can draw them apart.
     """
     discrete = system.discrete
-    layers = [layer for layer in thin_layers(discrete) if layer.name in discrete.stretched_layers]
-    apart = [_layer_lies_apart(system, layer) for layer in layers if layer.name in discrete.finer_sections]
-    apart += [_pair_lies_apart(terms) for terms in system.pairs if any(map(discrete.is_stretched, terms.pair.rods))]
+    apart = []
+    for layer in thin_layers(discrete):
+        if layer.name not in discrete.finer_sections:
+            continue
+        if layer.name in discrete.stretched_layers or discrete.draws_apart(str(layer.rod)):
+            apart.append(_layer_lies_apart(system, layer))
+    apart += [_pair_lies_apart(terms) for terms in system.pairs if any(map(discrete.draws_apart, terms.pair.rods))]
     return ca.mmax(ca.vertcat(*apart)) if apart else None
 
 

@@ -58,10 +58,10 @@ NO_SOFTNESS = 1e-9
 
 
 FINER_PAIRS = 2
-"""Sections of a richer scene for each one at which a scene sums the push of rods that inputs or parameters stretch."""
+"""Sections of a richer scene for each one at which a scene sums the push of rods that parameters may draw apart."""
 
 FINER_SECTIONS = 3
-"""Sections of a richer scene for each section, or interval, at which a scene sums a layer: the error of the sum shows."""
+"""Sections of a richer scene for each section, or interval, by which a scene sums a layer: what the sum misses shows."""
 
 
 STEPS_OF_LAWS = 3
@@ -266,6 +266,10 @@ class DiscreteScene:
         is_longer = properties.ratio is not None or self.layout.of_rod(rod, "length") is not None
         return is_longer or any_symbolic([section_radii(properties, np.zeros(1))])
 
+    def draws_apart(self, rod: str) -> bool:
+        """Whether inputs or parameters may draw sections of a rod apart, or let less of it be pressed."""
+        return self.is_stretched(rod) or self._named.rods[rod].grid.ends is not None
+
     @cached_property
     def _named(self) -> DiscreteScene:
         """The scene with symbols for the parameters that its file names, even where they are fixed."""
@@ -304,7 +308,7 @@ class DiscreteScene:
         pairs = [pair.widened(self.layers) for pair in contact_pairs(self.scene, self.nominal.rods, self.rods)]
         if not self.is_richer:
             return tuple(pairs)
-        return tuple(pair.finer(FINER_PAIRS) if any(map(self.is_stretched, pair.rods)) else pair for pair in pairs)
+        return tuple(pair.finer(FINER_PAIRS) if any(map(self.draws_apart, pair.rods)) else pair for pair in pairs)
 
     @property
     def is_richer(self) -> bool:
@@ -517,7 +521,7 @@ class DiscreteScene:
     @cached_property
     def finer_sections(self) -> dict[str | None, SummedSections]:
         """Sections of the richer scene at which layers are summed, by the name of the load: their error shows."""
-        finer = {}
+        finer: dict[str | None, SummedSections] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             # Friction hangs on rotations, and on what nodes remember: it is summed at nodes.
             rubs = layer.obstacle.rubs and (self.moving or self.layout.memory is not None)

@@ -21,7 +21,14 @@ from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
-from cosserat_casadi.motion.contact_checks import NOT_OF_RODS, laid_down, told_apart, told_inside, told_passage, too_deep
+from cosserat_casadi.motion.contact_checks import (
+    NOT_OF_RODS,
+    laid_down,
+    told_apart,
+    told_inside,
+    told_passage,
+    too_deep,
+)
 from cosserat_casadi.motion.contact_guards import SAME_PLACE
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of

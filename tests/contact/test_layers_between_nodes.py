@@ -12,9 +12,24 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Compiled, Model, Solution, build, discretise, export, load, modes_of, parse_scene, solve
+from cosserat_casadi import (
+    Compiled,
+    Model,
+    Solution,
+    build,
+    discretise,
+    export,
+    load,
+    modes_of,
+    parse_scene,
+    simulate,
+    solve,
+)
+from cosserat_casadi.equilibrium.metrics import distance_of_poses
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.trajectory import MotionOutcome
+from cosserat_casadi.motion.vibration_modes import ModesOutcome
 from tests.contact.test_smooth_contact import ON_A_BAR
 
 FREE = ON_A_BAR.replace("accuracy = { modes = 2, nodes = 24 }", "")
@@ -215,3 +230,64 @@ def test_told_errors_bound_the_distance_to_shooting(tolerance: float) -> None:
     assert 0.1 * found.error_estimate < distance_to_shooting(found, -0.05) < found.error_estimate
     # Thirty would be needed for the nodes to lie as close.
     assert max(own.nodes for own in found.model.discretisation.values()) <= 20
+
+
+THICK = ["bar.radius=0.02", "bar.width=4e-3", "bar.from=[0.285, -0.2, -0.03]", "bar.to=[0.285, 0.2, -0.03]"]
+"""A bar that presses on 13 mm of the rod to both sides, whose nodes are up to 14 mm apart on 14 intervals."""
+TABLE = (
+    FREE.partition("[[obstacles]]")[0].replace("length = 0.5", "length = 0.4")
+    + """
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.02]
+normal = [0, 0, 1]
+width = 1.8e-3
+"""
+)
+"""A plane below the rod."""
+
+
+@pytest.mark.parametrize(("text", "changes"), [(FREE, THICK), (TABLE, [])])
+def test_the_error_of_a_sum_at_nodes_is_told(text: str, changes: list[str]) -> None:
+    """A few more nodes told 2.2e-3 of 3.0e-3 beside the bar, a first look 2.0e-5 of 2.8e-5 on the plane."""
+    scene = parse_scene(text, changes)
+    found = solve(build(scene, discretise(scene, 4, 14)))
+    exact = solve(build(scene, discretise(scene, 8, 60)), estimate_error=False)
+    assert found.converged and exact.converged and found.contacts
+    assert not found.model.discrete.closer_sections
+    true = distance_of_poses(found.tip(), exact.tip(), found.model.length("rod", found.inputs))
+    assert found.error_estimate is not None
+    assert 0.5 * found.error_estimate < true < found.error_estimate
+
+
+def test_gauss_points_show_a_sum_at_nodes_without_friction_that_is_remembered() -> None:
+    """Three for each interval that sees the layer: of nodes that are too few as well."""
+    scene = parse_scene(FREE, THICK)
+    coarse = build(scene, discretise(scene, 2, 3)).discrete
+    (sections,) = coarse.richer.discrete.closer_sections.values()
+    # Half of the stretch is 13.3 mm; an element of 125 mm has nodes up to 1.5 times as far apart on 10 intervals.
+    assert sections.gauss and sections.counts == (3 * 10,) * 4
+    # Exact for a polynomial along all of an element, where equal parts are not.
+    work = np.sum(known(sections.lengths) * known(sections.placed.X) ** 7)
+    assert_allclose(work, 0.5 / 8, rtol=1e-13, atol=0)
+    rubbing = parse_scene(FREE, [*THICK, "bar.friction=0.2"])
+    discrete = build(rubbing, discretise(rubbing, 2, 5)).discrete
+    assert discrete.richer.discrete.closer_sections
+    assert not discrete.with_memory.richer.discrete.closer_sections
+
+
+def test_modes_and_motions_say_where_sections_lie_too_far_apart() -> None:
+    names = '["bar.width"]'
+    text = f"parameters = {names}\n" + FREE + '[simulation]\nduration = 2e-3\nframes = 3\nstart = "unloaded"\n'
+    scene = parse_scene(text, THIN).with_motion_inputs()
+    resting, moving = (build(scene, discretise(scene, 2, 5), moving=own) for own in (False, True))
+    for width, lie_apart in ((WIDTH, False), (WIDTH / 10, True)):
+        motion = simulate(moving.at({"bar.width": width}))
+        assert (motion.outcome is MotionOutcome.UNRESOLVED) is lie_apart
+        assert ("lie too far apart" in motion.message) is lie_apart
+        assert np.isfinite(motion.error_estimate) is not lie_apart
+        # Without a push the rod is straight above the bar.
+        modes = modes_of(resting.at({"bar.width": width}), {"push.force": np.zeros(3)}, count=2)
+        assert modes.outcome is (ModesOutcome.UNRESOLVED if lie_apart else ModesOutcome.NOT_ESTIMATED)
+        assert ("error is not known" in modes.message) is lie_apart
