@@ -97,7 +97,7 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
     function = ca.Function("distance", [point], ca.cse([distance]))
     positions = positions_before(system, layer)
     if closer is not None:
-        positions = positions @ closer.placed.interpolation.T
+        positions = closer.at_sections(positions)
     gaps = function.map(positions.shape[1])(positions) - radii
     depth: Matrix = -ca.mmin(gaps) / layer.obstacle.width
     return depth

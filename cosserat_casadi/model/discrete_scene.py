@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import isfinite
 from typing import Any
 
 import casadi as ca
@@ -61,8 +62,10 @@ FINER_PAIRS = 2
 """Sections of a richer scene for each one at which a scene sums the push of rods that parameters may draw apart."""
 
 FINER_SECTIONS = 3
-"""Sections of a richer scene for each section, or interval, by which a scene sums a layer: what the sum misses shows."""
+"""Sections of a richer scene for each section, or interval, by which a scene sums a layer: its error shows."""
 
+FINER_ON_PLANES = 2
+"""The same where an obstacle has no other side, and presses longer stretches."""
 
 STEPS_OF_LAWS = 3
 """Steps of conjugate gradients by which an elastic step goes where laws couple strains, or vary along a rod."""
@@ -531,7 +534,9 @@ class DiscreteScene:
             if sections is None:
                 points = points_for(layer.obstacle, self.nominal.rods[layer.rod])
                 sections = replace(points, rod=self.rods[layer.rod])
-            finer[layer.name] = sections.finer(FINER_SECTIONS)
+            finer[layer.name] = sections.finer(
+                FINER_SECTIONS if isfinite(layer.obstacle.thickness) else FINER_ON_PLANES
+            )
         return finer
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from cosserat_casadi.maths.block_operators import sparse
 from cosserat_casadi.maths.grid import Indices, gauss_legendre
 from cosserat_casadi.maths.numbers import Numbers, each_times
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.strain import DiscreteRod
 
 
@@ -101,12 +101,33 @@ class SummedSections:
         """Length of rod that each section stands for, shape (k,), m."""
         return each_times(self._reference_lengths, self.placed.rates)
 
-    @cached_property
-    def to_nodes(self) -> ca.DM:
-        """Matrix from loads per length at the sections to loads at the nodes that do the same work, k×M."""
+    def at_sections(self, field: Matrix) -> Matrix:
+        """A field at the nodes, m×M, at the sections, m×k."""
+        if self.gauss:
+            return self._by_element(field, ca.MX(self._from_nodes))
+        return field @ self.placed.interpolation.T
+
+    def at_nodes(self, loads: Matrix) -> Matrix:
+        """Loads per length at the sections, m×k, as loads at the nodes that do the same work, m×M."""
         # Lengths of sections and of nodes are drawn out alike where parameters move elements.
-        lengths = self._reference_lengths[:, None] / self.rod.reference_lengths
-        return sparse(lengths * self.placed.to_sections)
+        lengths, of_nodes = self._reference_lengths, self.rod.reference_lengths
+        if self.gauss:
+            # The block is in C once, and turned there.
+            block = ca.MX(self._from_nodes)
+            rows, columns = block.shape
+            scale = ca.MX(ca.DM(lengths[:columns])) @ ca.MX(ca.DM(1 / of_nodes[:rows]).T)
+            return self._by_element(loads, scale * block.T)
+        return loads @ sparse(lengths[:, None] / of_nodes * self.placed.to_sections)
+
+    @property
+    def _from_nodes(self) -> ca.DM:
+        """Matrix from values at the nodes of an element to those at its sections, each of which has as many."""
+        elements = self.rod.grid.elements
+        return ca.DM(self.placed.to_sections[: self.size // elements, : self.rod.grid.size // elements].T)
+
+    def _by_element(self, field: Matrix, block: ca.MX) -> Matrix:
+        """Product of the parts of a field in each element with the block that all of them have."""
+        return ca.horzcat(*[part @ block for part in ca.horzsplit(field, block.shape[0])])
 
     @cached_property
     def _reference_lengths(self) -> FloatArray:

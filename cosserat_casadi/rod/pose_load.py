@@ -58,7 +58,7 @@ class LoadedSections:
     def at_sections(self, field: Matrix) -> Matrix:
         """A field at the nodes, m×M, at the loaded sections, m×k."""
         if self.load.sections is not None:
-            return field @ self.load.sections.placed.interpolation.T
+            return self.load.sections.at_sections(field)
         return field if self.everywhere else field[:, self.nodes]
 
     def varied_at_sections(self, variation: Matrix) -> Matrix:
@@ -178,7 +178,7 @@ class LoadedSections:
         if part is None or self.everywhere:
             return part
         if self.load.sections is not None:
-            return part @ self.load.sections.to_nodes
+            return self.load.sections.at_nodes(part)
         size = self.shape.rod.grid.size
         places = ca.Sparsity.triplet(len(self.nodes), size, list(range(len(self.nodes))), self.nodes)
         return part @ ca.DM(places, 1.0)
