@@ -153,8 +153,8 @@ class DiscreteScene:
         moving: whether it is for a motion, in which stress that relaxes has flows.
         memory: grids of the rods at whose nodes loads remember sections along a path; None for the scene's own grids.
         layers: factor on the widths of smooth contact of the scene.
-        given_sections: sections at which layers are summed, by the name of the load; None for the sections that the scene
-            asks for.
+        given_sections: sections at which layers are summed, by the name of the load; None for the sections that the
+            scene asks for.
     """
 
     scene: scenes.Scene

@@ -72,8 +72,8 @@ class Arrangement:
 
     Attributes:
         equations: equations with its contacts, at the inputs and parameters of load factor 0.
-        change: stacked inputs of the scene, and parameters behind them where these move too, at load factor 1 less their
-            values at 0. Parameters change no length, no section and no obstacle.
+        change: stacked inputs of the scene, and parameters behind them where these move too, at load factor 1 less
+            their values at 0. Parameters change no length, no section and no obstacle.
         potential: whether all loads have a potential along the path.
         settings: limits of the curve.
         near: z where the arrangement begins, or nearly so.
