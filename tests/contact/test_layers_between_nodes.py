@@ -250,7 +250,7 @@ width = 1.8e-3
 
 @pytest.mark.parametrize(("text", "changes"), [(FREE, THICK), (TABLE, ["accuracy.tolerance=1e-3"])])
 def test_the_error_of_a_sum_at_nodes_is_told(text: str, changes: list[str]) -> None:
-    """A few more nodes told 2.2e-3 of 3.0e-3 beside the bar, a first look 2.0e-5 of 2.8e-5 on the plane."""
+    """A richer model with a few more nodes told 2.2e-3 of 3.0e-3 beside the bar."""
     scene = parse_scene(text, changes)
     found = solve(build(scene, discretise(scene, 4, 14)))
     exact = solve(build(scene, discretise(scene, 8, 60)), estimate_error=False)
