@@ -72,7 +72,7 @@ class StepContact:
         of_body: whether a body touches.
         place: abscissa X of the section; 0 of a body.
         force: on it along the normal of the obstacle, mean of the last stretch of the step, N.
-        friction: on it along the surface, at the end of the step, world axes, shape (3,), N.
+        friction: on it along the surface, mean of the same stretch, world axes, shape (3,), N.
         slips: whether it slips at the end of the step, as all does without friction; else it sticks.
     """
 

@@ -19,6 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_sections import facings
 from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
+from tests.reference.falling_rods import FallingRod
 
 G = 9.81
 MASS = 0.2 * LENGTH
@@ -205,6 +206,36 @@ def test_a_ball_rolls_down_an_incline_or_slides(friction: float, tmp_path: Path)
     assert contact.slips == (slides > rolls)
     # To the share of the rod in the mass.
     assert_allclose(gone, G * max(rolls, slides) * 0.1**2 / 2, rtol=1e-3, atol=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("friction", "restitution"), [(0.0, 0.0), (0.3, 0.0), (0.3, 0.3)])
+def test_a_rod_falls_as_from_event_to_event(friction: float, restitution: float, tmp_path: Path) -> None:
+    """Its end strikes and slides, it rolls over its length, sticks and breaks loose there, and its tip slaps down."""
+    height, slope, dt = 0.05, 0.3, 5e-4
+    base = {"position": [0, 0, height], "tangent": [1, 0, slope], "free": True}
+    floors = floor(0.0, restitution=restitution, **({"friction": friction} if friction else {}))
+    record = rod(base=base, damping={"retardation_time": 5e-3})
+    made = Moving(scene(floors, record, accuracy={"modes": 3, "nodes": 12, "tolerance": 1e-4}), tmp_path)
+    falling = FallingRod(LENGTH, 0.016, 0.2, 1e-7, 5e-3, modes=3, friction=friction, restitution=restitution)
+    start = np.array([0.0, height, np.arctan(slope), 0.0, 0.0, 0.0])
+    times = dt * np.arange(401)
+    wanted = falling.motion(start, times)
+    ends = np.array([falling.positions(q, np.array([1.0]))[0] for q in wanted]) / LENGTH
+    memory = made.compiled.step_memory()
+    states = [made.compiled.contact_start()]
+    for _ in range(400):
+        states.append(run(made, states[-1], memory, dt, made.model.pack()[None])[-1])
+        for contact in made.compiled.step_contacts(memory) if 0.105 < dt * len(states) < 0.13 else ():
+            # Its end slides: force and friction are of the same time.
+            assert contact.slips and contact.place == 0.0
+            assert_allclose(contact.friction, [friction * contact.force, 0.0, 0.0], rtol=1e-9, atol=1e-12)
+    found = made.tips(states)[:, [0, 2]]
+    errors = np.abs(found - ends).max(axis=1)
+    assert errors[times < 0.132].max() < 3e-6
+    assert errors[times < 0.166].max() < 2e-5
+    # The slap falls on a rod that rolls as fast as a section of it can: its time tells.
+    assert errors.max() < 1e-3
 
 
 ACROSS = {"along": 0.2, "back": 0.5, "across": 0.35}

@@ -417,18 +417,22 @@ static void settle_stages(real *solution, workspace *work) {
   }
 }
 
-/* What a section that touches is told to rub with at the end of a stretch; the next one begins its guess with it. */
+/* What a section that touches rubs with, the mean of a stretch as its force; the next one begins its guess with its end. */
 static void note_friction(int k, const section_gap *gap, workspace *work) {
   touch *own = work->touches + k;
   real tangents[2][3], force[2];
+  real mean[2] = {0, 0};
   memset(own->drag, 0, sizeof own->drag);
   memset(own->friction, 0, sizeof own->friction);
   if (!own->presses || !rubs(own)) return;
   memcpy(own->drag, own->drags[STAGES - 1], sizeof own->drag);
-  friction_of(own, work->stage_along[STAGES - 1][k], own->drag, force);
+  for (int stage = 0; stage < STAGES; stage++) {
+    friction_of(own, work->stage_along[stage][k], own->drags[stage], force);
+    for (int a = 0; a < 2; a++) mean[a] += STAGE_MATRIX[STAGES - 1][stage] * force[a];
+  }
   both_tangents(gap->normal, own->axis, tangents);
   for (int i = 0; i < 3; i++) {
-    own->friction[i] = FACING[own->facing].force_unit * (force[0] * tangents[0][i] + force[1] * tangents[1][i]);
+    own->friction[i] = FACING[own->facing].force_unit * (mean[0] * tangents[0][i] + mean[1] * tangents[1][i]);
   }
 }
 

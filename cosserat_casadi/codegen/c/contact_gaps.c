@@ -186,10 +186,13 @@ static int gaps_along(const facing *own, const real *nodes, real *gaps, workspac
     const real *weights = own->looks + local * own->nodes;
     const real *node = nodes + 3 * e * own->nodes;
     const real place = own->ends[e] + (own->ends[e + 1] - own->ends[e]) * (real)local / LOOKS;
-    real point[3] = {0, 0, 0};
+    real x = 0, y = 0, z = 0; /* apart: a compiler leaves an array whose address is taken in memory */
     for (int k = 0; k < own->nodes; k++) {
-      for (int j = 0; j < 3; j++) point[j] += weights[k] * node[3 * k + j];
+      x += weights[k] * node[3 * k];
+      y += weights[k] * node[3 * k + 1];
+      z += weights[k] * node[3 * k + 2];
     }
+    const real point[3] = {x, y, z};
     const real gap = (distance_at(own, point, work) - own->radius_at_base - place * taper) / own->length;
     gaps[i] = LEVEL * (real)floor((double)(gap / LEVEL) + 0.5);
   }

@@ -14,7 +14,7 @@ from cosserat_casadi.codegen.contact.rubbing import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.compiling.texts import render
-from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
+from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -59,6 +59,7 @@ def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
     for number, obstacle in enumerate(_obstacles(model)):
         name = names.kernel(f"surface_{number}")
         found[name] = _surface_function(obstacle, name)
+        found[names.kernel(f"surface_distance_{number}")] = distance_from(obstacle)
     for number, facing in enumerate(facings(model)):
         if facing.obstacle.rubs:
             rubbing = SurfaceSliding(facing)
@@ -178,7 +179,8 @@ def _functions(model: Model, names: Names) -> Iterator[str]:
         words = {"number": number, "stem": _stem(names, number), "moved_by_inputs": "by_inputs" in points.in_steps}
         yield render("points_in_motion.c.in", words)
     for number in range(len(_obstacles(model))):
-        yield render("surface_in_motion.c.in", {"number": number, "kernel": names.kernel(f"surface_{number}")})
+        kernels = {word: names.kernel(f"{word}_{number}") for word in ("surface", "surface_distance")}
+        yield render("surface_in_motion.c.in", {"number": number, **kernels})
     for number, facing in enumerate(facings(model)):
         if facing.obstacle.rubs:
             kernels = {word: names.kernel(f"{word}_{number}") for word in ("rubbing", "rubbing_derivatives")}
@@ -205,6 +207,7 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
             "force_unit": _real(facing.force_unit),
             "restitution": _real(facing.obstacle.restitution),
             "surface": f"surface_of_{obstacles.index(facing.obstacle)}",
+            "distance": f"surface_distance_of_{obstacles.index(facing.obstacle)}",
         }
         if isinstance(facing, RodFacing):
             yield from _rod_tables(facing, number)
