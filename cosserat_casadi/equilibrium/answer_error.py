@@ -42,7 +42,7 @@ SETTLED = 0.2
 """Relative difference of two changes, one sweep or step after the other, below which the last is believed."""
 
 SETTLED_IN_LAYERS = 0.1
-"""The same where layers push, whose stiffness is another one after each step."""
+"""Relative difference of two changes that is believed where layers push: their stiffness changes with each."""
 
 CONTRACTING = 0.5
 """Largest ratio of two steps of the missing modes, one after the other, with which a correction is believed."""

@@ -66,7 +66,7 @@ def depths_along(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
 
 
 def lie_apart(model: Model, x: FloatArray, inputs: FloatArray) -> npt.NDArray[np.bool_]:
-    """In which states sections at which thin layers are summed are too far apart to tell an error, shape (k,).
+    """Whether sections at which layers are summed are too far apart to tell an error, by state, shape (k,).
 
     Args:
         model: any model.

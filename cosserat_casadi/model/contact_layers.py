@@ -48,8 +48,8 @@ LOOSEST_SECTIONS = 0.75
 they are farther apart, the stiffness that they give the layer hangs on where they are."""
 
 LOOSEST_POINTS = 1.0
-"""The same of the Gauss points of a richer scene, in the middle of an element: the nodes of the scene itself may lie
-three times as far apart."""
+"""Distance of the Gauss points of a richer scene, in the middle of an element, over half of that stretch, up to which
+an error shows: the nodes of the scene itself may lie three times as far apart."""
 
 FEWEST_NODES = 8
 """Fewest intervals of an element: as many as three modes take. On more intervals sections are as much closer."""

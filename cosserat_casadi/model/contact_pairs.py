@@ -33,7 +33,8 @@ SPACING = 0.25
 """Distance of neighbouring sections, relative to half the stretch of a rod that a section touches at no gap."""
 
 LOOSEST_SPACING = 1.0
-"""The same where inputs or parameters have drawn sections apart, up to which the error of their sum shows."""
+"""Distance of sections that inputs or parameters have drawn apart, relative to half of that stretch, up to which the
+error of their sum shows."""
 
 FROM_ITSELF = 2.0
 """Distance along a rod, relative to its diameter and the width, below which its sections do not touch.

@@ -65,7 +65,7 @@ FINER_SECTIONS = 3
 """Sections of a richer scene for each section, or interval, by which a scene sums a layer: its error shows."""
 
 FINER_ON_PLANES = 2
-"""The same where an obstacle has no other side, and presses longer stretches."""
+"""Sections of a richer scene for each interval where an obstacle is a plane, which presses longer stretches."""
 
 STEPS_OF_LAWS = 3
 """Steps of conjugate gradients by which an elastic step goes where laws couple strains, or vary along a rod."""
