@@ -224,7 +224,10 @@ def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray
         entries: of any shape.
         noise: share of the largest entry below which an entry is zero.
     """
-    sizes = np.abs(entries).ravel()
+    # Large matrices are nearly all zeros.
+    places = np.flatnonzero(entries)
+    values = entries.ravel()[places]
+    sizes = np.abs(values)
     order = np.argsort(sizes)
     ascending = sizes[order]
     largest = ascending[-1:].max(initial=0.0)
@@ -239,8 +242,10 @@ def without_rounding(entries: FloatArray, noise: float = ROUNDING) -> FloatArray
         middle = np.where(np.abs(middle - whole) <= SAME * middle, whole, middle)
     sizes[order] = np.repeat(middle, counts)
     sizes[sizes < noise * largest] = 0.0
+    equal = np.zeros(entries.size)
     # No zero is a negative one.
-    return np.copysign(sizes.reshape(entries.shape), entries) + 0.0
+    equal[places] = np.copysign(sizes, values) + 0.0
+    return equal.reshape(entries.shape)
 
 
 def _affine(numbers: Matrix) -> tuple[Matrix, FloatArray, FloatArray] | None:

@@ -16,7 +16,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.block_operators import summed
+from cosserat_casadi.maths.block_operators import sparse, summed
 from cosserat_casadi.maths.numbers import (
     Numbers,
     any_symbolic,
@@ -268,7 +268,7 @@ class Statics:
         section_of_node = grid.section_of_node
         gather = np.zeros((grid.size, section_of_node[-1] + 1))
         gather[np.arange(grid.size), section_of_node] = 1.0
-        return covector @ ca.DM(ca.sparsify(ca.DM(gather)))
+        return covector @ sparse(gather)
 
 
 def _sums_to_the_tip(row: Matrix) -> Matrix:

@@ -39,6 +39,7 @@ from cosserat_casadi.maths.block_operators import (
     hat_blocks,
     hat_operator,
     reversed_places,
+    sparse,
     summed,
     with_product,
 )
@@ -471,8 +472,8 @@ class Tangent:
         """Sums of stacked vectors at the nodes over each distinct section beyond the base, (3·intervals)×3M."""
         section_of_node = self.rod.grid.section_of_node
         sections = np.eye(self.intervals + 1)[1:, section_of_node]
-        gather = np.kron(np.eye(3), sections)
-        return ca.sparsify(ca.DM(gather))
+        gather: ca.DM = ca.kron(ca.DM.eye(3), sparse(sections))
+        return gather
 
 
 def _mirrored(matrix: Matrix) -> Matrix:
