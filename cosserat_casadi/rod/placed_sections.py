@@ -71,7 +71,7 @@ class SummedSections:
     gauss: bool = False
 
     def finer(self, factor: int) -> SummedSections:
-        """So many times as many."""
+        """Sections of the same kind, ``factor`` times as many in each element."""
         return replace(self, counts=tuple(factor * count for count in self.counts))
 
     @cached_property
