@@ -386,7 +386,7 @@ def _with_sums(solution: Solution) -> Solution:
         return solution
     error = answer_error(solution)
     if error.watched == UNKNOWN:
-        # The finer solution has told it.
+        # The estimate beside the finer solution stands: the richer model of this one tells nothing.
         return solution
     assert solution.shape_error_estimate is not None, "told with that of the tips"
     return replace(

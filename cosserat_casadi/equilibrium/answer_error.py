@@ -261,7 +261,7 @@ def settled_for(model: Model) -> float:
 def enough_for(model: Model) -> float:
     """Change below which the first sweep is believed: the estimate that it gives is within the tolerance.
 
-    Layers are so far from linear that the first one tells down to half of the change: there none is believed.
+    Layers are so far from linear that the first sweep may tell half of the change: there no first sweep is believed.
     """
     if model.discrete.has_layers:
         return ROUNDING

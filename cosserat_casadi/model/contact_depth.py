@@ -13,7 +13,7 @@ from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import LOOSEST_POINTS, LOOSEST_SECTIONS, pressed
-from cosserat_casadi.model.contact_pairs import LOOSEST_SPACING
+from cosserat_casadi.model.contact_pairs import LOOSEST_SPACING, half_of_stretch
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.pair_terms import PairTerms
@@ -37,9 +37,10 @@ def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
 
 
 def sections_lie_apart(system: System) -> Matrix | None:
-    """Whether sections at which thin layers, or rods that touch, are summed are too far apart by the inputs, 1×1.
+    """Whether inputs or parameters draw sections too far apart at which thin layers, or rods that touch, are summed.
 
-    By the parameters, too. None where none of these can draw them apart.
+    Returns:
+        1 where they do, else 0, 1×1; None where neither inputs nor parameters can draw sections apart.
     """
     discrete = system.discrete
     apart = []
@@ -68,8 +69,7 @@ def _pair_lies_apart(terms: PairTerms) -> Matrix:
     """Whether sections of rods that push each other are too far apart to show the error of their sum, 1×1."""
     longest = [ca.mmax(side.sections.data[0, :]) for side in terms.sides]
     radii = [ca.mmin(side.sections.data[1, :]) for side in (terms.sides[0], terms.sides[-1])]
-    touching, width = sum(radii), terms.pair.width
-    half = ca.sqrt((touching + width) ** 2 - touching**2)
+    half = half_of_stretch(radii[0] + radii[1], terms.pair.width)
     return ca.MX(ca.mmax(ca.vertcat(*longest)) > LOOSEST_SPACING * half)
 
 

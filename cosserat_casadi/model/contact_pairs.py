@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import ceil, sqrt
+from math import ceil
 from typing import Any
 
 import casadi as ca
@@ -155,7 +155,7 @@ def contact_pairs(
             stiffness = SURFACE_STIFFNESS * bending / width**2
         thinnest = float(radii[0].min() + radii[1].min())
         itself = pair[0] == pair[1]
-        spacing = SPACING * sqrt((thinnest + width) ** 2 - thinnest**2)
+        spacing = SPACING * float(half_of_stretch(thinnest, width))
         name = contact.label if contact.rods is not None else f"{contact.name or 'contact'} of {pair[0]} and {pair[1]}"
         yield ContactPair(
             name=name,
@@ -183,6 +183,17 @@ def thickness(rods: Mapping[str, DiscreteRod], pair: ContactPair) -> Scalar:
     """Distance of the centres of sections that touch, where it is least, m."""
     first, second = (least(entries(section_radii(rods[name].properties, LOOKED_AT))) for name in pair.rods)
     return first + second
+
+
+def half_of_stretch(touching: Scalar, width: Scalar) -> Scalar:
+    """Half the stretch of a rod that a section of another touches where they cross without a gap, m.
+
+    Args:
+        touching: distance of their centres, m.
+        width: width of the contact, m.
+    """
+    half: Scalar = ((touching + width) ** 2 - touching**2) ** 0.5
+    return half
 
 
 def _largest_radius(rod: DiscreteRod) -> Scalar:

@@ -55,7 +55,7 @@ class PlacedSections:
 
 @dataclass(frozen=True)
 class SummedSections:
-    """Sections of each element, in which a load per length is summed: in the middle of equal parts, or Gauss points.
+    """Sections of each element at which a load per length is summed: in the middle of equal parts, or Gauss points.
 
     A load that comes and goes within an element is summed by equal parts more exactly than by nodes as many. One along
     all of an element is summed by Gauss points as exactly as by nodes.

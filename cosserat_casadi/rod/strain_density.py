@@ -196,6 +196,7 @@ class StiffnessBeyondHooke:
 
     @property
     def _rod(self) -> DiscreteRod:
+        """The rod, on its grid."""
         return self.energy.shape.rod
 
 
