@@ -82,12 +82,13 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
       if (lowest.place - before > SAME_PLACE / 2) add_touch(number, !own->is_body, lowest.place, work);
       before = lowest.place;
     }
-    const int lies_down = lies || (before >= 0 && lay_before(number, work) && add_laid(number, 0, work) > 1);
-    if (lies_down && add_laid(number, 0, work) > 0) {
+    const int may_lie = lies || (before >= 0 && lay_before(number, work));
+    const int laid = may_lie ? add_laid(number, 0, work) : 0;
+    if (laid > 1 || (lies && laid > 0)) {
       work->touch_count = first;
       work->too_many = had_too_many;
       add_laid(number, 1, work);
-    } else if (lies_down) {
+    } else if (lies) {
       /* Where it touches between these sections alone, it is held there. */
       for (int k = first; k < work->touch_count; k++) work->touches[k].slides = 0;
     }
