@@ -21,6 +21,7 @@ from cosserat_casadi import (
     follow,
     parse_scene,
     read_scene,
+    scene_from_dict,
     solve,
 )
 from cosserat_casadi.cli.reports.solution import print_solution
@@ -189,6 +190,33 @@ def free_span(bending: float = 0.03, weight: float = 0.1 * 9.81, height: float =
     assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)
     length, _, force = found
     return length, force + weight * length, span(found)[0]
+
+
+def test_a_model_with_a_single_input_is_solved_where_nothing_touches() -> None:
+    """A tendon draws a finger onto a table, and lets it off again, when it is an arc: its curvature is that of T e."""
+    bending = 1e6 * np.pi * 4e-3**4 / 4
+    finger = {
+        "name": "finger",
+        "length": 0.1,
+        "strain": "planar",
+        "material": {"youngs_modulus": 1e6, "poisson_ratio": 0.48},
+        "section": {"shape": "circle", "radius": 4e-3},
+        "base": {"position": [0, 0, 0], "tangent": [1, 0, 0]},
+    }
+    tables = {
+        "schema": 1,
+        "accuracy": {"modes": 3, "nodes": 8},
+        "rods": [finger],
+        "actuators": [{"name": "flexor", "kind": "tendon", "rod": "finger", "offset": [4e-3, 0], "tension": 1.0}],
+        "obstacles": [{"name": "table", "kind": "plane", "point": [0, 0, -0.01], "normal": [0, 0, 1]}],
+    }
+    model = build(scene_from_dict(tables))
+    drawn, let_off = (solve(model, [tension]) for tension in (1.0, 0.01))
+    assert drawn.converged and len(drawn.contacts) == 1
+    assert let_off.converged and not let_off.contacts
+    curvature = 0.01 * 4e-3 / bending
+    depth = (1 - np.cos(curvature * 0.1)) / curvature
+    assert_allclose(let_off.tip().position[2], -depth, rtol=1e-9, atol=0)
 
 
 @pytest.mark.slow

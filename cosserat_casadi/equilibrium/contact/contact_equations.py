@@ -180,7 +180,8 @@ class Placed:
         x = ca.MX.sym("x", self.model.size)
         inputs = ca.MX.sym("inputs", self.model.inputs.size)
         system = System(self.model.discrete, Arguments(x, inputs))
-        forces = inputs[self.force_entries] / self.force_units
+        # A column is named, for no entries of a single input are a row to CasADi.
+        forces = inputs[self.force_entries, 0] / self.force_units
         return x, inputs, gap_rows(system, self.state, self.modes, forces)
 
     def obstacle(self, name: str) -> scenes.ObstacleRecord:
