@@ -15,7 +15,7 @@ LINES = {
     "accuracy": 3_610,
     "actuators": 470,
     "beside rooms": 610,
-    "cli": 4_390,
+    "cli": 4_400,
     "codegen": 11_800,
     "compiling": 4_530,
     "constraints": 1_040,

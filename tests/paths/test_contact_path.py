@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from rich.console import Console
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from cosserat_casadi import build, discretise, follow, parse_scene, solve
+from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 from cosserat_casadi.plots.path_plot import plot_path
@@ -256,6 +258,14 @@ def test_scene_path_meets_its_tolerance() -> None:
     assert path.error_estimate is not None
     assert path.error_estimate < 1e-6
     assert_allclose(path.events[1].factor, 0.0853380845, rtol=1e-6, atol=0)
+
+
+def test_a_report_fits_a_terminal_of_80_columns(lowered: ContactPath) -> None:
+    console = Console(record=True, width=80)
+    print_path(console, lowered, [])
+    text = console.export_text()
+    assert "beyond it" in text and "x, m" in text
+    assert "…" not in text
 
 
 @pytest.mark.slow

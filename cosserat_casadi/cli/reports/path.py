@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 from cosserat_casadi.results.facts import digits
 
@@ -19,7 +21,11 @@ def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path])
     """Print the outcome, the events and the end, and the files that were written."""
     print_outcome(console, path.model.scene.title, path.message, good=path.converged)
     if len(path.factor):
-        console.print(_path_table(path))
+        # Of a rod whose tip is held another section is shown: its tip does not move.
+        abscissae = {name: path.section(name) for name in path.model.discrete.rods}
+        stations = _stations(path, abscissae)
+        console.print(_events_table(path, stations))
+        console.print(_positions_table(abscissae, stations))
     console.print(_merit_sentence(path))
     print_written(console, written)
 
@@ -37,30 +43,61 @@ def _merit_sentence(path: EquilibriumPath) -> str:
     return escape("; ".join([*parts, *path.model.resolution_words]))
 
 
-def _path_table(path: EquilibriumPath) -> Table:
-    """The start, the events and the end of a path, with the stability of what follows."""
-    headings = ("point", "factor", escape(path.name), "beyond it", "rod", "position, m")
-    table = table_of(*headings, unbroken=("point", "factor", "beyond it"))
-    # Of a rod whose tip is held another section is shown: its tip does not move.
-    abscissae = {name: path.section(name) for name in path.model.discrete.rods}
+@dataclass(frozen=True)
+class _Station:
+    """The start of a path, an event or the end, as tables show it.
+
+    Attributes:
+        kind: the word for the station.
+        factor: of the path at the station.
+        index: of the first point of the path behind the station.
+        positions: of the section of each rod that is shown, m, shape (3,) each.
+    """
+
+    kind: str
+    factor: float
+    index: int
+    positions: Sequence[FloatArray]
+
+
+def _stations(path: EquilibriumPath, abscissae: Mapping[str, float]) -> list[_Station]:
     along = [path.position(X, name) for name, X in abscissae.items()]
     factors = path.factor.tolist()
     last = len(factors) - 1
-    rows = [("start", factors[0], 0, [positions[0] for positions in along])]
+    stations = [_Station("start", factors[0], 0, [positions[0] for positions in along])]
     for event in path.events:
         positions = [path.event_position(event, X, name) for name, X in abscissae.items()]
         # An event lies between two points; beyond the last one there is none to judge.
-        rows.append((_event_kind(event), event.factor, min(event.position, last), positions))
-    rows.append(("end", factors[last], last, [positions[-1] for positions in along]))
-    for kind, factor, beyond, positions in rows:
-        value = ", ".join(digits(np.ravel(path.value_at(factor), order="F")))
-        cells = [kind, f"{factor:.10g}", f"[{value}]", _stability(path, beyond)]
-        # A line for each rod; what belongs to the point stands on the first.
-        for (name, X), position in zip(abscissae.items(), positions, strict=True):
-            section = f"{name} tip" if X == 1.0 else f"{name} X = {X:.3g}"
-            table.add_row(*map(escape, cells), escape(section), ", ".join(digits(position)))
-            cells = [""] * len(cells)
+        stations.append(_Station(_event_kind(event), event.factor, min(event.position, last), positions))
+    stations.append(_Station("end", factors[last], last, [positions[-1] for positions in along]))
+    return stations
+
+
+def _events_table(path: EquilibriumPath, stations: Sequence[_Station]) -> Table:
+    """The start, the events and the end of a path, with the stability of the equilibria behind each."""
+    table = table_of("point", "factor", escape(path.name), "beyond it", unbroken=("factor", "beyond it"))
+    for station in stations:
+        value = ", ".join(digits(np.ravel(path.value_at(station.factor), order="F")))
+        cells = [station.kind, _factor(station), f"[{value}]", _stability(path, station.index)]
+        table.add_row(*map(escape, cells))
     return table
+
+
+def _positions_table(abscissae: Mapping[str, float], stations: Sequence[_Station]) -> Table:
+    """Where a section of each rod is at the start, the events and the end."""
+    table = table_of("factor", "section", right=("x, m", "y, m", "z, m"), unbroken=("factor",), fold=("section",))
+    for station in stations:
+        factor = _factor(station)
+        for (name, X), position in zip(abscissae.items(), station.positions, strict=True):
+            section = f"{name} tip" if X == 1.0 else f"{name} X = {X:.3g}"
+            table.add_row(factor, escape(section), *digits(position))
+            # The factor stands on the line of the first rod.
+            factor = ""
+    return table
+
+
+def _factor(station: _Station) -> str:
+    return f"{station.factor:.10g}"
 
 
 def _event_kind(event: PathEvent) -> str:
