@@ -3,7 +3,7 @@
 A free rod is released where the load path ended, off its saddle. A held rod is pulled in to its supports by springs
 that grow from limp to rigid, the loads growing along, and relaxes anew at every stage: at a bifurcation it leaves for
 the branch of less energy. The minimum of the energy is corrected by Newton's method and judged like any other solution.
-See docs/theory.md, section 9, "Settling".
+See docs/theory.md, section 9, "Relaxing".
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 ``N`` is the number of intervals. The ``N + 1`` Gauss–Lobatto points run from base to tip,
 ``X_j = (1 − cos(πj/N)) / 2``, ends included. Report appendix B has them from tip to base on [−1, 1]; here
 ``x = 2X − 1`` and every derivative carries ``dx/dX = 2``. Matrices act on columns of values at the points.
-See docs/theory.md, sections 3 and 12 (the errata of appendix B).
+See docs/theory.md, sections 3 and 13 (the errata of appendix B).
 
 All cosines are made from sines of small angles: near the ends of [0, 1] the points lie as close as 1/N², and a
 difference of two cosines would lose as many digits.
