@@ -97,20 +97,37 @@ def completed(example: str) -> dict[str, Any]:
     return tables
 
 
-def records(record: type[Record] = Scene, told: dict[str, Any] | None = None) -> list[type[Record]]:
-    """Every record that a scene may hold; a table that kinds of one family share is told once."""
-    met = [record]
+def records(
+    record: type[Record] = Scene, path: str = "", met: dict[type[Record], str] | None = None
+) -> dict[type[Record], str]:
+    """Every record that a scene may hold, each with the heading of its family; empty where it has none."""
+    met = {record: ""} if met is None else met
     for key, field in record.model_fields.items():
         contents = contents_of(field)
         if isinstance(contents, Family):
-            shared: dict[str, Any] = {}
-            for kind in contents.records.values():
-                met += records(kind, shared)
-        elif contents is not None and (told is None or told.get(key) is not contents):
-            met += records(contents)
-            if told is not None:
-                told[key] = contents
+            heading = f"`{path}.{key}`" if path else f"`[[{key}]]`"
+            inner = dict.fromkeys(contents.records.values(), heading)
+        else:
+            inner = {} if contents is None else {contents: ""}
+        for kind, heading in inner.items():
+            if kind not in met:
+                met[kind] = heading
+                records(kind, f"{path}.{key}" if path else key, met)
     return met
+
+
+SECTIONS = re.split(r"^#+ ", PAGE, flags=re.MULTILINE)[1:]
+"""Sections of the page, each of which begins with its heading."""
+
+
+def sections_of(record: type[Record]) -> list[str]:
+    """Sections with the example of a record: materials of rods and of tubes have the same one."""
+    return [section for section in SECTIONS if f"```toml\n{record.example}```" in section]
+
+
+def keys_in(section: str) -> list[str]:
+    """Keys of the lines of a section's table."""
+    return re.findall(r"^\| `(\w+)` \|", section, flags=re.MULTILINE)
 
 
 def lines() -> list[list[str]]:
@@ -148,11 +165,27 @@ def test_a_key_that_is_not_read_is_not_in_an_example() -> None:
 
 
 def test_every_record_has_an_example_and_every_key_a_line() -> None:
-    expected = [
-        key for record in records() for key in scene_reference.contents_by_key(record) if not in_a_heading(record, key)
-    ]
-    assert sorted(row[0].strip("`") for row in lines()) == sorted(expected)
-    assert [record.__name__ for record in records() if record.example not in EXAMPLES] == []
+    """Keys that all kinds of a family have stand in the section of the family, all others in the record's own."""
+    for record, heading in records().items():
+        of_family = [section for section in SECTIONS if heading and section.partition("\n")[0] == heading]
+        shared = [key for section in of_family for key in keys_in(section)]
+        expected = [key for key in scene_reference.contents_by_key(record) if not in_a_heading(record, key)]
+        told = [sorted(keys_in(section) + shared) for section in sections_of(record)]
+        assert sorted(expected) in told, record.__name__
+
+
+def test_tables_that_several_tables_hold_have_one_section() -> None:
+    """Turns about three axes stand in bases, supports, joints and targets."""
+    euler = [section for section in SECTIONS if ".euler`" in section.partition("\n")[0]]
+    assert len(euler) == 1
+    assert PAGE.count("(#rodsbaseeuler)") == 6
+
+
+def test_keys_of_all_kinds_have_one_line() -> None:
+    """Kinds of obstacles share what says who touches them, and how."""
+    assert PAGE.count("| `slip_speed` |") == len(["obstacles", "rod_contacts"])
+    (sphere,) = [section for section in SECTIONS if section.startswith('`kind = "sphere"`')]
+    assert keys_in(sphere) == ["radius", "centre"]
 
 
 def in_a_heading(record: type[Record], key: str) -> bool:
