@@ -49,9 +49,9 @@ PUSH = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.3, -0.2,
 WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "body", "force": [0.5, 0.0, 0.1]}
 
 RODS = {
-    "Kirchhoff, short, force per length that follows": ("kirchhoff", 6, 15, True),
-    "Kirchhoff, force per length that follows": ("kirchhoff", 10, 40, True),
-    "Reissner, force per length that follows": ("reissner", 10, 33, True),
+    "Kirchhoff, short, follower force per length": ("kirchhoff", 6, 15, True),
+    "Kirchhoff, follower force per length": ("kirchhoff", 10, 40, True),
+    "Reissner, follower force per length": ("reissner", 10, 33, True),
     "Kirchhoff, dead force": ("kirchhoff", 18, 56, False),
     "Reissner, dead force": ("reissner", 14, 46, False),
 }

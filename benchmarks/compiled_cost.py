@@ -286,8 +286,8 @@ def sides(rows: list[Row]) -> str:
     wrong = [row for row in written if (foreseen_statements(row.terms) <= MOST_IN_COLUMNS) != row.in_columns]
     limit = f"{MOST_IN_COLUMNS:,}".replace(",", " ")
     return (
-        f"Foreseen on the wrong side of {limit} statements, the limit of code by columns: "
-        f"{len(wrong)} of {len(written)} discretisations."
+        f"The law puts {len(wrong)} of {len(written)} discretisations on the wrong side of {limit} statements, the "
+        "limit of code by columns."
     )
 
 

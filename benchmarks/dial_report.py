@@ -16,8 +16,8 @@ DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- dial: written by benchmarks/dial.py -->", "<!-- end of dial -->"
 FIGURE = "figures/dial.png"
 LAW = (
-    "Cost is the time of residual and Jacobian compiled with gcc -O2, as foreseen by the law of `accuracy/cost.py` "
-    "([how far it is off](#what-the-choice-takes-a-discretisation-to-cost))."
+    "Cost is the time of residual and Jacobian compiled with gcc -O2, as predicted by the law of `accuracy/cost.py` "
+    "([errors of the law](#what-the-choice-takes-a-discretisation-to-cost))."
 )
 COLOURS = ("#88ccee", "#4477aa", "#228833", "#aa3377")
 RowDict = dict[str, str]
@@ -84,14 +84,16 @@ class Results:
         found = []
         shot = sum(row["reference"] == "shooting" for row in self.judged)
         stood_in = sum(row["reference"] == "finer" for row in self.judged)
-        words = f"True errors are against shooting for {shot} picks"
-        found.append(f"{words}, against a far finer discretisation where shooting fails for {stood_in}.")
+        found.append(
+            f"The reference of the true errors is shooting for {shot} picks, and a far finer discretisation for "
+            f"{stood_in} picks at which shooting fails."
+        )
         cold = _numbers(self.judged, "cold") / _numbers(self.judged, "tolerance")
         cold = cold[np.isfinite(cold)]
         if len(cold):
             found.append(
-                f"{len(cold)} picks were also held against shooting that followed the loads from the unloaded rod by "
-                f"itself: {np.sum(cold <= 1)} within the tolerance, the worst at {cold.max():.2f} of it."
+                f"{len(cold)} picks were also compared with shooting that started from the unloaded rod and followed "
+                f"the loads: {np.sum(cold <= 1)} are within the tolerance, the worst at {cold.max():.2f} of it."
             )
         found.append(LAW)
         if self.sample:
@@ -103,7 +105,7 @@ def write_results(results: Results) -> None:
     """Table and figure into the docs."""
     page = DOCS / "accuracy.md"
     before, rest = page.read_text().split(BEGIN)
-    picture = f"![True errors and costs of what tolerances pick]({FIGURE})"
+    picture = f"![True errors and costs of the picked discretisations]({FIGURE})"
     page.write_text(f"{before}{BEGIN}\n{results.text}\n\n{picture}\n{END}{rest.split(END)[1]}")
     (DOCS / FIGURE).parent.mkdir(exist_ok=True)
     write_figure(_figure(results), DOCS / FIGURE, dpi=110)
@@ -113,11 +115,11 @@ def _sample_sentence(rows: list[RowDict]) -> str:
     foreseen = _numbers(rows, "foreseen_chosen") / _numbers(rows, "foreseen_best")
     jacobian = _numbers(rows, "jacobian_chosen") / _numbers(rows, "jacobian_best")
     cold = _numbers(rows, "cold_chosen") / _numbers(rows, "cold_best")
-    pairs = ((foreseen, "foreseen"), (jacobian, "compiled residual and Jacobian"), (cold, "compiled cold solve"))
+    pairs = ((foreseen, "predicted"), (jacobian, "compiled residual and Jacobian"), (cold, "compiled cold solve"))
     words = "; ".join(f"{name} {' / '.join(_spread(ratio))}" for ratio, name in pairs)
     return (
-        f"{len(rows)} pairs of pick and cheapest, drawn from those that differ, were compiled and run. Ratio in the "
-        f"median / at 95 % / worst: {words}."
+        f"{len(rows)} random pairs of different pick and cheapest were compiled and run. Ratios, median / 95 % / "
+        f"worst: {words}."
     )
 
 

@@ -99,7 +99,7 @@ HEADINGS = (
     "scene",
     "unknowns",
     "cold solve, no `info`",
-    "with `info`, which estimates",
+    "with `info`, estimate included",
     "`NAME_error_estimate`",
     "turn of `NAME_track`",
     "C, kB: with, without",

@@ -29,12 +29,12 @@ DOCS = ROOT / "docs" / "hard-cases.md"
 BEGIN, END = "<!-- fuzz: written by benchmarks/fuzz.py -->", "<!-- end of fuzz -->"
 WORDS = {
     "converged": "equilibrium found, checked",
-    "unresolved": "an equilibrium of the discrete model, said to be unresolved",
-    "load_stalled": "the load stalled, said so",
-    "max_iterations": "iterations ran out, said so",
-    "singular": "singular Jacobian, said so",
-    "not_finite": "a value was not finite, said so",
-    "refused": "refused: the support lies outside what the rod can move in",
+    "unresolved": "an equilibrium of the discrete model, reported as unresolved",
+    "load_stalled": "the load stalled, and the outcome says so",
+    "max_iterations": "iterations ran out, and the outcome says so",
+    "singular": "singular Jacobian, and the outcome says so",
+    "not_finite": "a value was not finite, and the outcome says so",
+    "refused": "refused: the support is outside the space in which the rod can move",
 }
 
 
@@ -56,7 +56,7 @@ def summary(found: dict[int, Verdict]) -> str:
     faulty = [seed for seed, v in sorted(found.items()) if v.faults]
     figures = (
         f"{len(found):,} scenes; {len(faulty)} with a fault; longest {longest:.0f} s. Violation of the weak form by "
-        f"what converged: median {weak[len(weak) // 2]:.0e}, 95 % {weak[int(0.95 * (len(weak) - 1))]:.0e}, "
+        f"converged results: median {weak[len(weak) // 2]:.0e}, 95 % {weak[int(0.95 * (len(weak) - 1))]:.0e}, "
         f"worst {weak[-1]:.0e}, in the stress between the nodes of a discretisation that the user fixed too coarse."
     )
     return "\n".join(["| outcome | | scenes |", "|---|---|---|", *rows, "", figures])

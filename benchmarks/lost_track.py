@@ -193,8 +193,8 @@ HEADINGS = (
     "with `recover`",
     "of these `LOAD_STALLED`",
     "turns until found",
-    "`track` that follows, µs",
-    "that is lost, µs",
+    "`track`, followed, µs",
+    "`track`, lost, µs",
     "`recover`, µs",
 )
 

@@ -341,7 +341,8 @@ def kicked_rows() -> Iterator[str]:
         yield f"| {elements} | {modes} | {place:.1e} | {turn:.1e} | {usual:.1e} | {steps} | {seconds:.1f} |"
     place, turn, _ = errors_of(coarser, exact)
     fine, coarse = KICKED_CELLS
-    yield f"\nOn {coarse} cells in place of {fine} the other method is {place:.0e} and {turn:.0e} away."
+    changes = f"{place:.0e} and {turn:.0e}"
+    yield f"\nOn {coarse} cells instead of {fine}, place and turn of the other method change by {changes}."
     yield "\n| elements | place falls as | modes of a strain for 1e-04 | turn falls as | modes of a strain for 1e-04 |"
     yield "|---|---|---|---|---|"
     for elements in places:

@@ -176,8 +176,9 @@ def without_shear(rows: Sequence[Rival], true: Paths) -> str:
     stiff = simulate(released(1e-4, "kirchhoff")).tip("rod").position
     own = [f"{error(row.tip, stiff):.1e}" for row in rows if row.package == "MuJoCo" and row.tip is not None]
     return (
-        f"MuJoCo's equations: a rod that neither shears nor stretches is {error(stiff, true):.1e} of the length away, "
-        f"by our own motion to 1e-4. Against that one the errors of its cable are {', '.join(own)}."
+        f"MuJoCo's equations: our own motion, to 1e-4, of a rod that neither shears nor stretches is "
+        f"{error(stiff, true):.1e} of the length away. Compared with that motion, the errors of the cable are "
+        f"{', '.join(own)}."
     )
 
 

@@ -219,8 +219,8 @@ def space_lines(distances: dict[str, float]) -> str:
     """How far the tips on these modes are from those on more of them."""
     words = [f"{distance:.0e} ({name})" for name, distance in distances.items()]
     return (
-        f"The tips on these {MODES} modes are {' and '.join(words)} of the length from those of another program on 9 "
-        "to 12 modes: that is the error in space, and no step makes it smaller."
+        f"The tips on these {MODES} modes are {' and '.join(words)} of the length away from the tips of another "
+        "program on 9 to 12 modes. This is the error in space, which no step reduces."
     )
 
 

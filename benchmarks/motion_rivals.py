@@ -83,14 +83,14 @@ class Rival:
 
 LIMITS = {
     "Exudyn": "Geometrically exact beams in the plane, generalised-α with a spectral radius of 0.9 (C++). "
-    "The user chooses elements and steps, and nothing tells the error.",
-    "MuJoCo": "The cable of version 3: rigid pieces on ball joints. The engine has neither shear nor extension for it. "
-    "Version 4 has removed the cable for flexible chains, which have no shear either.",
-    "PyElastica": "Explicit: steps shrink with the elements, and longer ones explode. Its sections shrink as the rod "
-    "stretches, ours do not: what is left of its error with many elements. "
-    "Its clamp, as that of MuJoCo's cable, holds the first element as a whole, given half an element more.",
-    "soromox": "The same strain coordinates as ours, differentiable, on JAX; forward dynamics with explicit steps. "
-    "Every model and solver is compiled once: the first call.",
+    "The user chooses elements and steps, and there is no error estimate.",
+    "MuJoCo": "The cable of version 3: rigid pieces on ball joints, without shear and extension. "
+    "Version 4 has replaced the cable by flexible chains, which have no shear either.",
+    "PyElastica": "It is explicit: steps shrink with the elements, and longer steps explode. Its sections shrink as "
+    "the rod stretches, ours do not: this is the error that remains with many elements. Its clamp, like the clamp of "
+    "MuJoCo's cable, holds the whole first element, so the rod is half an element longer here.",
+    "soromox": "It has the same strain coordinates as ours, differentiable, on JAX, and forward dynamics with explicit "
+    "steps. The first call compiles model and solver.",
 }
 """What a package is, and what it could not do."""
 

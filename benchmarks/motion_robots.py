@@ -617,12 +617,12 @@ SETTINGS = {
 """Elements, and the step in s, of PyElastica as a share of the time in which a wave crosses an element."""
 
 LIMITS = (
-    "Tendons of peers are couples at their ends: what a tendon beside its axis is to a rod that keeps its length.",
-    "PyElastica has no damping in the material, without which the backbone would be another one; in addition its steps "
-    "would be 0.2 µs. In the loop its nodes are put on circle and line, and the slider is mass of its last node.",
-    "MuJoCo's crank has a large inertia and is turned by a moment; the slider hangs on the cable by a soft constraint.",
-    "soromox has chains alone, and explicit steps: it stands in the table above. cardillo is not in the package index "
-    "that this was run with.",
+    "In the other packages a tendon is a couple at its end, which is equivalent for a rod that keeps its length.",
+    "PyElastica does not have the backbone: it has no damping in the material, and its steps would be 0.2 µs. In the "
+    "loop its nodes are put on circle and line, and the mass of the slider is added to its last node.",
+    "MuJoCo's crank has a large inertia and is turned by a moment; a soft constraint holds the slider at the cable.",
+    "soromox has only chains, and explicit steps, so it is only in the table above. cardillo is not in the package "
+    "index of this run.",
 )
 
 

@@ -162,7 +162,8 @@ def times() -> str:
             bare_time, named_time = best_times(with_constants, with_parameters)
             ratios.append(f"{named_time / bare_time:.2f}")
         rows.append((name, str(model.parameters.size), *ratios))
-    headings = ("time in C, with constants = 1", "numbers", "solve, unloaded rod", "solve, near by", "derivatives")
+    solves = ("solve from the unloaded rod", "solve from near by")
+    headings = ("time in C, with constants = 1", "numbers", *solves, "derivatives")
     return table(headings, rows)
 
 

@@ -60,12 +60,12 @@ class Peer:
 
 
 LIMITS = {
-    "PyElastica": "Dynamics alone: an equilibrium is where a damped motion comes to rest. Steps shrink with the square "
-    "of the radius, so that B1 itself would take millions. Its sections shrink as the rod stretches, ours do not: what "
-    "is left of its error with many elements. Its clamp holds the first element as a whole, given half "
-    "an element more. No derivatives, no C.",
-    "SciPy solve_bvp": "General collocation: equations, scaling and start are the user's. Nothing tells which "
-    "equilibrium was found or whether it is stable. No derivatives of the solution, no C.",
+    "PyElastica": "It solves only dynamics: an equilibrium is the rest of a damped motion. Steps shrink with the "
+    "square of the radius, so B1 itself would take millions of steps. Its sections shrink as the rod stretches, ours "
+    "do not: this is the error that remains with many elements. Its clamp holds the whole first element, so its rod is "
+    "half an element longer here. It has no derivatives and no C.",
+    "SciPy solve_bvp": "General collocation: the user gives equations, scaling and start. It does not say which "
+    "equilibrium was found or whether it is stable. It has no derivatives of the solution and no C.",
 }
 """What a package could not do."""
 

@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.kernels import dense
 
 ROOT = Path(__file__).parents[1]
 BEGIN, END = "<!-- printers: written by benchmarks/printers.py -->", "<!-- end of printers -->"
-HEADINGS = ("function", "here, µs", "CasADi's C, µs", "here, kB", "CasADi's C, kB")
+HEADINGS = ("function", "this package, µs", "CasADi's C, µs", "this package, kB", "CasADi's C, kB")
 
 
 def robot() -> Model:

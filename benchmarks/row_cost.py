@@ -116,7 +116,7 @@ def measure(index: int) -> tuple[int, float, float]:
     return model.size, microseconds(model, row_library(model, **chosen)), plain
 
 
-HEADINGS = ("what is swept", "unknowns", "µs a row", "rows a second of one core", "rows without vectors, µs", "×")
+HEADINGS = ("swept numbers", "unknowns", "µs a row", "rows a second of one core", "rows without vectors, µs", "×")
 
 
 def main(

@@ -119,7 +119,7 @@ def main() -> None:
         "tip, of the length",
         "rate",
         "turn, rad",
-        "told",
+        "estimate",
         "force, %",
         "smallest gap, widths",
         "s",

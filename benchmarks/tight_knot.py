@@ -146,8 +146,8 @@ def main() -> None:
     if not solution.converged or layer is None:
         raise SystemExit(solution.message)
     poses = solution.pose(np.linspace(0.0, 1.0, ELEMENTS + 1))
-    told = f"{MODES} modes an element; told: {solution.error_estimate:.1e}, and {layer:.1e} by the width"
-    rows = [cells(f"cosserat_casadi, {told}", poses.position, seconds)]
+    estimates = f"error estimate {solution.error_estimate:.1e}, layer error estimate {layer:.1e}"
+    rows = [cells(f"cosserat_casadi, {MODES} modes an element, {estimates}", poses.position, seconds)]
     print(rows[0], "stable" if solution.stable else "not stable", flush=True)
     begun = time.process_time()
     middles = solution.pose((np.arange(ELEMENTS) + 0.5) / ELEMENTS)

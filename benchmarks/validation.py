@@ -77,7 +77,7 @@ STUDIES = (
         "curved_beam",
         (
             Number("beam.material.youngs_modulus", "E, GPa", 1e-9, "200"),
-            Number("beam.material.terms.0.coefficient", "energy by the fourth power of curvature, J m³"),
+            Number("beam.material.terms.0.coefficient", "energy term of the fourth power of curvature, J m³"),
             Number("beam.intrinsic.curvature.y[0]", "curvature, mean, 1/m"),
             Number("beam.intrinsic.curvature.y[1]", "curvature, linear, 1/m"),
             Number("beam.intrinsic.curvature.y[2]", "curvature, quadratic, 1/m"),
@@ -103,9 +103,9 @@ STUDIES = (
         "silicone_arm",
         (
             Number("chamber.offset.x", "offset in the plane of bending, mm", 1e3),
-            Number("chamber.offset.y", "offset across, mm", 1e3),
-            Number("chamber.area_growth.0", "growth of area times offset by 200 mbar"),
-            Number("chamber.area_growth.1", "by the square of that"),
+            Number("chamber.offset.y", "offset across that plane, mm", 1e3),
+            Number("chamber.area_growth.0", "growth of area times offset, coefficient of p/p₀"),
+            Number("chamber.area_growth.1", "coefficient of (p/p₀)²"),
         ),
     ),
     Study(
@@ -127,9 +127,9 @@ STUDIES = (
     Study(
         "three_tendon_robot",
         (
-            Number("first.helix.radius", "first tendon from the axis, mm", 1e3),
-            Number("second.helix.radius", "second tendon, mm", 1e3),
-            Number("third.helix.radius", "third tendon, mm", 1e3),
+            Number("first.helix.radius", "distance of the first tendon from the axis, mm", 1e3),
+            Number("second.helix.radius", "distance of the second tendon, mm", 1e3),
+            Number("third.helix.radius", "distance of the third tendon, mm", 1e3),
         ),
     ),
 )
@@ -250,8 +250,8 @@ def found_table(study: Study, found: Identification) -> str:
     fitted, residual = millimetres(found, held_out=False)
     predicted, left = millimetres(found, held_out=True)
     text = table(("number", "found", "95 %", "source"), rows)
-    text += f"\n\nResidual: {residual:.2f} mm (rms of {fitted} coordinates)"
-    return f"{text}; held out: {left:.2f} mm (of {predicted})." if predicted else f"{text}."
+    text += f"\n\nResidual: {residual:.2f} mm (rms of {fitted} fitted coordinates)"
+    return f"{text}; {left:.2f} mm (rms of {predicted} predicted coordinates)." if predicted else f"{text}."
 
 
 def pages_tables(validation: Validation) -> dict[str, str]:

@@ -137,7 +137,7 @@ def main(
     with browser() as window:
         rows = [row(scene, window) for scene in SCENES]
     heads = ("unknowns", "answer", "pictures a second", "processor time of each", "pixels, each way")
-    text = table(("scene, slider that is moved", *heads), rows)
+    text = table(("scene, moved slider", *heads), rows)
     print(text)
     if write:
         put(PAGE, BEGIN, END, text)

@@ -486,7 +486,7 @@ def check_mass(motions: SmallMotions) -> None:
     """
     if not motions.free_mass.size:
         fault = "nothing may move: supports, joints or contacts hold all of it"
-        raise SceneError(Problem("rods", fault, "leave something free"))
+        raise SceneError(Problem("rods", fault, "leave something free, or take more modes"))
     if not np.any(motions.free_mass):
         fault = "nothing that may move has mass"
         remedy = "give materials a density, rods a linear_density, or bodies a mass"
