@@ -16,6 +16,7 @@ from cosserat_casadi import build, discretise, follow, parse_scene, solve
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
+from cosserat_casadi.paths.equilibrium_path import InputChange
 from cosserat_casadi.plots.path_plot import plot_path
 from tests.commands import cosserat
 from tests.contact.test_contact import PUSH, ROD
@@ -303,7 +304,7 @@ def test_parameters_move_along_a_path() -> None:
     last = [0.02, np.cos(angle / 2), 0, np.sin(angle / 2), 0, 0.1]
     begin = np.append(model.pack(), model.parameters.pack())
     change = np.append(np.zeros(model.inputs.size), last - model.parameters.pack())
-    path = follow_contact_path(model, named[0], begin, change)
+    path = follow_contact_path(InputChange(model, named[0], begin, change))
     assert path.outcome is PathOutcome.CONVERGED
     wanted = solve(model, parameters=dict(zip(named, np.split(np.array(last), [1, 5]), strict=True)))
     assert_allclose(path.solution(-1).tip().position, wanted.tip().position, rtol=0, atol=1e-9)
