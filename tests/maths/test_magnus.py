@@ -10,7 +10,7 @@ from scipy.linalg import expm, expm_frechet
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths import magnus
-from tests.reference.tendons import hat
+from tests.reference.rods import hat
 
 COUNTS = [1, 2, 3, 4]
 OMEGAS = [[0.0, 0.0, 0.0], [1e-9, -2e-9, 0.0], [0.3, -0.2, 0.5], [0.0, 2.0, 0.0], [-1.1, 1.2, 1.0]]

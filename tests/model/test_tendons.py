@@ -1,4 +1,4 @@
-"""Tendons and chambers against closed forms, against tendons as distributed loads, and against their own energy."""
+"""Tendons and chambers against closed forms, against an integration from the clamp, and against their own energy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.conftest import case_files
 from tests.equilibria import solve
 from tests.families import mostly_slow
-from tests.reference.tendons import TendonRod
+from tests.reference.routed_scenes import miss
 
 ROD = """
 schema = 1
@@ -75,29 +75,13 @@ MANY += tendon(COURSES["helical"], "tension = 1.5", "third")
 
 
 @pytest.mark.parametrize("course", mostly_slow([*COURSES, "several"], quick=["partial", "several"]))
-def test_tendons_vs_distributed_loads(course: str) -> None:
-    """From the strain at the base the rod with distributed loads comes to the same tip, and nothing is left there.
-
-    The strain of a section is less exact than the tip, which bounds what can be asked here; the test below asks more.
-    """
+def test_tendons_vs_integration(course: str) -> None:
+    """The tip and the lengths of the cables are those of the equilibrium that is integrated from the clamp."""
     cables = MANY if course == "several" else tendon(COURSES[course])
-    text = rod() + PRECURVED + LOADED + cables
-    solution, reference = solved(text, 14), TendonRod(tomllib.loads(text))
-    strain = solution.strain(0.0)
-    start = np.concatenate([strain[3:], strain[:3]])
-    end = reference.shoot(start, 1.0)
-    assert_allclose(reference.miss(end, 1.0), 0.0, rtol=0, atol=1e-6)
-    assert_allclose(solution.tip().position, end[:3], rtol=0, atol=2e-8)
-    assert_allclose(solution.tip().rotation, end[3:12].reshape(3, 3), rtol=0, atol=2e-7)
-
-
-@pytest.mark.slow
-def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
-    text = rod() + LOADED + MANY
-    position, rotation = TendonRod(tomllib.loads(text)).solve()
-    solution = solve(parse_scene(text))
-    assert_allclose(solution.tip().position, position, rtol=0, atol=0.2e-9)
-    assert_allclose(solution.tip().rotation, rotation, rtol=0, atol=2e-9)
+    solution = solved(rod() + PRECURVED + LOADED + cables, 14)
+    error = miss(solution.model.scene, solution)
+    assert error.tip <= 1e-9
+    assert error.cable <= 1e-9
 
 
 TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("tendon")]

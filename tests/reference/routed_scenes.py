@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from cosserat_casadi import Scene, Solution
 from cosserat_casadi.model.scene_rods import rod_properties
 from tests.pose_errors import pose_error
 from tests.reference.random_scenes import between
-from tests.reference.tendons import hat
+from tests.reference.rods import hat
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Table = dict[str, Any]
@@ -152,7 +153,7 @@ def miss(scene: Scene, solution: Solution) -> Miss:
 
 
 class _Integrator:
-    """Clamped at the origin along z, one rod, dead wrench at the tip, spread loads.
+    """Clamped at the origin along z, one rod, dead wrench at the tip, spread loads, weight of uniform density.
 
     States are columns: position, rotation, force and moment in world axes, lengths of the cables.
     """
@@ -166,6 +167,9 @@ class _Integrator:
         for load in scene.loads:
             if load.kind == "distributed_wrench":
                 self.spread.append(load)
+            elif load.kind == "gravity":
+                weight = scene.rods[0].linear_density * np.array(load.acceleration)
+                self.spread.append(SimpleNamespace(frame="world", force=weight, moment=np.zeros(3)))
             else:
                 self.tip_wrench += np.concatenate([load.force, load.moment])
         self.loaded = bool(scene.loads)
