@@ -36,6 +36,7 @@ from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution
 from tests.conftest import CASES
+from tests.derivatives import central_differences
 
 EFFECTS = CASES / "effects"
 
@@ -678,9 +679,7 @@ def test_second_variation_of_a_point_that_slides() -> None:
         )
         return float(around.fun)
 
-    step = 1e-5
-    units = np.eye(len(bar.x))
-    normal = np.array([(gap(bar.x + step * unit) - gap(bar.x - step * unit)) / (2 * step) for unit in units])
+    (normal,) = central_differences(gap, bar.x, 1e-5)
     normal /= np.linalg.norm(normal)
     basis = np.linalg.svd(normal[None])[2][1:]
 

@@ -48,6 +48,7 @@ from cosserat_casadi.sweeps.run import plan_sweep
 from cosserat_casadi.sweeps.table import table_of
 from tests.commands import cosserat
 from tests.conftest import ROOT
+from tests.derivatives import central_differences
 from tests.families import mostly_slow
 
 EXAMPLES = ROOT / "examples"
@@ -121,12 +122,9 @@ def test_kernels_are_derivatives_of_their_energy(obstacle: str) -> None:
         point = scale * direction / np.linalg.norm(direction)
         if obstacle == "lumen":
             point = np.array([scale * np.cos(direction[1]), scale * np.sin(direction[1]), 0.05])
-        steps = 1e-6 * np.eye(3)
-        slope = [float(energy(point + step) - energy(point - step)) / 2e-6 for step in steps]
-        assert_allclose(force(point).full()[:, 0], np.negative(slope), rtol=0, atol=1e-7)
-        rate = np.transpose([(force(point + step) - force(point - step)).full()[:, 0] / 2e-6 for step in steps])
+        assert_allclose(force(point).T, -central_differences(energy, point, 1e-6), rtol=0, atol=1e-7)
         matrix = stiffness(point).full()[:3, :3]
-        assert_allclose(matrix, rate, rtol=1e-5, atol=1e-4)
+        assert_allclose(matrix, central_differences(force, point, 1e-6), rtol=1e-5, atol=1e-4)
         assert_allclose(matrix, matrix.T, rtol=0, atol=1e-10)
         pressed += float(energy(point)) > 0.0
     assert pressed > 3
@@ -216,12 +214,8 @@ def test_the_jacobian_is_exact_and_symmetric(pressed: Solution) -> None:
     assert pressed.stable
     check_balance(pressed, [0.0, 0.0, -0.6], 2e-3)
     jacobian = model.jacobian(x, inputs)[0].full()
-    step = 1e-6
-    columns = [
-        (model.residual(x + step * unit, inputs) - model.residual(x - step * unit, inputs)).full()[:, 0] / (2 * step)
-        for unit in np.eye(model.size)
-    ]
-    assert_allclose(jacobian, np.transpose(columns), rtol=0, atol=1e-6)
+    differences = central_differences(lambda x: model.residual(x, inputs), x, 1e-6)
+    assert_allclose(jacobian, differences, rtol=0, atol=1e-6)
     assert_allclose(jacobian, jacobian.T, rtol=0, atol=1e-12)
 
 

@@ -14,6 +14,7 @@ from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.loads.load_trace import traced
 from cosserat_casadi.model.arrow_records import DRAWN_SECTIONS, LoadArrows
 from cosserat_casadi.model.registry import EFFECTS
+from tests.derivatives import central_differences
 from tests.equilibria import solve
 from tests.scenes import rod, scene
 
@@ -130,14 +131,10 @@ def test_force_and_moment_of_a_dipole_vs_differences_of_its_energy(name: str) ->
     assert solution.converged
     tip = solution.tip()
     place, moment = tip.position, tip.rotation @ [0.3, -0.2, 0.8]
-    step = 2e-6
-    force = [
-        moment @ (field_at(place + step * unit, given) - field_at(place - step * unit, given)) / (2 * step)
-        for unit in np.eye(3)
-    ]
+    (force,) = central_differences(lambda place: moment @ field_at(place, given), place, 2e-6)
     couple = np.cross(moment, field_at(place, given))
     base = solution.base_wrench()
-    assert_allclose(base.force, -np.array(force), rtol=1e-8, atol=1e-8)
+    assert_allclose(base.force, -force, rtol=1e-8, atol=1e-8)
     assert_allclose(base.moment, -couple - np.cross(place, force), rtol=1e-8, atol=1e-8)
 
 
