@@ -32,6 +32,8 @@ from cosserat_casadi.paths.equilibrium_path import (
     InputChange,
     PathContact,
     PathEvent,
+    loads_have_potential,
+    path_along,
     path_events,
     tested_stability,
 )
@@ -323,8 +325,9 @@ def follow_contact_path(
     grids = Grids(model.discretisation)
     given, theta = np.split(moved.base, [model.inputs.size])
     values = model.inputs.unpack(given)
-    potential = moved.has_potential
-    empty = moved.path(
+    potential = loads_have_potential(moved)
+    empty = path_along(
+        moved,
         ContactPath,
         PathOutcome.NO_START,
         factor=np.zeros(0),

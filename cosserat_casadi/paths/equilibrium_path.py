@@ -120,16 +120,17 @@ class InputChange(Generic[ModelType]):
         change = factor * self.change
         return self.base + change
 
-    @property
-    def has_potential(self) -> bool:
-        """Whether all loads have a potential along the way."""
-        count = self.model.inputs.size
-        return all(self.model.has_potential(self.inputs(factor)[:count]) for factor in (0.0, 1.0))
 
-    def path(self, kind: Callable[..., PathType], outcome: PathOutcome, **fields: Any) -> PathType:
-        """A path of a kind on this way, by default with the sentence of its outcome."""
-        of_way = {"model": self.model, "name": self.name, "base": self.base, "change": self.change}
-        return kind(**{**of_way, "outcome": outcome, "message": outcome.value, **fields})
+def loads_have_potential(way: InputChange[Model]) -> bool:
+    """Whether all loads have a potential along the way of an input."""
+    count = way.model.inputs.size
+    return all(way.model.has_potential(way.inputs(factor)[:count]) for factor in (0.0, 1.0))
+
+
+def path_along(way: InputChange[Any], kind: Callable[..., PathType], outcome: PathOutcome, **fields: Any) -> PathType:
+    """A path of a kind along the way of an input, by default with the sentence of its outcome."""
+    of_way = {"model": way.model, "name": way.name, "base": way.base, "change": way.change}
+    return kind(**{**of_way, "outcome": outcome, "message": outcome.value, **fields})
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)

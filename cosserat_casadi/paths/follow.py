@@ -30,7 +30,14 @@ from cosserat_casadi.numerics.events import DETERMINANT, Arc
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
 from cosserat_casadi.paths.contact_path import follow_contact_path
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, InputChange, path_events, tested_stability
+from cosserat_casadi.paths.equilibrium_path import (
+    EquilibriumPath,
+    InputChange,
+    loads_have_potential,
+    path_along,
+    path_events,
+    tested_stability,
+)
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
 FROM_NOWHERE = (
@@ -46,7 +53,7 @@ class _Followed(InputChange[Model]):
     @property
     def monitor(self) -> Monitor:
         """Eigenvalues of the second variation where that has a meaning, else the determinant."""
-        if not self.has_potential:
+        if not loads_have_potential(self):
             return DETERMINANT
         # Eigenvalues see a double bifurcation too, where the determinant keeps its sign.
         allowed = variations(self.model)
@@ -104,9 +111,10 @@ class _Followed(InputChange[Model]):
         load_factors = y[:, -1]
         smallest_eigenvalue = None
         neutral = None
-        if self.has_potential:
+        if loads_have_potential(self):
             smallest_eigenvalue, neutral = tested_stability(traced.points)
-        return self.path(
+        return path_along(
+            self,
             EquilibriumPath,
             outcome,
             message=message or _sentence(outcome, load_factors),

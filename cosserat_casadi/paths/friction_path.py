@@ -25,7 +25,7 @@ from cosserat_casadi.numerics.newton import NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import GROWTH, PathOutcome
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, InputChange
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, InputChange, path_along
 
 QUICK = NewtonSettings(iterations=20)
 """Limits of Newton's method at an increment."""
@@ -170,7 +170,8 @@ def follow_friction_path(
             outcome = PathOutcome.LOAD_STALLED
         elif len(points) > settings.steps:
             outcome = PathOutcome.MAX_STEPS
-    return moved.path(
+    return path_along(
+        moved,
         FrictionPath,
         outcome,
         factor=np.array([found.factor for found in points]),

@@ -21,7 +21,7 @@ from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, trace
-from cosserat_casadi.paths.equilibrium_path import InputChange, InputPath, PathEvent, path_events
+from cosserat_casadi.paths.equilibrium_path import InputChange, InputPath, PathEvent, path_along, path_events
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
@@ -234,7 +234,8 @@ def _followed(
         progress: receives the largest share of the way.
     """
     first = solve_at(model, start) if at_start is None else solution_near(model, start, at_start.x)
-    path = InputChange(model, name, start, end - start).path(
+    path = path_along(
+        InputChange(model, name, start, end - start),
         TubePath,
         PathOutcome.NO_START,
         message=WORDS[PathOutcome.NO_START],
