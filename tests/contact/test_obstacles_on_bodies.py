@@ -18,6 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.motion.simulate import simulate
 from tests.families import mostly_slow
+from tests.reference.planar import elastica_end
 
 HEAD = """
 schema = 1
@@ -231,15 +232,8 @@ class Shooting:
         return np.asarray(run.y[:, -1])
 
     def pusher(self, wrench: FloatArray) -> FloatArray:
-        """Tip of the rod with the disk: x, z, angle, moment under a constant force."""
-
-        def rate(s: float, y: FloatArray) -> list[float]:
-            angle = y[2]
-            turn = wrench[0] * np.sin(angle) + wrench[1] * np.cos(angle)
-            return [np.cos(angle), -np.sin(angle), y[3] / 0.5, turn]
-
-        run = solve_ivp(rate, (0.0, 1.0), [0.0, 0.0, 0.0, wrench[2]], rtol=1e-11, atol=1e-12)
-        return np.asarray(run.y[:, -1])
+        """Tip of the rod with the disk: x, z, angle and curvature."""
+        return elastica_end(1.0, [0.0, 0.0, 0.0, -wrench[2] / 0.5], wrench[:2], 0.5)
 
     def residual(self, unknowns: FloatArray) -> list[float]:
         """Unknowns: force and moment at both bases, and the place of the disk."""
