@@ -88,7 +88,7 @@ def test_two_turns_of_the_helical_form_vs_initial_value() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("share", [0.5, 1.0])
+@pytest.mark.parametrize("share", [0.3, 0.5, 1.0])
 def test_helical_form_vs_initial_value(share: float) -> None:
     """Ten turns at share 1."""
     assert initial_value_error(solved(cases.helical_form(share), 1e-9)) < 1e-8
