@@ -217,15 +217,6 @@ def test_residual_vs_gradient_of_the_energy_of_a_foundation(scene: str) -> None:
     assert_residual_is_gradient(model, energy, anywhere(model))
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_spring_as_wrench_vs_as_energy(scene: str) -> None:
-    one, other = made(scene, "spring"), made(scene, "elastic spring")
-    x = anywhere(one)
-    assert_allclose(one.residual(x, one.pack()).full(), other.residual(x, other.pack()).full(), rtol=1e-13, atol=1e-13)
-    expected = other.jacobian(x, other.pack())[0].full()
-    assert_allclose(one.jacobian(x, one.pack())[0].full(), expected, rtol=1e-12, atol=1e-12)
-
-
 @pytest.mark.parametrize("load", ["elastic spring", "dipole", "bed"])
 @pytest.mark.parametrize("scene", ["planar", "odd strains"])
 def test_potential_vs_residual(scene: str, load: str) -> None:

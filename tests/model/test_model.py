@@ -12,6 +12,7 @@ from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from tests.derivatives import central_differences
 from tests.equilibria import solve
 from tests.families import mostly_slow
+from tests.reference.rods import rotation_from_quaternion
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 LOADS = {
@@ -168,9 +169,7 @@ def test_igm_of_a_floating_base_vs_the_scene_turned() -> None:
     model = coarse(scene(push(moment=[0.1, 0.2, -0.1]), WEIGHT))
     x, inputs = point(model)
     quaternion = quaternion_from_tangent([0.3, -0.5, 0.2])
-    w, v = quaternion[0], quaternion[1:]
-    hat = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    rotation = np.eye(3) + 2 * w * hat + 2 * hat @ hat
+    rotation = rotation_from_quaternion(quaternion)
     turned = (rotation @ inputs.reshape(-1, 3).T).T.ravel()
     igm = model.igm["rod"]
     force, base_force, base_moment = igm(x, [0, 0, 0], [1, 0, 0, 0], inputs)

@@ -223,7 +223,8 @@ class _Integrator:
         rates = np.zeros_like(y)
         r_rate = np.einsum("kij,kj->ki", R, strain[:, 3:])
         rates[:3] = r_rate.T
-        rates[3:12] = np.einsum("kij,kjl->kil", R, _hats(strain[:, :3])).reshape(count, 9).T
+        hats = np.cross(np.eye(3), strain[:, None, :3])
+        rates[3:12] = (R @ hats).reshape(count, 9).T
         rates[15:18] = -np.cross(r_rate, y[12:15].T).T
         for load in self.spread:
             turn = R if load.frame == "body" else np.eye(3)
@@ -271,10 +272,3 @@ def _offset(tendon: Any, X: float) -> tuple[Array, Array]:
         return helix.radius * np.array([c, s, 0.0]), helix.radius * rate * np.array([-s, c, 0.0])
     series = [np.polynomial.Polynomial(np.atleast_1d(component)) for component in tendon.offset]
     return np.array([*[p(X) for p in series], 0.0]), np.array([*[p.deriv()(X) for p in series], 0.0])
-
-
-def _hats(v: Array) -> Array:
-    hats = np.zeros((len(v), 3, 3))
-    hats[:, 0, 1], hats[:, 0, 2], hats[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
-    hats[:, 1, 0], hats[:, 2, 0], hats[:, 2, 1] = v[:, 2], -v[:, 1], v[:, 0]
-    return hats
