@@ -685,7 +685,7 @@ def test_a_base_that_another_scene_sets_across_a_wire_takes_no_rod_through(head:
 
 
 @pytest.mark.parametrize(
-    ("degrees", "sign"), mostly_slow(itertools.product((70.0, 160.0), (1.0, -1.0)), quick=[(160.0, 1.0)])
+    ("degrees", "sign"), mostly_slow(itertools.product((70.0, 160.0), (1.0, -1.0)), quick=[(70.0, 1.0)])
 )
 def test_a_base_that_turns_takes_no_rod_through_a_wire(degrees: float, sign: float) -> None:
     """The chord of the tip leads past the wire, its arc does not; with the other sign the base turns no other way."""
