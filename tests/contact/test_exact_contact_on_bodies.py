@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq, fsolve
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi import Outcome, Solution, build, export, follow, parse_scene, read_scene, solve
+from cosserat_casadi import Solution, build, export, follow, parse_scene, read_scene, solve
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
@@ -19,7 +19,6 @@ from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.paths.contact_path import ContactPath
@@ -28,7 +27,7 @@ from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.obstacle_drawing import surface_lines, surface_net
 from cosserat_casadi.sweeps.row_model import RowModel
 from tests.conftest import ROOT
-from tests.contact.test_obstacles_on_bodies import DISK, HEAD, PUSHED, PUSHER, RADIUS, STIFFNESS, WIDTH
+from tests.contact.test_obstacles_on_bodies import DISK, HEAD, PUSHED, PUSHER, RADIUS, STIFFNESS, WIDTH, bent_to
 from tests.reference.planar import elastica_end
 
 RIM = DISK.replace(f"width = {WIDTH}\nstiffness = {STIFFNESS}\n", "")
@@ -311,21 +310,14 @@ def test_smooth_contact_becomes_exact_as_the_width_shrinks(touching: Solution) -
 
 def _energy(solution: Solution, strains: FloatArray) -> tuple[float, float]:
     """Energy of both rods and of the push, and the gap, m, for strains of both rods."""
-    model = solution.model
-    x = solution.x.copy()
-    x[: len(strains)] = strains
-    position, quaternion, _ = (part.full()[:, 0] for part in model.tip["pusher"](x, solution.inputs))
-    frame = model.discrete.frames[FrameName("body", "ball")]
-    where = model.discrete.deviation(FrameName("body", "ball"))
-    x[where] = [*((position - frame.start.position) / frame.length), *(quaternion - frame.start.quaternion)]
-    moved = Solution(model, solution.inputs, x, Outcome.CONVERGED, "", residual_norm=0.0, iterations=0)
+    moved, position = bent_to(solution, strains)
     near = np.linspace(solution.contacts[0].start - 0.1, solution.contacts[0].start + 0.1, 101)
     gaps = np.linalg.norm(moved.pose(near, "pushed").position - position, axis=1) - RADIUS
     # The least of a parabola through the three points about the lowest.
     k = int(np.clip(gaps.argmin(), 1, len(near) - 2))
     before, at, after = gaps[k - 1 : k + 2]
     least = at - (after - before) ** 2 / (8 * (after - 2 * at + before))
-    return float(model.energy(x, solution.inputs)) + PUSH * float(position[2]), float(least)
+    return float(solution.model.energy(moved.x, moved.inputs)) + PUSH * float(position[2]), float(least)
 
 
 def _brought_back(solution: Solution, strains: FloatArray) -> float:
