@@ -142,12 +142,10 @@ def test_residual_vs_gradient_of_energy() -> None:
         place = model.discrete.deviation(name)
         q = frame.start.quaternion + x[place][3:]
         x[place.start + 3 : place.stop] = q / np.linalg.norm(q) - frame.start.quaternion
-    residual, h = model.residual(x, model.pack()).full()[:, 0], 1e-5
+    residual = model.residual(x, model.pack()).full()[:, 0]
+    (slopes,) = central_differences(lambda x: energy(model, x), x, 1e-5)
     for place, unit in places.values():
-        for i in range(place.start, place.stop):
-            step = h * np.eye(model.size)[i]
-            slope = (energy(model, x + step) - energy(model, x - step)) / (2 * h * unit)
-            assert_allclose(residual[i], slope, rtol=1e-7, atol=2e-8)
+        assert_allclose(residual[place], slopes[place] / unit, rtol=1e-7, atol=2e-8)
 
 
 def test_multipliers_are_conjugate_to_closed_gaps() -> None:

@@ -19,7 +19,7 @@ from cosserat_casadi.tubes.tube_solve import solution_near, solve_at
 from tests.families import mostly_slow
 from tests.tubes.functions_in_c import check_functions_in_c
 from tests.tubes.shooting import DENSITY, forces_of, shot
-from tests.tubes.test_tube_robots import THREE, TWO, moved
+from tests.tubes.test_tube_robots import THREE, TWO, check_tips, moved
 
 DIFFERENCE = 1e-6
 
@@ -258,12 +258,7 @@ def test_derivatives_of_energy_and_tips() -> None:
         behind = moved(found, index, -DIFFERENCE)
         assert ahead.converged
         assert behind.converged
-        for tube, tip in enumerate(robot.names):
-            position = (ahead.tip(tip).position - behind.tip(tip).position) / (2 * DIFFERENCE)
-            turn = (ahead.tip(tip).rotation - behind.tip(tip).rotation) / (2 * DIFFERENCE)
-            spin = turn @ found.tip(tip).rotation.T
-            assert_allclose(found.tip_jacobian[tube, 3:, index], position, rtol=0, atol=1e-7)
-            assert_allclose(found.tip_jacobian[tube, :3, index], [spin[2, 1], spin[0, 2], spin[1, 0]], atol=2e-6)
+        check_tips(found, index, ahead, behind, 2e-6)
         rate = (ahead.energy - behind.energy) / (2 * DIFFERENCE)
         if name.endswith(".rotation"):
             # The drive's torque is what the plate takes from the tube.

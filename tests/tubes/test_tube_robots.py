@@ -133,19 +133,23 @@ def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
     return solution_near(found.model, inputs, found.x)
 
 
+def check_tips(found: TubeSolution, index: int, ahead: TubeSolution, behind: TubeSolution, turns: float) -> None:
+    """Hold derivatives of tips by an input to differences of two solutions, those of rotations to ``turns``."""
+    for tube, name in enumerate(found.robot.names):
+        column = found.tip_jacobian[tube, :, index]
+        position = (ahead.tip(name).position - behind.tip(name).position) / (2 * DIFFERENCE)
+        turn = (ahead.tip(name).rotation - behind.tip(name).rotation) / (2 * DIFFERENCE)
+        spin = turn @ found.tip(name).rotation.T
+        assert_allclose(column[3:], position, rtol=0, atol=1e-7)
+        assert_allclose(column[:3], [spin[2, 1], spin[0, 2], spin[1, 0]], rtol=0, atol=turns)
+
+
 @pytest.mark.parametrize("inputs", [{}, {"innermost.translation": 0.1}])
 def test_tip_jacobian_vs_differences(inputs: dict[str, float]) -> None:
     found = solve(parse_scene(THREE), inputs)
     for index in range(found.inputs.size):
-        ahead = moved(found, index, DIFFERENCE)
-        behind = moved(found, index, -DIFFERENCE)
-        for tube, name in enumerate(found.robot.names):
-            column = found.tip_jacobian[tube, :, index]
-            position = (ahead.tip(name).position - behind.tip(name).position) / (2 * DIFFERENCE)
-            turn = (ahead.tip(name).rotation - behind.tip(name).rotation) / (2 * DIFFERENCE)
-            spin = turn @ found.tip(name).rotation.T
-            assert_allclose(column[3:], position, rtol=0, atol=1e-7)
-            assert_allclose(column[:3], [spin[2, 1], spin[0, 2], spin[1, 0]], rtol=0, atol=1e-6)
+        ahead, behind = (moved(found, index, by) for by in (DIFFERENCE, -DIFFERENCE))
+        check_tips(found, index, ahead, behind, 1e-6)
 
 
 @pytest.mark.parametrize(
