@@ -1,13 +1,35 @@
-"""Jacobians by automatic differentiation: what those that the package writes by structure are held to."""
+"""Jacobians by automatic differentiation and by differences: what those that the package writes are held to."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model
 from cosserat_casadi.maths.typing import FloatArray
+
+
+def central_differences(function: Callable[[FloatArray], Any], at: npt.ArrayLike, step: npt.ArrayLike) -> FloatArray:
+    """Derivatives of a function with n numbers by steps to either side, one column a number.
+
+    Args:
+        function: numbers, shape (n,) ↦ a number, an array or a matrix of CasADi, whose entries count column by column.
+        at: the numbers, shape (n,).
+        step: of all numbers, or of each.
+    """
+    centre = np.asarray(at, dtype=float)
+
+    def value(moved: FloatArray) -> FloatArray:
+        result = function(moved)
+        return np.ravel(result.full() if isinstance(result, ca.DM) else result, order="F")
+
+    steps = np.diag(np.broadcast_to(step, centre.shape))
+    return np.column_stack([(value(centre + change) - value(centre - change)) / (2 * change.sum()) for change in steps])
 
 
 def jacobian_by_ad(model: Model, x: FloatArray, load_factor: float) -> FloatArray:

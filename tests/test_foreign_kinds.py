@@ -9,7 +9,6 @@ from __future__ import annotations
 import csv
 import json
 import shutil
-import sys
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -40,7 +39,7 @@ from cosserat_casadi import (
     solve,
 )
 from cosserat_casadi.actuators.actuator import Actuator
-from cosserat_casadi.cli.main import REFUSED, app, run
+from cosserat_casadi.cli.exit_codes import REFUSED
 from cosserat_casadi.constraints.held_directions import NONE, across
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.constraints.tip_holder import Joint, Support
@@ -68,6 +67,8 @@ from cosserat_casadi.scene.obstacle_records import ObstacleRecord
 from cosserat_casadi.scene.rod_records import SectionRecord
 from cosserat_casadi.scene.target_records import TargetRecord
 from cosserat_casadi.scene.values import Direction, Positive, Size, Vector
+from tests.commands import cosserat
+from tests.derivatives import central_differences
 from tests.families import mostly_slow
 from tests.registration import registered
 from tests.shooting_near import integrate
@@ -423,32 +424,22 @@ def solution(scene: Scene) -> Solution:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path) -> Path:
     for name, text in TEXTS.items():
         (tmp_path / f"{name}.toml").write_text(text)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
     return tmp_path
-
-
-def cosserat(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["cosserat", *words])
-    return run(app)
 
 
 # Every verb
 
 
-def test_check_solve_report_and_plot(
-    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert cosserat(monkeypatch, "check", f"{name}.toml") == 0
+def test_check_solve_report_and_plot(name: str, folder: Path) -> None:
+    checked = cosserat("check", f"{name}.toml", cwd=folder)
+    assert checked.returncode == 0
     words = {"finger": ("spring_to_point", "muscle"), "plate": ("roller tip of beam", "endless_bar")}
-    printed = capsys.readouterr().out
-    assert all(word in printed for word in words[name]), printed
-    code = cosserat(monkeypatch, "solve", f"{name}.toml", "--output", "found.json", "--plot", "found.png")
-    printed = capsys.readouterr().out
-    assert code == 0, printed
+    assert all(word in checked.stdout for word in words[name]), checked.stdout
+    found = cosserat("solve", f"{name}.toml", "--output", "found.json", "--plot", "found.png", cwd=folder)
+    assert found.returncode == 0, found.stdout
     assert (folder / "found.png").stat().st_size > 10_000
     result = json.loads((folder / "found.json").read_text())
     assert result["converged"]
@@ -459,11 +450,8 @@ def test_jacobian_vs_differences(solution: Solution) -> None:
     assert solution.converged, solution.message
     model, x, inputs = solution.model, solution.x, solution.inputs
     jacobian = model.jacobian(x, inputs)[0].full()
-    step = 1e-6
-    steps = step * np.eye(model.size)
-    columns = [(model.residual(x + dx, inputs) - model.residual(x - dx, inputs)).full()[:, 0] for dx in steps]
-    scale = np.abs(jacobian).max()
-    assert_allclose(jacobian / scale, np.transpose(columns) / (2 * step) / scale, rtol=0, atol=1e-8)
+    differences = central_differences(lambda x: model.residual(x, inputs), x, 1e-6)
+    assert_allclose(jacobian, differences, rtol=0, atol=1e-8 * np.abs(jacobian).max())
 
 
 def test_path(name: str, solution: Solution) -> None:
@@ -547,10 +535,8 @@ def test_identification() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no C compiler")
-def test_sweep_and_derivatives_in_c(
-    name: str, solution: Solution, folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert cosserat(monkeypatch, "export", f"{name}.toml", "--output", "robot", "--derivatives") == 0
+def test_sweep_and_derivatives_in_c(name: str, solution: Solution, folder: Path) -> None:
+    assert cosserat("export", f"{name}.toml", "--output", "robot", "--derivatives", cwd=folder).returncode == 0
     library = load(folder / "robot")
     (rod, *_) = solution.model.discrete.rods
     position = library.tip[rod](library.solve().x, library.defaults)[0].full()[:, 0]
@@ -560,34 +546,32 @@ def test_sweep_and_derivatives_in_c(
         "plate": "pull.force.x = [0.0, 1.0, 2.0]\nwind.force.z = [0.0, -0.1]\nleft.length = [0.2, 0.21]\n",
     }
     (folder / "grid.toml").write_text(columns[name])
-    assert cosserat(monkeypatch, "sweep", f"{name}.toml", "--over", "grid.toml", "--output", "rows.csv") == 0
+    assert cosserat("sweep", f"{name}.toml", "--over", "grid.toml", "--output", "rows.csv", cwd=folder).returncode == 0
     rows = list(csv.DictReader((folder / "rows.csv").read_text().splitlines()))
     assert len(rows) == 12
     assert {row["outcome"] for row in rows} == {"converged"}
 
 
-def test_bad_tables_are_refused_in_plain_words(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_bad_tables_are_refused_in_plain_words(folder: Path) -> None:
     (folder / "bad.toml").write_text(
         FINGER.replace("stiffness = 3.0", "stiffness = -3.0")
         .replace('kind = "fibre"\nrod = "finger"', 'kind = "fibre"\nrod = "thumb"')
         .replace("wall = 2e-3", "wal = 2e-3")
     )
-    assert cosserat(monkeypatch, "check", "bad.toml") == REFUSED
-    told = capsys.readouterr().err
-    assert "loads[2].stiffness" in told
-    assert "actuators[0].rod" in told
-    assert "no rod is named 'thumb'" in told
-    assert "rods[0].section.wal" in told
+    ended = cosserat("check", "bad.toml", cwd=folder)
+    assert ended.returncode == REFUSED
+    assert "loads[2].stiffness" in ended.stderr
+    assert "actuators[0].rod" in ended.stderr
+    assert "no rod is named 'thumb'" in ended.stderr
+    assert "rods[0].section.wal" in ended.stderr
     (folder / "worse.toml").write_text(
         PLATE.replace('rod = "right"\nbody', 'rod = "wrong"\nbody')
         .replace("axis = [0, 0, 2]", "axis = [0, 0, 0]")
         .replace('rods = ["beam"]', 'rods = ["wrong"]')
     )
-    assert cosserat(monkeypatch, "check", "worse.toml") == REFUSED
-    told = capsys.readouterr().err
-    assert all(where in told for where in ("joints[1].rod", "supports[0].axis", "obstacles[0].rods"))
+    ended = cosserat("check", "worse.toml", cwd=folder)
+    assert ended.returncode == REFUSED
+    assert all(where in ended.stderr for where in ("joints[1].rod", "supports[0].axis", "obstacles[0].rods"))
 
 
 def test_a_section_that_is_not_round_has_no_contact() -> None:

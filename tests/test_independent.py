@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.linalg import expm
-from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from cosserat_casadi import Scene, Solution, build, discretise, solve
 from cosserat_casadi.rod.actuation import Actuation, StrainSum
@@ -19,8 +17,10 @@ from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
+from tests.derivatives import central_differences
 from tests.families import mostly_slow
 from tests.pose_errors import distance_between, pose_error
+from tests.reference.closed_forms import constant_strain
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 from tests.shooting_near import integrate
 
@@ -92,7 +92,7 @@ def test_error_estimate_vs_initial_value_integration(name: str) -> None:
     assert error <= 1e-5
 
 
-# Closed forms
+# Closed forms; the elastica and circles are in tests/catalogue/test_catalogue.py.
 
 
 def unit_rod(**changes: Any) -> dict[str, Any]:
@@ -106,32 +106,13 @@ def solved(*loads: dict[str, Any], **changes: Any) -> Solution:
     return found
 
 
-@pytest.mark.parametrize("turns", mostly_slow([0.25, 0.5, 1.0, 2.0], quick=[0.25, 2.0]))
-def test_moment_rolls_a_rod_into_circles(turns: float) -> None:
-    """A moment 2π k EI/ℓ bends a cantilever to curvature 2π k/ℓ: k circles."""
-    moment = 2 * np.pi * turns
-    solution = solved(push(force=[0, 0, 0], moment=[0, 0, moment]))
-    expected = [np.sin(moment) / moment, (1 - np.cos(moment)) / moment, 0.0]
-    assert_allclose(solution.tip().position, expected, rtol=0, atol=1e-10)
-    cosine, sine = np.cos(moment), np.sin(moment)
-    assert_allclose(solution.tip().rotation[:, 2], [cosine, sine, 0], rtol=0, atol=1e-10)
-
-
 def test_constant_intrinsic_strain_is_a_screw() -> None:
     """The unloaded rod of constant curvature and torsion: the exponential of SE(3)."""
-    curvature = np.array([1.2, -0.7, 2.0])
-    intrinsic = {"curvature": curvature.tolist()}
-    solution = solved(intrinsic=intrinsic, base={"quaternion": [1, 0, 0, 0]})
-    twist = np.zeros((4, 4))
-    twist[:3, :3] = [
-        [0, -curvature[2], curvature[1]],
-        [curvature[2], 0, -curvature[0]],
-        [-curvature[1], curvature[0], 0],
-    ]
-    twist[2, 3] = 1.0
-    pose = expm(twist)
-    assert_allclose(solution.tip().position, pose[:3, 3], rtol=0, atol=1e-10)
-    assert_allclose(solution.tip().rotation, pose[:3, :3], rtol=0, atol=1e-10)
+    curvature = [1.2, -0.7, 2.0]
+    solution = solved(intrinsic={"curvature": curvature}, base={"quaternion": [1, 0, 0, 0]})
+    position, rotation = constant_strain([*curvature, 0.0, 0.0, 1.0], length=1.0)
+    assert_allclose(solution.tip().position, position, rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().rotation, rotation, rtol=0, atol=1e-10)
 
 
 def test_pull_stretches_by_force_over_axial_stiffness() -> None:
@@ -152,34 +133,6 @@ def test_moment_along_the_axis_twists_by_moment_over_torsion_stiffness() -> None
     assert_allclose(solution.tip().position, [1, 0, 0], rtol=0, atol=1e-12)
     # Local x starts along world y and turns about world x.
     assert_allclose(solution.tip().rotation[:, 0], [0, np.cos(0.9), np.sin(0.9)], rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("load", mostly_slow([0.5, 1.0, 2.0, 5.0, 10.0, 30.0], quick=[30.0]))
-def test_elastica_vs_elliptic_integrals(load: float) -> None:
-    """Cantilever under a dead transverse force F: the inextensible elastica."""
-    along, across, angle = elastica(load)
-    tip = solved(push(force=[0, load, 0])).tip()
-    assert_allclose(tip.position, [along, across, 0], rtol=0, atol=1e-10)
-    assert_allclose(tip.rotation[:, 2], [np.cos(angle), np.sin(angle), 0], rtol=0, atol=1e-9)
-
-
-def test_elastica_vs_published_table() -> None:
-    """K. Mattiasson, Int. J. Numer. Meth. Engng 17 (1981) 145: F ℓ²/EI = 1 and 10, eight published digits or fewer."""
-    for load, across, shortening in ((1.0, 0.30172, 0.05643), (10.0, 0.81061, 0.55500)):
-        position = solved(push(force=[0, load, 0])).tip().position
-        assert_allclose([position[1], 1 - position[0]], [across, shortening], rtol=0, atol=6e-6)
-
-
-def elastica(load: float) -> tuple[float, float, float]:
-    """Tip of the elastica by elliptic integrals: along, across, angle."""
-    low, high = 1e-9, np.pi / 2 - 1e-12
-    for _ in range(200):
-        angle = (low + high) / 2
-        m = (1 + np.sin(angle)) / 2
-        start = np.arcsin(np.sqrt(0.5 / m))
-        low, high = (angle, high) if (ellipk(m) - ellipkinc(start, m)) ** 2 < load else (low, angle)
-    across = 1 - 2 / np.sqrt(load) * (ellipe(m) - ellipeinc(start, m))
-    return float(np.sqrt(2 * np.sin(angle) / load)), float(across), float(angle)
 
 
 def test_small_push_vs_beam_theory() -> None:
@@ -206,12 +159,8 @@ def test_reciprocity_of_the_tip() -> None:
     jacobian = model.jacobian(solution.x, solution.inputs)[0].full()
     sensitivity = -np.linalg.solve(jacobian, model.input_jacobian(solution.x, solution.inputs).full())
     tip = model.tip["rod"]
-    step = 1e-6
-    columns = [
-        (tip(solution.x + step * c, solution.inputs)[0] - tip(solution.x - step * c, solution.inputs)[0]).full()[:, 0]
-        for c in sensitivity.T
-    ]
-    flexibility = np.array(columns).T / (2 * step)
+    of_tip = lambda force: tip(solution.x + sensitivity @ force, solution.inputs)[0]  # noqa: E731
+    flexibility = central_differences(of_tip, np.zeros(3), 1e-6)
     assert_allclose(flexibility, flexibility.T, rtol=0, atol=1e-8)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import final
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import BodyPoint, Load
+from cosserat_casadi.loads.load import Load
 
 
 @final
@@ -13,9 +13,3 @@ class BodyWrenchLoad(Load[scenes.BodyWrench]):
     """A force (N) and a moment (N m) on a body."""
 
     record = scenes.BodyWrench
-
-    def on_body(self, load: scenes.BodyWrench, body: scenes.Body) -> BodyPoint | None:
-        """The point of the body it names."""
-        if load.body != body.name:
-            return None
-        return BodyPoint(load.position)

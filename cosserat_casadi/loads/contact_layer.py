@@ -43,7 +43,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.load import Rubbing, Section, Site
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord, section_radii
-from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, known, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
@@ -95,11 +95,6 @@ class ContactLayerLoad(ObstacleLoad[ContactLayer]):
 
     record = ContactLayer
     nodal = HISTORY_FIELD
-
-    def abscissa(self, load: ContactLayer) -> Scalar | None:
-        """The section of a disk; None of all others."""
-        at: Scalar | None = load.at
-        return at
 
     def growth(self, load: ContactLayer, site: Site) -> int:
         """Power of the load factor: 0 where the unloaded rod is not in the layer, 1 in it, 2 inside the obstacle.

@@ -13,7 +13,7 @@ import casadi as ca
 
 from cosserat_casadi.loads.load import Section, Site, polynomials_at
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
-from cosserat_casadi.maths.numbers import Numbers, Scalar
+from cosserat_casadi.maths.numbers import Numbers
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene.input_fields import InputField
@@ -35,11 +35,6 @@ class ContactLineLoad(ObstacleLoad[ContactLine]):
     """λ along the normal of the obstacle."""
 
     record = ContactLine
-
-    def span(self, load: ContactLine) -> tuple[Scalar, Scalar]:
-        """The stretch that lies on the obstacle."""
-        start, end = load.span
-        return start, end
 
     def energy(self, load: ContactLine, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−λ d(r), J/m."""

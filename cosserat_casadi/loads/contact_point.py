@@ -15,7 +15,6 @@ import casadi as ca
 from cosserat_casadi.loads.disk_reach import disk_reach
 from cosserat_casadi.loads.load import Section
 from cosserat_casadi.loads.obstacle_load import ObstacleLoad, ObstacleLoadRecord
-from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene.input_fields import InputField
@@ -38,11 +37,6 @@ class ContactPointLoad(ObstacleLoad[ContactPoint]):
     """N along the normal of the obstacle."""
 
     record = ContactPoint
-
-    def abscissa(self, load: ContactPoint) -> Scalar:
-        """The section that is touched."""
-        at: Scalar = load.at
-        return at
 
     def energy(self, load: ContactPoint, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−N d(r), J, or −N (d − reach) of a disk."""

@@ -25,7 +25,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section, Site
 from cosserat_casadi.maths.numbers import Numbers, is_zero, repeated, stacked_rows
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 
 STILL = 1e-8
 """ε, m/s: drag is too large by the share ½ (ε/v)², 5e-11 at 1 mm/s; below ε it is as small as a drag can be."""
@@ -36,6 +36,7 @@ class FlowLoad(Load[scenes.Flow]):
     """A fluid of a density (kg/m³) that streams at a velocity (m/s)."""
 
     record = scenes.Flow
+    uniform = True
 
     def acts_on(self, load: scenes.Flow, rod: str) -> bool:
         """Every rod, unless the load names some."""
@@ -65,10 +66,6 @@ class FlowLoad(Load[scenes.Flow]):
             force = force - added * inertia
             moment = -added * turning
         return force, moment
-
-    def profiles(self, load: scenes.Flow, rod: object, X: Numbers, columns: int) -> FloatArray:
-        """Factors on the columns of the wrench, 1 all along the rod: sizes of the rod are data of the sections."""
-        return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Flow, site: Site) -> Numbers:
         """Diameter, m, and area of fluid displaced, m², at the sections."""

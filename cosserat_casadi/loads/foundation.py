@@ -9,12 +9,11 @@ from collections.abc import Mapping
 from typing import final
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section, Site, coefficients, legendre_series
-from cosserat_casadi.maths.numbers import Numbers, Scalar, rows_of, stacked_rows
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.numbers import Numbers, rows_of, stacked_rows
+from cosserat_casadi.maths.typing import Matrix
 
 
 @final
@@ -22,11 +21,7 @@ class FoundationLoad(Load[scenes.Foundation]):
     """Stiffnesses (N/m²) along the axes of the world, or of the sections of the unloaded rod."""
 
     record = scenes.Foundation
-
-    def span(self, load: scenes.Foundation) -> tuple[Scalar, Scalar]:
-        """The part of the rod that lies in the foundation."""
-        start, end = load.span
-        return start, end
+    uniform = True
 
     def energy(self, load: scenes.Foundation, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """½ Σ k_i d_i², J/m."""
@@ -35,10 +30,6 @@ class FoundationLoad(Load[scenes.Foundation]):
             unloaded = ca.reshape(section.data[3:], 3, 3)
             displacement = unloaded.T @ displacement
         return ca.dot(values["stiffness"], displacement**2) / 2
-
-    def profiles(self, load: scenes.Foundation, rod: object, X: Numbers, columns: int) -> FloatArray:
-        """Factors on the columns of the wrench, 1 all along the span, shape (columns, len(X))."""
-        return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Foundation, site: Site) -> Numbers:
         """Where the springs are tied to, m, and in the axes of sections their rotation, column after column."""

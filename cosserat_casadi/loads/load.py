@@ -166,6 +166,8 @@ class Load(Kind, ABC, Generic[RecordType]):
         record: the record of the scene, whose word, inputs and units are the load's.
         kind: the word of the scene format.
         per_mass: whether its force is per mass, and so acts on masses that are fixed to sections as well.
+        uniform: whether a wrench per length has the profile 1 all along the rod: numbers that vary are data of the
+            sections. Else its columns are coefficients of Legendre polynomials.
         nodal: name of an input that holds numbers of each node of the rod; empty for none.
     """
 
@@ -173,6 +175,7 @@ class Load(Kind, ABC, Generic[RecordType]):
     family = LOADS
     kinds = EFFECTS
     per_mass: ClassVar[bool] = False
+    uniform: ClassVar[bool] = False
     nodal: ClassVar[str] = ""
 
     def growth(self, load: RecordType, site: Site) -> int:
@@ -206,16 +209,24 @@ class Load(Kind, ABC, Generic[RecordType]):
         return "section" if frame == "body" else "world"
 
     def abscissa(self, load: RecordType) -> Scalar | None:
-        """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod."""
-        return None
+        """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod.
+
+        By default ``at`` of the record, where it has one.
+        """
+        return getattr(load, "at", None)
 
     def acts_on(self, load: RecordType, rod: str) -> bool:
         """Whether the load acts on the rod of this name."""
         return bool(getattr(load, "rod", None) == rod)
 
     def on_body(self, load: RecordType, body: scenes.Body) -> BodyPoint | None:
-        """How the load acts on a rigid body of the scene; None where it does not."""
-        return None
+        """How the load acts on a rigid body of the scene; None where it does not.
+
+        By default at the point ``position`` of the body that the record names, or at its origin.
+        """
+        if getattr(load, "body", None) != body.name:
+            return None
+        return BodyPoint(getattr(load, "position", BodyPoint.position))
 
     def seen_from(self, load: RecordType) -> str | None:
         """Name of the body in whose axes a load on rods is written, and which bears the opposite; None for the world.
@@ -225,8 +236,9 @@ class Load(Kind, ABC, Generic[RecordType]):
         return None
 
     def span(self, load: RecordType) -> tuple[Scalar, Scalar]:
-        """Abscissae X between which a load per length acts; the whole rod by default."""
-        return (0.0, 1.0)
+        """Abscissae X between which a load per length acts: ``span`` of the record, else the whole rod."""
+        start, end = getattr(load, "span", (0.0, 1.0))
+        return start, end
 
     def breaks(self, load: RecordType) -> tuple[Scalar, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
@@ -241,11 +253,8 @@ class Load(Kind, ABC, Generic[RecordType]):
         yield from ()
 
     def profiles(self, load: RecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
-        """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
-
-        By default the columns are coefficients of Legendre polynomials in 2X − 1.
-        """
-        return polynomials_at(columns, X)
+        """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)); see ``uniform``."""
+        return np.ones((columns, X.shape[0])) if self.uniform else polynomials_at(columns, X)
 
     def data(self, load: RecordType, site: Site) -> Numbers:
         """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""

@@ -14,9 +14,9 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site, coefficients, legendre_series
+from cosserat_casadi.loads.load import Load, Section, Site, coefficients, legendre_series
 from cosserat_casadi.maths.numbers import Numbers, Scalar, columns_times, is_zero, known
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 
 MU_0_OVER_4_PI = 1e-7
 """μ₀/4π, T m/A: exact to nine digits in today's SI."""
@@ -27,18 +27,11 @@ class MagnetLoad(Load[scenes.Magnet]):
     """A moment per length (A m) all along a rod, or a moment (A m²) at a section or in a body."""
 
     record = scenes.Magnet
+    uniform = True
 
     def abscissa(self, load: scenes.Magnet) -> Scalar | None:
         """The section that holds a dipole; None of a magnetised rod."""
-        if load.moment is None:
-            return None
-        return load.at
-
-    def on_body(self, load: scenes.Magnet, body: scenes.Body) -> BodyPoint | None:
-        """The point of the body that holds the dipole."""
-        if load.body != body.name:
-            return None
-        return BodyPoint(load.position)
+        return None if load.moment is None else load.at
 
     def energy(self, load: scenes.Magnet, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−m·B, J or J/m."""
@@ -48,10 +41,6 @@ class MagnetLoad(Load[scenes.Magnet]):
         if load.dipole is not None:
             field = field + _dipole_field(section.position, values["dipole.position"], values["dipole.moment"])
         return -ca.dot(self._moment(load, section, values), field)
-
-    def profiles(self, load: scenes.Magnet, rod: object, X: Numbers, columns: int) -> FloatArray:
-        """Factors on the columns of the wrench, 1 all along the rod: its magnetisation, which varies, is data."""
-        return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Magnet, site: Site) -> Numbers:
         """Moment per length in section axes at the sections of a magnetised rod, A m, but for zero components."""

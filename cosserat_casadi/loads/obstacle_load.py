@@ -9,8 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import BodyPoint, Load
+from cosserat_casadi.loads.load import Load
 from cosserat_casadi.maths.numbers import Numbers, repeated
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene.load_records import LoadRecord
@@ -29,20 +28,14 @@ ObstacleRecordType = TypeVar("ObstacleRecordType", bound=ObstacleLoadRecord)
 
 
 class ObstacleLoad(Load[ObstacleRecordType]):
-    """A load that an obstacle exerts."""
+    """A load that an obstacle exerts; on a body at its origin, about which the body is a ball."""
 
-    def on_body(self, load: ObstacleRecordType, body: scenes.Body) -> BodyPoint | None:
-        """The origin of the body, about which it is a ball."""
-        return BodyPoint() if load.body == body.name else None
+    uniform = True
 
     def seen_from(self, load: ObstacleRecordType) -> str | None:
         """The body that the obstacle is fixed to."""
         body: str | None = load.obstacle.body
         return body
-
-    def profiles(self, load: ObstacleRecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
-        """Factors on the columns of the wrench, 1 all along the rod: numbers that vary are data of the sections."""
-        return np.ones((columns, X.shape[0]))
 
 
 def section_radii(rod: RodProperties, X: Numbers) -> Numbers:

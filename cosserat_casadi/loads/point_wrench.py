@@ -10,7 +10,6 @@ from typing import final
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load
-from cosserat_casadi.maths.numbers import Scalar
 
 
 @final
@@ -18,7 +17,3 @@ class PointWrenchLoad(Load[scenes.PointWrench]):
     """A force (N) and a moment (N m) at X = at, dead or follower."""
 
     record = scenes.PointWrench
-
-    def abscissa(self, load: scenes.PointWrench) -> Scalar:
-        """The loaded section."""
-        return load.at

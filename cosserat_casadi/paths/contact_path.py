@@ -27,7 +27,16 @@ from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, extend
 from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.contact_transitions import ArrangementEntry, changes, entered
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent, tested_stability
+from cosserat_casadi.paths.equilibrium_path import (
+    EquilibriumPath,
+    InputChange,
+    PathContact,
+    PathEvent,
+    loads_have_potential,
+    path_along,
+    path_events,
+    tested_stability,
+)
 from cosserat_casadi.paths.margins import Key, margins, violated
 
 MOST_CHANGES = 100
@@ -239,15 +248,8 @@ class Travel:
     def _keep(self, traced: Trace) -> None:
         """Add the traced part of the last arrangement."""
         number = len(self.arrangements) - 1
-        arrangement = self.arrangements[-1]
         begun = len(self.points)
-        lengths = np.array([point.length for point in traced.points])
-        for event in traced.events:
-            position = begun + int(np.searchsorted(lengths, event.point.length, side="right"))
-            z = arrangement.z(event.point)
-            self.events.append(
-                PathEvent(event.kind, event.point.load_factor, z, event.multiplicity, position, arrangement=number)
-            )
+        self.events += path_events(traced, self.arrangements[-1].scale, begun, number)
         self.points += [(number, point) for point in traced.points]
         if traced.branch is not None:
             self.left_at = begun + traced.branch
@@ -303,10 +305,7 @@ def _path_contact(touch: Touch, forces: tuple[float, ...], inside: tuple[Section
 
 
 def follow_contact_path(
-    model: Model,
-    name: str,
-    base: FloatArray,
-    change: FloatArray,
+    moved: InputChange[Model],
     *,
     branch: int = 0,
     settings: ArcSettings | None = None,
@@ -315,27 +314,22 @@ def follow_contact_path(
     """Follow the equilibrium of a scene with obstacles, from one arrangement of contacts to the next.
 
     Args:
-        model: of the scene.
-        name: the input that grows, or the first of the inputs and parameters that move.
-        base: stacked inputs at load factor 0, and parameters behind them if the model has any.
-        change: their increments at load factor 1.
+        moved: the way of inputs, and of parameters if the model has any.
         branch: as in :func:`cosserat_casadi.follow`.
         settings: limits.
         progress: receives the largest factor reached.
     """
     limits = settings or ArcSettings()
+    model = moved.model
     scene = without_contacts(model.scene)
     grids = Grids(model.discretisation)
-    given, theta = np.split(base, [model.inputs.size])
+    given, theta = np.split(moved.base, [model.inputs.size])
     values = model.inputs.unpack(given)
-    potential = all(model.has_potential((base + share * change)[: len(given)]) for share in (0.0, 1.0))
-    empty = ContactPath(
-        model=model,
-        name=name,
-        base=base,
-        change=change,
-        outcome=PathOutcome.NO_START,
-        message=PathOutcome.NO_START.value,
+    potential = loads_have_potential(moved)
+    empty = path_along(
+        moved,
+        ContactPath,
+        PathOutcome.NO_START,
         factor=np.zeros(0),
         x=np.zeros(0),
         smallest_eigenvalue=np.zeros(0) if potential else None,
@@ -352,7 +346,7 @@ def follow_contact_path(
     z = settling.solved(equations, start)
     if z is None:
         return empty
-    arrangement = Arrangement(equations, change, potential, limits, z, 0.0)
+    arrangement = Arrangement(equations, moved.change, potential, limits, z, 0.0)
     growing_load = np.append(np.zeros(len(z)), 1.0)
     first = arrangement.curve.point(arrangement.y(z, 0.0), growing_load, 0.0)
     if first is None:

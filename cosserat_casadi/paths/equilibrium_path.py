@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Generic, Protocol, Self, TypeVar
+from typing import Any, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +35,7 @@ class AlongPath(Protocol):
 
 
 EventType = TypeVar("EventType", bound=AlongPath)
+PathType = TypeVar("PathType")
 
 
 @dataclass(frozen=True)
@@ -98,15 +99,45 @@ CONTACT_WORDS = {
 """Kinds of events that are changes of contact, in words."""
 
 
-@dataclass(frozen=True, repr=False, kw_only=True)
-class InputPath(Result, Generic[ModelType, EventType]):
-    """Equilibria of a model, of rods or of concentric tubes, while one of its inputs moves.
+@dataclass(frozen=True)
+class InputChange(Generic[ModelType]):
+    """The way of one input of a model; of rods in exact contact also of several inputs, and of parameters.
 
     Attributes:
         model: the model.
-        name: the input that is followed.
-        base: stacked inputs at factor 0, shape (model.inputs.size,).
-        change: stacked inputs at factor 1 less ``base``, shape (model.inputs.size,).
+        name: the input that is followed, or the first of several.
+        base: stacked inputs at factor 0, shape (model.inputs.size,); where parameters move these stand behind.
+        change: values at factor 1 less ``base``, shaped as ``base``.
+    """
+
+    model: ModelType
+    name: str
+    base: FloatArray
+    change: FloatArray
+
+    def inputs(self, factor: float) -> FloatArray:
+        """Stacked inputs at a factor."""
+        change = factor * self.change
+        return self.base + change
+
+
+def loads_have_potential(way: InputChange[Model]) -> bool:
+    """Whether all loads have a potential along the way of an input."""
+    count = way.model.inputs.size
+    return all(way.model.has_potential(way.inputs(factor)[:count]) for factor in (0.0, 1.0))
+
+
+def path_along(way: InputChange[Any], kind: Callable[..., PathType], outcome: PathOutcome, **fields: Any) -> PathType:
+    """A path of a kind along the way of an input, by default with the sentence of its outcome."""
+    of_way = {"model": way.model, "name": way.name, "base": way.base, "change": way.change}
+    return kind(**{**of_way, "outcome": outcome, "message": outcome.value, **fields})
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class InputPath(Result, InputChange[ModelType], Generic[ModelType, EventType]):
+    """Equilibria of a model, of rods or of concentric tubes, while one of its inputs moves.
+
+    Attributes:
         outcome: how the path ended.
         message: a sentence for the user.
         factor: share of the way at each of k points in the order of travel, shape (k,).
@@ -116,10 +147,6 @@ class InputPath(Result, Generic[ModelType, EventType]):
             there, at both ends and between, as of an equilibrium; None if not estimated.
     """
 
-    model: ModelType
-    name: str
-    base: FloatArray
-    change: FloatArray
     outcome: PathOutcome
     message: str
     factor: FloatArray
@@ -136,11 +163,6 @@ class InputPath(Result, Generic[ModelType, EventType]):
     def all_inputs(self) -> FloatArray:
         """Stacked inputs at all points, shape (k, model.inputs.size)."""
         return self.base + self.factor[:, None] * self.change
-
-    def inputs(self, factor: float) -> FloatArray:
-        """Stacked inputs at a factor."""
-        change = factor * self.change
-        return self.base + change
 
     @property
     def stretches(self) -> list[range]:
@@ -194,20 +216,22 @@ def tested_stability(points: Iterable[ArcPoint]) -> tuple[FloatArray, npt.NDArra
     return eigenvalues, np.array([test.neutral for test in tests], dtype=np.bool_)
 
 
-def path_events(traced: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:
+def path_events(traced: Trace, scale: FloatArray, begun: int = 0, arrangement: int = 0) -> tuple[PathEvent, ...]:
     """The events of a trace as events of a path.
 
     Args:
         traced: the computed part of the curve.
         scale: units of the unknowns along the curve, shape (size,).
+        begun: points of the path before this part.
+        arrangement: number of the arrangement of contacts of this part.
     """
     lengths = [point.length for point in traced.points]
     events = []
     for event in traced.events:
         # An event that is a point of the path, where a branch leaves, lies before what follows it.
-        position = int(np.searchsorted(lengths, event.point.length, side="right"))
+        position = begun + int(np.searchsorted(lengths, event.point.length, side="right"))
         x = event.point.x * scale
-        events.append(PathEvent(event.kind, event.point.load_factor, x, event.multiplicity, position))
+        events.append(PathEvent(event.kind, event.point.load_factor, x, event.multiplicity, position, arrangement))
     return tuple(events)
 
 

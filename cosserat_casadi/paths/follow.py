@@ -30,7 +30,14 @@ from cosserat_casadi.numerics.events import DETERMINANT, Arc
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import Guard, PathOutcome, Trace, trace
 from cosserat_casadi.paths.contact_path import follow_contact_path
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, path_events, tested_stability
+from cosserat_casadi.paths.equilibrium_path import (
+    EquilibriumPath,
+    InputChange,
+    loads_have_potential,
+    path_along,
+    path_events,
+    tested_stability,
+)
 from cosserat_casadi.paths.friction_path import FrictionPath, follow_friction_path
 
 FROM_NOWHERE = (
@@ -40,32 +47,13 @@ FROM_NOWHERE = (
 
 
 @dataclass(frozen=True)
-class _Followed:
-    """One input of a model that grows from zero.
-
-    Attributes:
-        model: the model.
-        name: the input.
-        base: stacked inputs with this one at zero.
-        change: their increments at the load factor 1.
-    """
-
-    model: Model
-    name: str
-    base: FloatArray
-    change: FloatArray
-
-    @cached_property
-    def potential(self) -> bool:
-        """Whether all loads have a potential along the path."""
-        has_potential = self.model.has_potential
-        end = self.base + self.change
-        return has_potential(self.base) and has_potential(end)
+class _Followed(InputChange[Model]):
+    """One input of a model that grows from zero."""
 
     @property
     def monitor(self) -> Monitor:
         """Eigenvalues of the second variation where that has a meaning, else the determinant."""
-        if not self.potential:
+        if not loads_have_potential(self):
             return DETERMINANT
         # Eigenvalues see a double bifurcation too, where the determinant keeps its sign.
         allowed = variations(self.model)
@@ -123,14 +111,12 @@ class _Followed:
         load_factors = y[:, -1]
         smallest_eigenvalue = None
         neutral = None
-        if self.potential:
+        if loads_have_potential(self):
             smallest_eigenvalue, neutral = tested_stability(traced.points)
-        return EquilibriumPath(
-            model=self.model,
-            name=self.name,
-            base=self.base,
-            change=self.change,
-            outcome=outcome,
+        return path_along(
+            self,
+            EquilibriumPath,
+            outcome,
             message=message or _sentence(outcome, load_factors),
             factor=load_factors,
             x=y[:, :-1] * self.scale,
@@ -168,9 +154,7 @@ def follow_path(
     followed = _followed(model, name, value, values)
     if model.scene.touches_exactly:
         refuse_held_by_contact(model.scene)
-        path = follow_contact_path(
-            model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
-        )
+        path = follow_contact_path(followed, branch=branch, settings=settings, progress=progress)
         message = _sentence(path.outcome, path.factor) + path.stopped_at + left_out_on_paths(model.scene)
         return _resolved(replace(path, message=message))
     left_out = left_out_on_paths(model.scene)
@@ -179,15 +163,7 @@ def follow_path(
             problem = "is of a path without friction: one that rubs goes on in increments"
             raise SceneError(Problem("--branch", problem, "leave it out, or leave friction out"))
         followed = _followed(model.with_memory, name, value, values, first)
-        rubbing = follow_friction_path(
-            followed.model,
-            name,
-            followed.base,
-            followed.change,
-            settings or ArcSettings(),
-            first=first,
-            progress=progress,
-        )
+        rubbing = follow_friction_path(followed, settings or ArcSettings(), first=first, progress=progress)
         message = _sentence(rubbing.outcome, rubbing.factor) + (FROM_NOWHERE if first is None else "") + left_out
         return _within_limits(_resolved(replace(rubbing, message=message)))
     values_at_zero = model.inputs.unpack(followed.base)
@@ -210,7 +186,7 @@ def _smooth_guard(followed: _Followed) -> Guard | None:
 
     def guard(arc: Arc, end: ArcPoint) -> ArcPoint | None:
         before, after = (point.x * followed.scale for point in (arc.start, end))
-        first, last = (followed.base + point.load_factor * followed.change for point in (arc.start, end))
+        first, last = (followed.inputs(point.load_factor) for point in (arc.start, end))
         if barriers.are_between(before, after, (first, last)):
             return None
         return end

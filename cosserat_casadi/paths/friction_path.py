@@ -25,7 +25,7 @@ from cosserat_casadi.numerics.newton import NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import GROWTH, PathOutcome
-from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, InputChange, path_along
 
 QUICK = NewtonSettings(iterations=20)
 """Limits of Newton's method at an increment."""
@@ -122,10 +122,7 @@ def _foretold(points: list[_Point], longest: float) -> float:
 
 
 def follow_friction_path(
-    model: Model,
-    name: str,
-    base: FloatArray,
-    change: FloatArray,
+    moved: InputChange[Model],
     settings: ArcSettings,
     *,
     first: EquilibriumPath | None = None,
@@ -134,14 +131,12 @@ def follow_friction_path(
     """Follow the equilibrium of rods that rub while one input grows to its value.
 
     Args:
-        model: with memory.
-        name: the input.
-        base: stacked inputs at factor 0, without history.
-        change: their increments at factor 1.
+        moved: the way of the input of a model with memory, without history.
         first: a path from whose end this one goes on; by default nothing rubs at factor 0.
         settings: limits; only limits of the load factor and of the length of a step are used.
         progress: receives the factor reached.
     """
+    model = moved.model
     memory = model.inputs.memory
     assert memory is not None, "a model with memory"
 
@@ -149,7 +144,7 @@ def follow_friction_path(
         history, slips, _ = model.memory(solution.x, solution.inputs)
         return _Point(factor, solution, column(history), column(slips.T))
 
-    start = solve(model, base, estimate_error=False) if first is None else first.solution(-1)
+    start = solve(model, moved.base, estimate_error=False) if first is None else first.solution(-1)
     points = [point(0.0, start)] if start.converged else []
     outcome: PathOutcome | None = None if points else PathOutcome.NO_START
     step = settings.first
@@ -159,7 +154,7 @@ def follow_friction_path(
         factor = min(before.factor + step, 1.0)
         if 1.0 - factor < SHORTEST:
             factor = 1.0
-        inputs = base + factor * change
+        inputs = moved.inputs(factor)
         inputs[memory] = before.history
         found = _equilibrium(model, inputs, [point.solution for point in points[-2:]], settings.longest)
         if found is not None:
@@ -175,13 +170,10 @@ def follow_friction_path(
             outcome = PathOutcome.LOAD_STALLED
         elif len(points) > settings.steps:
             outcome = PathOutcome.MAX_STEPS
-    return FrictionPath(
-        model=model,
-        name=name,
-        base=base,
-        change=change,
-        outcome=outcome,
-        message=outcome.value,
+    return path_along(
+        moved,
+        FrictionPath,
+        outcome,
         factor=np.array([found.factor for found in points]),
         x=np.array([found.solution.x for found in points]).reshape(-1, model.size),
         smallest_eigenvalue=None,

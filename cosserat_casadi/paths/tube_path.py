@@ -21,7 +21,7 @@ from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.numerics.trace import PathOutcome, trace
-from cosserat_casadi.paths.equilibrium_path import InputPath, PathEvent, path_events
+from cosserat_casadi.paths.equilibrium_path import InputChange, InputPath, PathEvent, path_along, path_events
 from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
 from cosserat_casadi.tubes.tube_solution import TubeSolution, tip_error
@@ -140,16 +140,9 @@ def follow_tubes(
     settings: ArcSettings | None = None,
     progress: Progress | None = None,
 ) -> TubePath:
-    """Follow the equilibrium of concentric tubes while one input moves from its value to another.
+    """Follow the equilibrium of concentric tubes while one input moves to a value, as the public ``follow`` does.
 
-    Args:
-        subject: a scene with tubes, followed to its tolerance; or a model, which keeps its steps.
-        name: of the input, such as "inner.rotation" or "push.force.z".
-        to: its value at the end, in its unit.
-        values: where the path begins, as in :func:`solve_tubes`.
-        first: an equilibrium of the same tubes and loads to begin at instead, such as one of another path.
-        settings: limits; by default the limits for a rotation and a load, or for a translation.
-        progress: receives the largest share of the way.
+    Limits are by default the limits for a rotation and a load, or for a translation.
 
     Raises:
         SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move; the equilibrium
@@ -241,12 +234,10 @@ def _followed(
         progress: receives the largest share of the way.
     """
     first = solve_at(model, start) if at_start is None else solution_near(model, start, at_start.x)
-    path = TubePath(
-        model=model,
-        name=name,
-        base=start,
-        change=end - start,
-        outcome=PathOutcome.NO_START,
+    path = path_along(
+        InputChange(model, name, start, end - start),
+        TubePath,
+        PathOutcome.NO_START,
         message=WORDS[PathOutcome.NO_START],
         factor=np.zeros(0),
         x=np.zeros((0, model.size)),

@@ -24,7 +24,7 @@ from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.pose_series import Poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry, rubbing_entries
-from cosserat_casadi.results.json_text import SCHEMA, csv_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.results.presentation import NamedArrays
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweeps.outcome_file import arrow_module
@@ -53,24 +53,6 @@ def check_motion_path(path: str | Path) -> None:
         raise SceneError(Problem("--output", problem, f"use one of {', '.join(FORMATS)}"))
     if suffix == ".parquet":
         arrow_module()
-
-
-def write_motion(motion: Motion, path: str | Path) -> None:
-    """Write a motion, whole or not at all; the suffix says in which format, and the same motion gives the same bytes.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS.
-        ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
-        WriteError: the file cannot be written, as on a full disk.
-    """
-    check_motion_path(path)
-    contents = {
-        ".csv": _csv_bytes,
-        ".parquet": _parquet_bytes,
-        ".npz": _npz_bytes,
-    }
-    content = contents[Path(path).suffix.lower()]
-    write_atomically(Path(path), content(motion))
 
 
 def motion_columns(motion: Motion) -> dict[str, FloatArray]:
@@ -271,12 +253,19 @@ def _vector_columns(name: str, values: FloatArray, endings: tuple[str, ...]) -> 
         yield f"{name}.{ending}", component
 
 
-def _csv_bytes(motion: Motion) -> bytes:
+def motion_table(motion: Motion) -> tuple[list[str], list[list[float]]]:
+    """Header and rows of the columns of a motion, a row a time."""
     columns = motion_columns(motion)
-    return csv_text(columns, np.column_stack(list(columns.values())).tolist()).encode()
+    return list(columns), np.column_stack(list(columns.values())).tolist()
 
 
-def _parquet_bytes(motion: Motion) -> bytes:
+def write_parquet(motion: Motion, path: Path) -> None:
+    """Write the columns of a motion, whole or not at all; the same motion gives the same bytes.
+
+    Raises:
+        ParquetUnavailableError: pyarrow is not installed.
+        WriteError: the file cannot be written, as on a full disk.
+    """
     arrow = arrow_module()
     import pyarrow.parquet
 
@@ -288,10 +277,11 @@ def _parquet_bytes(motion: Motion) -> bytes:
     table = arrow.table(columns).replace_schema_metadata({"cosserat": head})
     content = io.BytesIO()
     pyarrow.parquet.write_table(table, content)
-    return content.getvalue()
+    write_atomically(path, content.getvalue())
 
 
-def _npz_bytes(motion: Motion) -> bytes:
+def write_npz(motion: Motion, path: Path) -> None:
+    """Write the arrays of a motion by dotted name, as :func:`write_parquet` writes its columns."""
     content = io.BytesIO()
     data = {"schema": SCHEMA, **motion_result(motion)}
     if KEY in data:
@@ -299,7 +289,7 @@ def _npz_bytes(motion: Motion) -> bytes:
         data[KEY] = json.dumps(plain(data[KEY]))
     arrays: dict[str, Any] = dict(_dotted(data))
     np.savez(content, **arrays)
-    return content.getvalue()
+    write_atomically(path, content.getvalue())
 
 
 def _dotted(data: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -85,7 +85,6 @@ class FramesUnavailableError(CosseratError):
         super().__init__(f"{method} needs {package}: install it with  pip install 'cosserat-casadi[frames]'")
 
 
-_MOTION = "results.motion_file:write_motion"
 _FILM = "plots.film:write_film"
 _SWEEP = "sweeps.outcome_file:write_sweep"
 
@@ -107,9 +106,14 @@ PRESENTATIONS = {
         data="results.motion_file:motion_result",
         facts="results.facts:motion_facts",
         figure="plots.motion_plot:plot_motion",
+        table="results.motion_file:motion_table",
         arrays="results.motion_file:motion_arrays",
         film="plots.animation:animate_motion",
-        writers={".csv": _MOTION, ".parquet": _MOTION, ".npz": _MOTION, **dict.fromkeys(MESHES, _FILM)},
+        writers={
+            ".parquet": "results.motion_file:write_parquet",
+            ".npz": "results.motion_file:write_npz",
+            **dict.fromkeys(MESHES, _FILM),
+        },
     ),
     "Modes": Presentation(
         data="results.modes_file:modes_result",

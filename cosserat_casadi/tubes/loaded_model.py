@@ -112,26 +112,15 @@ class LoadedTubeModel(TubeFunctions):
     @cached_property
     def _whole(self) -> March:
         """Take the steps of all pieces from the tip on, and pick up the loads on the way."""
-        steps = self._step.mapaccum("steps", self.steps)
-        lengths = ca.horzsplit(self._lengths, self.steps)
-        sections = ca.horzsplit(self._sections, self.steps)
         forces = _Forces(ca.MX.zeros(3), ca.MX.zeros(3))
-        ends = [self._tip.stacked]
-        stations = [self._tip.stacked]
-        starts = []
-        loaded_sections = []
-        for piece, (length, section) in enumerate(zip(lengths, sections, strict=True)):
-            start, forces = self._picked_up(piece, LoadedState.of(ends[-1]), forces)
-            parts = [forces.force]
-            if self._spread:
-                parts.append(forces.weight)
-            loaded_section = ca.vertcat(section, ca.repmat(ca.vertcat(*parts), 1, self.steps))
-            passed = steps(start.stacked, length, loaded_section)
-            ends.append(passed[:, -1])
-            stations.append(passed)
-            starts += [start.stacked, passed[:, :-1]]
-            loaded_sections.append(loaded_section)
-        return March(ends, ca.horzcat(*stations), ca.horzcat(*starts), ca.horzcat(*loaded_sections))
+
+        def entered(piece: int, end: Matrix, sections: Matrix) -> tuple[Matrix, Matrix]:
+            nonlocal forces
+            start, forces = self._picked_up(piece, LoadedState.of(end), forces)
+            carried = [forces.force, forces.weight] if self._spread else [forces.force]
+            return start.stacked, ca.vertcat(sections, ca.repmat(ca.vertcat(*carried), 1, self.steps))
+
+        return self._marched(self._step, self._tip.stacked, self._sections, entered)
 
     @property
     def _tip(self) -> LoadedState:
@@ -207,19 +196,15 @@ class LoadedTubeModel(TubeFunctions):
     @cached_property
     def _varied(self) -> March:
         """States without the energy of loads, each with its changes behind it, column after column."""
-        steps = self._tangent_step.mapaccum("steps", self.steps)
-        lengths = ca.horzsplit(self._lengths, self.steps)
-        sections = ca.horzsplit(self._whole.sections, self.steps)
         height = 2 * self.tube_count + 3 * VECTOR
         at_tip = np.zeros((height, self.tube_count + VECTOR))
         at_tip[: self.tube_count, : self.tube_count] = np.eye(self.tube_count)
         at_tip[2 * self.tube_count : 2 * self.tube_count + VECTOR, self.tube_count :] = np.eye(VECTOR)
-        ends = [ca.vertcat(self._tip.stacked, ca.vec(ca.DM(at_tip)))]
-        stations = list(ends)
-        starts = []
-        for piece, (length, section) in enumerate(zip(lengths, sections, strict=True)):
-            state = LoadedState.of(ends[-1][: self._width])
-            tangent = LoadedTangent.of(ca.reshape(ends[-1][self._width :], height, -1))
+        begun = ca.vertcat(self._tip.stacked, ca.vec(ca.DM(at_tip)))
+
+        def entered(piece: int, end: Matrix, sections: Matrix) -> tuple[Matrix, Matrix]:
+            state = LoadedState.of(end[: self._width])
+            tangent = LoadedTangent.of(ca.reshape(end[self._width :], height, -1))
             forces = _Forces(ca.MX.zeros(3), ca.MX.zeros(3))
             for load, borne, index in self._borne(piece):
                 if load.spread:
@@ -227,12 +212,9 @@ class LoadedTubeModel(TubeFunctions):
                 tangent = tangent.picked_up(load, _in_world(load, borne, index, state), index, state)
                 tip, _ = self._ends[index]
                 state, forces = _with_load(load, borne, index, tip, state, forces)
-            start = ca.vertcat(state.stacked, ca.vec(tangent.stacked))
-            passed = steps(start, length, section)
-            ends.append(passed[:, -1])
-            stations.append(passed)
-            starts += [start, passed[:, :-1]]
-        return March(ends, ca.horzcat(*stations), ca.horzcat(*starts), self._whole.sections)
+            return ca.vertcat(state.stacked, ca.vec(tangent.stacked)), sections
+
+        return self._marched(self._tangent_step, begun, self._whole.sections, entered)
 
     @cached_property
     def _jacobian(self) -> Matrix:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Self, TypeAlias
 
@@ -31,6 +31,9 @@ from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.stages import March, Staged
 from cosserat_casadi.tubes.tube_flow import FlowState
 from cosserat_casadi.tubes.variations import TipVariations
+
+Entered = Callable[[int, Matrix, Matrix], tuple[Matrix, Matrix]]
+"""State and sections at the start of a piece ↦ the same beyond the loads that act there."""
 
 NEWTON_TOLERANCE = 1e-12
 """Angle missed, rad, at which the steps of `equilibrium` end."""
@@ -464,6 +467,27 @@ class TubeFunctions(WithParameters, Shown):
             sections.append(ca.repmat(self._section((start + end) / 2), 1, self.steps))
         return ca.horzcat(*sections)
 
+    def _marched(self, step: ca.Function, begun: Matrix, sections: Matrix, entered: Entered) -> March:
+        """Take the steps of all pieces from the tip on.
+
+        Args:
+            step: (state, length, section) ↦ state.
+            begun: stacked state at the tip.
+            sections: stacked sections of the steps, a column each.
+            entered: (piece, state at its start, sections of its steps) ↦ state and sections beyond its start.
+        """
+        steps = step.mapaccum("steps", self.steps)
+        ends, stations, starts, taken = [begun], [begun], [], []
+        pieces = zip(ca.horzsplit(self._lengths, self.steps), ca.horzsplit(sections, self.steps), strict=True)
+        for piece, (length, of_piece) in enumerate(pieces):
+            start, section = entered(piece, ends[-1], of_piece)
+            passed = steps(start, length, section)
+            ends.append(passed[:, -1])
+            stations.append(passed)
+            starts += [start, passed[:, :-1]]
+            taken.append(section)
+        return March(ends, *(ca.horzcat(*columns) for columns in (stations, starts, taken)))
+
     @cached_property
     def _places(self) -> list[ca.MX]:
         """Where tubes end and where they begin to bend, from the tip of the robot to the plate, then the plate.
@@ -598,15 +622,18 @@ class TubeFunctions(WithParameters, Shown):
         """A function of unknowns, inputs and further arguments, of tubes with the curvatures of the scene."""
         _, _, load_factor = self._arguments
         results = ca.substitute(list(outputs.values()), [load_factor], [ca.MX(1.0)])
-        arguments = {**self._symbols, **(further or {})}
-        return ca.Function(name, list(arguments.values()), results, list(arguments), list(outputs))
+        return self._named(name, dict(zip(outputs, results, strict=True)), further or {})
 
     def _on_path(
         self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX] | None = None
     ) -> ca.Function:
         """A function of unknowns, inputs and load factor, and further arguments."""
         _, _, load_factor = self._arguments
-        arguments = {**self._symbols, "load_factor": load_factor, **(further or {})}
+        return self._named(name, outputs, {"load_factor": load_factor, **(further or {})})
+
+    def _named(self, name: str, outputs: Mapping[str, Matrix], further: Mapping[str, ca.MX]) -> ca.Function:
+        """A function of unknowns, inputs and further arguments, as their symbols have them."""
+        arguments = {**self._symbols, **further}
         return ca.Function(name, list(arguments.values()), list(outputs.values()), list(arguments), list(outputs))
 
 

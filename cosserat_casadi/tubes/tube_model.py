@@ -68,26 +68,16 @@ class TubeModel(TubeFunctions):
     def _twist(self) -> March:
         """Angles and torques alone: what decides on equilibrium and stability."""
         x, _, _ = self._arguments
-        return self._marched(twist_step(self.tube_count), ca.vertcat(x, ca.DM.zeros(self.tube_count)))
+        return self._taken(twist_step(self.tube_count), ca.vertcat(x, ca.DM.zeros(self.tube_count)))
 
     @cached_property
     def _whole(self) -> March:
         """Angles, torques, the frame of the centre line and the energy, from the tip on."""
-        return self._marched(self._step, self._begun)
+        return self._taken(self._step, self._begun)
 
-    def _marched(self, step: ca.Function, state: Matrix) -> March:
-        """Take the steps of all pieces from the tip on."""
-        steps = step.mapaccum("steps", self.steps)
-        lengths = ca.horzsplit(self._lengths, self.steps)
-        sections = ca.horzsplit(self._sections, self.steps)
-        ends: list[Matrix] = [state]
-        stations: list[Matrix] = [state]
-        for length, section in zip(lengths, sections, strict=True):
-            passed = steps(ends[-1], length, section)
-            ends.append(passed[:, -1])
-            stations.append(passed)
-        along = ca.horzcat(*stations)
-        return March(ends, along, along[:, :-1], self._sections)
+    def _taken(self, step: ca.Function, begun: Matrix) -> March:
+        """Take steps from a state at the tip on; no load changes the state between them."""
+        return self._marched(step, begun, self._sections, lambda _, state, sections: (state, sections))
 
     @cached_property
     def _residual(self) -> Matrix:

@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi import build, read_scene, solve
 from cosserat_casadi.maths.typing import FloatArray
 from tests.conftest import ROOT
+from tests.reference.rods import hat
 
 YOUNGS_MODULUS = 54e9
 POISSON_RATIO = 0.3
@@ -34,10 +35,6 @@ BENDING = YOUNGS_MODULUS * SECOND_MOMENT
 TORSION = 2 * SHEAR_MODULUS * SECOND_MOMENT
 COMPLIANCE = 1 / np.array([BENDING, BENDING, TORSION, *AREA * np.array([SHEAR_MODULUS, SHEAR_MODULUS, YOUNGS_MODULUS])])
 ITERATIONS = 30
-
-
-def hat(v: FloatArray) -> FloatArray:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def disk_before(force: FloatArray, moment: FloatArray, *, rigid: bool) -> tuple[FloatArray, FloatArray]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_sections import facings
-from tests.codegen.test_steps_in_contact import BALL, EXACT, LENGTH, Moving, floor, rod, scene
+from tests.codegen.test_steps_in_contact import BALL, LENGTH, Moving, compare_with_differences, floor, rod, scene
 from tests.reference.falling_rods import FallingRod
 
 G = 9.81
@@ -293,7 +292,7 @@ def test_derivatives_of_a_step_with_friction_are_those_of_differences(friction: 
     start = made.steps(1e-3, 160, memory)[-1]
     (contact,) = made.compiled.step_contacts(memory)
     assert contact.slips
-    compare_with_differences(made, start, memory, 1e-3)
+    compare_with_differences(made, start, memory, 1e-3, of_load=(1e-3, 1e-1, 1e1), by_start=2e-6, least=1e-7)
 
 
 @pytest.mark.slow
@@ -307,7 +306,9 @@ def test_derivatives_of_a_step_that_sticks_are_those_of_differences(tmp_path: Pa
     (contact,) = made.compiled.step_contacts(memory)
     assert not contact.slips and contact.force > 1e-3
     # What opens the gap at the start asks for large forces, which soon leave what sticks.
-    compare_with_differences(made, start, memory, 1e-2, small=1e-9)
+    # A push on what sticks moves nothing, to the share by which it yields in the matrix.
+    sizes = {"of_load": (1e-3, 1e-1, 1e1), "small": 1e-9}
+    compare_with_differences(made, start, memory, 1e-2, **sizes, by_start=2e-6, least=1e-7)
 
 
 @pytest.mark.slow
@@ -341,50 +342,6 @@ def test_a_blow_whose_friction_turns_the_slide_back_gives_no_energy(tmp_path: Pa
     energies = [sum(map(float, made.model.energies(own.x, own.v, inputs, 0.0 * inputs)[:3])) for own in states]
     assert_allclose(energies[1], energies[0], rtol=1e-9, atol=0)
     assert energies[2] < energies[1] * 0.99
-
-
-def compare_with_differences(
-    made: Moving, start: StepState, memory: StepMemory, dt: float, small: float = 1e-8
-) -> None:
-    """Hold derivatives of a step by its start and by inputs against differences."""
-    values, still = made.model.pack(), np.zeros(made.model.inputs.size)
-    n = made.model.size
-
-    def end(x: FloatArray, v: FloatArray, *given: FloatArray) -> FloatArray:
-        state = StepState(x, v, start.a)
-        step = made.compiled.step(state, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
-        assert step.done
-        return np.concatenate([step.state.x, step.state.v])
-
-    given = [values, still, still]
-    call = made.compiled.step_sensitivity
-    step, found = call(start, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
-    assert step.done and found is not None
-    columns = []
-    for k in range(2 * n):
-        change = np.eye(2 * n)[k] * (small if k < n else small / dt)
-        ends = [end(start.x + sign * change[:n], start.v + sign * change[n:], *given) for sign in (1.0, -1.0)]
-        columns.append((ends[0] - ends[1]) / (2.0 * change[k]))
-    for rows in (slice(0, n), slice(n, 2 * n)):
-        largest = np.abs(found.by_start[rows]).max()
-        assert_allclose(found.by_start[rows], np.array(columns).T[rows], rtol=0, atol=2e-6 * largest)
-    by_each = (found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration)
-    # A base that moves opens or closes the gap, which stays below what touches.
-    sizes = zip((1e-3, 1e-1, 1e1), (1e-8, 1e-5, 1e-2), strict=True)
-    moves = [bool(entry.declared.moves) for entry, _ in made.model.inputs for _ in range(entry.size)]
-    for which, (derivative, (of_load, of_base)) in enumerate(zip(by_each, sizes, strict=True)):
-        for j, is_base in enumerate(moves):
-            size = of_base if is_base else of_load
-            ends = []
-            for sign in (1.0, -1.0):
-                changed = [own.copy() for own in given]
-                changed[which][j] += sign * size
-                ends.append(end(start.x, start.v, *changed))
-            difference = (ends[0] - ends[1]) / (2.0 * size)
-            for rows in (slice(0, n), slice(n, 2 * n)):
-                # A push on what sticks moves nothing, to the share by which it yields in the matrix.
-                atol = max(1e-5 * np.abs(difference[rows]).max(), 1e-7)
-                assert_allclose(derivative[rows, j], difference[rows], rtol=0, atol=atol)
 
 
 def test_friction_of_exact_contact_is_refused_where_it_does_not_act() -> None:

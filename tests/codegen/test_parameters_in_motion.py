@@ -15,6 +15,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 from tests.codegen.libraries import Exported, Recipe
 from tests.codegen.motions import EXACT
 from tests.codegen.test_parameters_in_c import RECIPES as AT_REST
+from tests.derivatives import central_differences
 
 FEW_INPUTS = AT_REST["pwire"].scene.model_copy(update={"inputs": ("push.force", "pull.tension")})
 
@@ -63,17 +64,15 @@ def test_equations_of_motion(made: Exported) -> None:
         5: linear.by_inputs_rate,
         6: linear.by_inputs_acceleration,
     }
+    still = [*at[:-1], 0 * rate]
     for number, found in by_each.items():
-        for j in range(len(at[number])):
-            change = np.zeros(len(at[number]))
-            change[j] = STEP * max(abs(at[number][j]), 1e-2)
-            sides = []
-            for side in (1.0, -1.0):
-                moved = [*at[:-1], 0 * rate]
-                moved[number] = at[number] + side * change
-                sides.append(model.inverse_dynamics(*moved).full()[:, 0])
-            slope = (sides[0] - sides[1]) / (2 * change[j])
-            assert_allclose(found[:, j], slope, rtol=0, atol=1e-6 * max(np.abs(slope).max(), 1e-2))
+        slopes = central_differences(
+            lambda moved, k=number: model.inverse_dynamics(*still[:k], moved, *still[k + 1 :]),
+            at[number],
+            STEP * np.maximum(np.abs(at[number]), 1e-2),
+        )
+        for column, slope in zip(found.T, slopes.T, strict=True):
+            assert_allclose(column, slope, rtol=0, atol=1e-6 * max(np.abs(slope).max(), 1e-2))
 
 
 def test_steps_and_their_derivatives(made: Exported) -> None:
@@ -92,13 +91,11 @@ def test_steps_and_their_derivatives(made: Exported) -> None:
     assert taken.done
     assert found is not None
     assert_allclose(np.concatenate([taken.state.x, taken.state.v]), end(p), rtol=0, atol=1e-12)
-    for j in range(len(p)):
-        change = np.zeros(len(p))
-        # Farther out of the plane of planar rods a step is refused.
-        change[j] = STEP * max(abs(p[j]), 5e-3)
-        slope = (end(p + change) - end(p - change)) / (2 * change[j])
+    # Farther out of the plane of planar rods a step is refused.
+    slopes = central_differences(end, p, STEP * np.maximum(np.abs(p), 5e-3))
+    for column, slope in zip(found.by_parameters.T, slopes.T, strict=True):
         # Differences of multipliers lose digits beside forces that hardly change.
-        assert_allclose(found.by_parameters[:, j], slope, rtol=0, atol=1e-5 * max(np.abs(slope).max(), 1e-2))
+        assert_allclose(column, slope, rtol=0, atol=1e-5 * max(np.abs(slope).max(), 1e-2))
 
 
 def test_a_step_in_parts_has_the_same_kind_of_derivatives(export_recipe: Callable[[str, Recipe], Exported]) -> None:

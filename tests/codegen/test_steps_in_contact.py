@@ -25,6 +25,7 @@ from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.simulate import moving_inputs
+from tests.derivatives import central_differences
 from tests.motion.test_exact_contact_in_motion import beam_on_a_stop
 from tests.moving_scenes import gaps_along
 
@@ -279,6 +280,63 @@ def test_a_rod_out_of_the_plane_goes_round_a_ball_as_in_python(tmp_path: Path) -
     assert made.least_gap(states) >= -2e-7
 
 
+def compare_with_differences(
+    made: Moving,
+    start: StepState,
+    memory: StepMemory,
+    dt: float,
+    *,
+    small: float = 1e-8,
+    of_load: tuple[float, float, float] = (1.0, 1e3, 1e6),
+    by_start: float = 1e-6,
+    least: float = 0.0,
+) -> None:
+    """Hold derivatives of a step by its start and by inputs against differences.
+
+    Args:
+        made: the scene.
+        start: state at the start.
+        memory: what steps remember before.
+        dt: the step, s.
+        small: change of a coordinate; of a velocity it is that over the step.
+        of_load: changes of a load's value, rate and acceleration.
+        by_start: largest difference of the derivatives by the start, over the largest derivative.
+        least: differences of the derivatives by inputs below which none counts.
+    """
+    still = np.zeros(made.model.inputs.size)
+    given = [made.model.pack(), still, still]
+    n = made.model.size
+
+    def end(state: FloatArray, inputs: list[FloatArray]) -> FloatArray:
+        begun = StepState(state[:n], state[n:], start.a)
+        step = made.compiled.step(begun, dt, *inputs, memory=copy.deepcopy(memory), options=EXACT)
+        assert step.done
+        return np.concatenate([step.state.x, step.state.v])
+
+    call = made.compiled.step_sensitivity
+    step, found = call(start, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
+    assert step.done and found is not None
+    state = np.concatenate([start.x, start.v])
+    halves = (slice(0, n), slice(n, 2 * n))
+    differences = central_differences(lambda moved: end(moved, given), state, np.repeat([small, small / dt], n))
+    for rows in halves:
+        largest = np.abs(found.by_start[rows]).max()
+        assert_allclose(found.by_start[rows], differences[rows], rtol=0, atol=by_start * largest)
+    moves = [bool(entry.declared.moves) for entry, _ in made.model.inputs for _ in range(entry.size)]
+    # A base that moves opens or closes the gap, which stays below what touches.
+    of_base = (1e-8, 1e-5, 1e-2)
+    for k, derivative in enumerate((found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration)):
+        differences = central_differences(
+            lambda moved, k=k: end(state, [*given[:k], moved, *given[k + 1 :]]),  # type: ignore[misc]
+            given[k],
+            np.where(moves, of_base[k], of_load[k]),
+        )
+        for column, expected in zip(derivative.T, differences.T, strict=True):
+            for rows in halves:
+                atol = max(1e-5 * np.abs(expected[rows]).max(), least)
+                assert_allclose(column[rows], expected[rows], rtol=0, atol=atol)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("moved", [False, True])
 def test_derivatives_of_a_step_in_contact_are_those_of_differences(moved: bool, tmp_path: Path) -> None:
@@ -287,40 +345,7 @@ def test_derivatives_of_a_step_in_contact_are_those_of_differences(moved: bool, 
     memory = made.compiled.step_memory()
     start = made.steps(1e-3, 160, memory)[-1]
     assert len(made.compiled.step_contacts(memory)) == 1
-    values, still = made.model.pack(), np.zeros(made.model.inputs.size)
-    dt, n = 1e-3, made.model.size
-
-    def end(x: FloatArray, v: FloatArray, *given: FloatArray) -> FloatArray:
-        state = StepState(x, v, start.a)
-        step = made.compiled.step(state, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
-        assert step.done
-        return np.concatenate([step.state.x, step.state.v])
-
-    given = [values, still, still]
-    call = made.compiled.step_sensitivity
-    step, found = call(start, dt, *given, memory=copy.deepcopy(memory), options=EXACT)
-    assert step.done and found is not None
-    columns = []
-    small = 1e-8
-    for k in range(2 * n):
-        change = np.eye(2 * n)[k] * (small if k < n else small / dt)
-        ends = [end(start.x + sign * change[:n], start.v + sign * change[n:], *given) for sign in (1.0, -1.0)]
-        columns.append((ends[0] - ends[1]) / (2.0 * change[k]))
-    largest = np.abs(found.by_start).max()
-    assert_allclose(found.by_start, np.array(columns).T, rtol=0, atol=1e-6 * largest)
-    by_each = (found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration)
-    # A base that moves opens or closes the gap, which stays below what touches.
-    sizes = zip((1.0, 1e3, 1e6), (1e-8, 1e-5, 1e-2), strict=True)
-    for which, (derivative, (of_weight, of_base)) in enumerate(zip(by_each, sizes, strict=True)):
-        for j in range(len(values)):
-            size = of_weight if j < 3 else of_base
-            ends = []
-            for sign in (1.0, -1.0):
-                changed = [own.copy() for own in given]
-                changed[which][j] += sign * size
-                ends.append(end(start.x, start.v, *changed))
-            difference = (ends[0] - ends[1]) / (2.0 * size)
-            assert_allclose(derivative[:, j], difference, rtol=0, atol=1e-5 * np.abs(difference).max())
+    compare_with_differences(made, start, memory, 1e-3)
 
 
 @pytest.mark.slow

@@ -36,6 +36,8 @@ from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution
 from tests.conftest import CASES
+from tests.derivatives import central_differences
+from tests.reference.planar import elastica_end
 
 EFFECTS = CASES / "effects"
 
@@ -167,18 +169,12 @@ def wire() -> Solution:
 def free_span(bending: float = 0.03, weight: float = 0.1 * 9.81, height: float = 0.08) -> tuple[float, float, float]:
     """Length of the span that hangs free, reaction where it meets the table, and x there, by shooting.
 
-    θ′ = κ, EI κ′ = −F cos θ with F the vertical force of what is beyond a section on what is before it, F′ = w; at the
-    table z = −h, θ = 0 and κ = 0: beyond it the rod is straight.
+    At the table z = −h, θ = 0 and κ = 0: beyond it the rod is straight.
     """
 
     def span(unknown: np.ndarray) -> np.ndarray:
         length, curvature, force = unknown
-
-        def rate(s: float, y: np.ndarray) -> list[float]:
-            _, _, theta, kappa = y
-            return [np.cos(theta), np.sin(theta), kappa, -(force + weight * s) * np.cos(theta) / bending]
-
-        return solve_ivp(rate, (0.0, length), [0.0, 0.0, 0.0, curvature], rtol=1e-12, atol=1e-13).y[:, -1]
+        return elastica_end(length, [0.0, 0.0, 0.0, curvature], [0.0, force], bending, weight)
 
     def missed(unknown: np.ndarray) -> np.ndarray:
         _, z, theta, kappa = span(unknown)
@@ -678,9 +674,7 @@ def test_second_variation_of_a_point_that_slides() -> None:
         )
         return float(around.fun)
 
-    step = 1e-5
-    units = np.eye(len(bar.x))
-    normal = np.array([(gap(bar.x + step * unit) - gap(bar.x - step * unit)) / (2 * step) for unit in units])
+    (normal,) = central_differences(gap, bar.x, 1e-5)
     normal /= np.linalg.norm(normal)
     basis = np.linalg.svd(normal[None])[2][1:]
 

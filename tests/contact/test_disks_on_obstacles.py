@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Scene, SceneError, build, discretise, export, follow, load, scene_from_dict, simulate, solve
@@ -21,6 +20,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_checks import untouchable
 from cosserat_casadi.scene import Simulation, Sphere
 from tests.contact.test_friction import DURATION, GRAVITY, SLIP, slid
+from tests.reference.planar import elastica_end
 
 LENGTH = 0.3
 BENDING = 0.02
@@ -59,19 +59,14 @@ def shot(radius: float = RADIUS, *, hard: bool = False) -> tuple[FloatArray, flo
     """
     unit = 2 * radius * STIFFNESS * WIDTH / 3
 
-    def along(s: float, state: FloatArray, force: FloatArray) -> list[float]:
-        _, _, angle, moment = state
-        tangent = np.array([np.cos(angle), 0.0, -np.sin(angle)])
-        return [tangent[0], tangent[2], moment / BENDING, -np.cross(tangent, force)[1]]
-
     def tip(unknown: FloatArray) -> FloatArray:
         force = PUSH + unknown[1] * unit * NORMAL
-        way = solve_ivp(along, (0, LENGTH), [0, 0, 0, unknown[0]], "DOP853", rtol=1e-12, atol=1e-13, args=(force,))
-        return np.asarray(way.y[:, -1])
+        return elastica_end(LENGTH, [0.0, 0.0, 0.0, -unknown[0] / BENDING], force[[0, 2]], BENDING)
 
     def residual(unknown: FloatArray) -> list[float]:
-        x, z, angle, moment = tip(unknown)
-        tangent = np.array([np.cos(angle), 0.0, -np.sin(angle)])
+        x, z, angle, curvature = tip(unknown)
+        moment = -BENDING * curvature
+        tangent = np.array([np.cos(angle), 0.0, np.sin(angle)])
         slant = NORMAL @ tangent
         edge = (NORMAL - slant * tangent) / np.sqrt(1 - slant**2)
         touching = -radius * edge - THICKNESS / 2 * np.sign(slant) * tangent

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi.obstacles.lumen import CentreLine
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene import Capsule, Lumen, ObstacleRecord, Plane, Sphere
+from tests.derivatives import central_differences
 
 STRAIGHT = {"points": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.05), (0.0, 0.0, 0.2))}
 BENT = {"points": ((0.0, 0.0, -0.02), (0.0, 0.0, 0.05), (0.01, 0.005, 0.12), (0.05, 0.0, 0.22))}
@@ -28,13 +29,10 @@ POINTS = np.random.default_rng(3).normal([0.0, 0.0, 0.1], 0.03, (6, 3))
 @pytest.mark.parametrize("kind", RECORDS)
 def test_derivatives(kind: str) -> None:
     distance = SURFACES[kind].function(RECORDS[kind])
-    step = 1e-6
     for point in POINTS:
         value, gradient, second = (part.full() for part in distance(point))
-        moved = [[distance(point + sign * step * unit) for sign in (1, -1)] for unit in np.eye(3)]
-        slopes = [float(ahead[0] - behind[0]) / (2 * step) for ahead, behind in moved]
-        bends = [(ahead[1] - behind[1]).full()[:, 0] / (2 * step) for ahead, behind in moved]
-        assert_allclose(gradient[:, 0], slopes, rtol=0, atol=1e-7)
+        slopes, bends = (central_differences(lambda at, k=k: distance(at)[k], point, 1e-6) for k in (0, 1))
+        assert_allclose(gradient.T, slopes, rtol=0, atol=1e-7)
         assert_allclose(second, bends, rtol=1e-6, atol=1e-6 * max(1.0, np.abs(second).max()))
         # A signed distance: it grows by as much as the point moves away.
         assert_allclose(np.linalg.norm(gradient), 1.0, rtol=0, atol=1e-12)

@@ -7,11 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi import Outcome, Solution, build, export, follow, parse_scene, read_scene, solve
+from cosserat_casadi import Solution, build, export, follow, parse_scene, read_scene, solve
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
@@ -20,7 +19,6 @@ from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.paths.contact_path import ContactPath
@@ -29,7 +27,8 @@ from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.obstacle_drawing import surface_lines, surface_net
 from cosserat_casadi.sweeps.row_model import RowModel
 from tests.conftest import ROOT
-from tests.contact.test_obstacles_on_bodies import DISK, HEAD, PUSHED, PUSHER, RADIUS, STIFFNESS, WIDTH
+from tests.contact.test_obstacles_on_bodies import DISK, HEAD, PUSHED, PUSHER, RADIUS, STIFFNESS, WIDTH, bent_to
+from tests.reference.planar import elastica_end
 
 RIM = DISK.replace(f"width = {WIDTH}\nstiffness = {STIFFNESS}\n", "")
 FINGERS = HEAD + PUSHER + PUSHED + RIM
@@ -257,56 +256,42 @@ def test_two_cantilevers_share_a_small_push() -> None:
 class Elasticas:
     """Two planar elasticas that touch at one point, as an initial-value problem: nothing is shared with the model."""
 
-    @staticmethod
-    def bent(start: FloatArray, force: FloatArray, stiffness: float, length: float) -> FloatArray:
-        """x, z, angle and moment at the end of a rod under a constant internal force."""
-
-        def rate(s: float, y: FloatArray) -> list[float]:
-            angle = y[2]
-            turn = force[0] * np.sin(angle) + force[1] * np.cos(angle)
-            return [np.cos(angle), -np.sin(angle), y[3] / stiffness, turn]
-
-        run = solve_ivp(rate, (0.0, length), start, rtol=1e-11, atol=1e-12)
-        return np.asarray(run.y[:, -1])
-
     def residual(self, unknowns: FloatArray) -> list[float]:
-        """Unknowns: moments at both bases, the force of contact, and where along the second rod it is, m."""
+        """Unknowns: curvatures at both bases, the force of contact, and where along the second rod it is, m."""
         first, second, force, place = unknowns
         section = self.section(second, force, place)
-        normal = np.array([-np.sin(section[2]), -np.cos(section[2])])
+        normal = np.array([np.sin(section[2]), -np.cos(section[2])])
         disk = self.disk(first, force * normal)
         return [disk[3], section[3], *(disk[:2] + RADIUS * normal - section[:2])]
 
-    def section(self, moment: float, force: float, place: float) -> FloatArray:
+    def section(self, curvature: float, force: float, place: float) -> FloatArray:
         """The section that is touched: the rod beyond it is straight, and the force is normal to it."""
 
-        def normal_to(angle: float) -> float:
-            pressing = force * np.array([-np.sin(angle), -np.cos(angle)])
-            return float(self.bent(np.array([0.3, -0.1, 0.0, moment]), pressing, 0.4, place)[2] - angle)
+        def end(angle: float) -> FloatArray:
+            pressing = force * np.array([np.sin(angle), -np.cos(angle)])
+            return elastica_end(place, [0.3, -0.1, 0.0, curvature], pressing, 0.4)
 
-        angle = brentq(normal_to, -1.0, 1.5, xtol=1e-13)
-        pressing = force * np.array([-np.sin(angle), -np.cos(angle)])
-        return self.bent(np.array([0.3, -0.1, 0.0, moment]), pressing, 0.4, place)
+        return end(brentq(lambda angle: float(end(angle)[2] - angle), -1.5, 1.0, xtol=1e-13))
 
-    def disk(self, moment: float, pressing: FloatArray) -> FloatArray:
+    def disk(self, curvature: float, pressing: FloatArray) -> FloatArray:
         """The tip that carries the disk."""
-        return self.bent(np.array([0.0, 0.0, 0.0, moment]), np.array([0.0, -PUSH]) - pressing, 0.5, 1.0)
+        return elastica_end(1.0, [0.0, 0.0, 0.0, curvature], np.array([0.0, -PUSH]) - pressing, 0.5)
 
 
 def test_large_deflections_are_those_of_two_elasticas(touching: Solution) -> None:
     elasticas = Elasticas()
     (contact,) = touching.contacts
-    found, _, status, message = fsolve(elasticas.residual, [0.2, 0.2, 0.25, 0.65], full_output=True, xtol=1e-12)
+    found, _, status, message = fsolve(elasticas.residual, [-0.4, -0.5, 0.25, 0.65], full_output=True, xtol=1e-12)
     assert status == 1, message
     first, second, force, place = found
     section = elasticas.section(second, force, place)
     assert_allclose(contact.ends[0], force, rtol=1e-6, atol=0)
     assert_allclose(contact.start, place / 0.9, rtol=1e-6, atol=0)
     assert_allclose(touching.pose(contact.start, "pushed").position[[0, 2]], section[:2], rtol=0, atol=1e-7)
-    normal = np.array([-np.sin(section[2]), -np.cos(section[2])])
+    normal = np.array([np.sin(section[2]), -np.cos(section[2])])
     disk = elasticas.disk(first, force * normal)
     assert_allclose(touching.body("ball").position[[0, 2]], disk[:2], rtol=0, atol=1e-7)
-    assert section[2] > 0.15 and disk[2] > 0.15
+    assert section[2] < -0.15 and disk[2] < -0.15
 
 
 @pytest.mark.slow
@@ -325,21 +310,14 @@ def test_smooth_contact_becomes_exact_as_the_width_shrinks(touching: Solution) -
 
 def _energy(solution: Solution, strains: FloatArray) -> tuple[float, float]:
     """Energy of both rods and of the push, and the gap, m, for strains of both rods."""
-    model = solution.model
-    x = solution.x.copy()
-    x[: len(strains)] = strains
-    position, quaternion, _ = (part.full()[:, 0] for part in model.tip["pusher"](x, solution.inputs))
-    frame = model.discrete.frames[FrameName("body", "ball")]
-    where = model.discrete.deviation(FrameName("body", "ball"))
-    x[where] = [*((position - frame.start.position) / frame.length), *(quaternion - frame.start.quaternion)]
-    moved = Solution(model, solution.inputs, x, Outcome.CONVERGED, "", residual_norm=0.0, iterations=0)
+    moved, position = bent_to(solution, strains)
     near = np.linspace(solution.contacts[0].start - 0.1, solution.contacts[0].start + 0.1, 101)
     gaps = np.linalg.norm(moved.pose(near, "pushed").position - position, axis=1) - RADIUS
     # The least of a parabola through the three points about the lowest.
     k = int(np.clip(gaps.argmin(), 1, len(near) - 2))
     before, at, after = gaps[k - 1 : k + 2]
     least = at - (after - before) ** 2 / (8 * (after - 2 * at + before))
-    return float(model.energy(x, solution.inputs)) + PUSH * float(position[2]), float(least)
+    return float(solution.model.energy(moved.x, moved.inputs)) + PUSH * float(position[2]), float(least)
 
 
 def _brought_back(solution: Solution, strains: FloatArray) -> float:

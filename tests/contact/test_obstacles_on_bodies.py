@@ -18,6 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.motion.simulate import simulate
 from tests.families import mostly_slow
+from tests.reference.planar import elastica_end
 
 HEAD = """
 schema = 1
@@ -231,15 +232,8 @@ class Shooting:
         return np.asarray(run.y[:, -1])
 
     def pusher(self, wrench: FloatArray) -> FloatArray:
-        """Tip of the rod with the disk: x, z, angle, moment under a constant force."""
-
-        def rate(s: float, y: FloatArray) -> list[float]:
-            angle = y[2]
-            turn = wrench[0] * np.sin(angle) + wrench[1] * np.cos(angle)
-            return [np.cos(angle), -np.sin(angle), y[3] / 0.5, turn]
-
-        run = solve_ivp(rate, (0.0, 1.0), [0.0, 0.0, 0.0, wrench[2]], rtol=1e-11, atol=1e-12)
-        return np.asarray(run.y[:, -1])
+        """Tip of the rod with the disk: x, z, angle and curvature."""
+        return elastica_end(1.0, [0.0, 0.0, 0.0, -wrench[2] / 0.5], wrench[:2], 0.5)
 
     def residual(self, unknowns: FloatArray) -> list[float]:
         """Unknowns: force and moment at both bases, and the place of the disk."""
@@ -265,24 +259,28 @@ def test_large_deflections_are_those_of_shooting(pressed: Solution) -> None:
     assert min(abs(shooting.pusher(found[:3])[2]), abs(end[2])) > 0.15
 
 
-def _energy(solution: Solution, strains: FloatArray) -> float:
-    """Elastic energy, that of the layer by a sum over sections, and of the push, for strains of both rods."""
-    model = solution.model
-    x = solution.x.copy()
+def bent_to(solution: Solution, strains: FloatArray) -> tuple[Solution, FloatArray]:
+    """Both rods with other strains and the ball at the tip of the one, as if solved; and the place of the ball, m."""
+    model, x = solution.model, solution.x.copy()
     x[: len(strains)] = strains
-    inputs = solution.inputs
     # A fixed joint in its origin: the body is where the tip is.
-    position, quaternion, _ = (part.full()[:, 0] for part in model.tip["pusher"](x, inputs))
+    position, quaternion, _ = (part.full()[:, 0] for part in model.tip["pusher"](x, solution.inputs))
     frame = model.discrete.frames[FrameName("body", "ball")]
     where = model.discrete.deviation(FrameName("body", "ball"))
     x[where] = [*((position - frame.start.position) / frame.length), *(quaternion - frame.start.quaternion)]
-    moved = Solution(model, inputs, x, Outcome.CONVERGED, "", residual_norm=0.0, iterations=0)
+    return Solution(model, solution.inputs, x, Outcome.CONVERGED, "", residual_norm=0.0, iterations=0), position
+
+
+def _energy(solution: Solution, strains: FloatArray) -> float:
+    """Elastic energy, that of the layer by a sum over sections, and of the push, for strains of both rods."""
+    moved, position = bent_to(solution, strains)
+    model = solution.model
     grid = model.discrete.rods["pushed"].grid
     nodes = np.asarray(grid.nodes, dtype=float)
     sections = moved.pose(nodes, "pushed").position
     gaps = np.linalg.norm(sections - position, axis=1) - RADIUS
     layer = STIFFNESS / (12 * WIDTH**2) * np.maximum(WIDTH - gaps, 0.0) ** 4
-    return float(model.energy(x, inputs)) + 0.9 * float(grid.weights @ layer) + 0.5 * float(position[2])
+    return float(model.energy(moved.x, moved.inputs)) + 0.9 * float(grid.weights @ layer) + 0.5 * float(position[2])
 
 
 @pytest.mark.slow

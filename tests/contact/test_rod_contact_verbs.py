@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.stage import stage_functions
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import Scene
 from tests.conftest import ROOT
+from tests.derivatives import central_differences
 
 SMALL = ("accuracy.modes=2", "accuracy.nodes=4")
 
@@ -65,12 +66,7 @@ def test_a_parameter_of_rods_that_touch_is_a_number_of_the_scene() -> None:
 
 def test_frequencies_are_those_of_the_differences_of_the_balance() -> None:
     model, found = touching()
-    step = 1e-6
-    columns = [
-        (model.residual(found.x + change, found.inputs) - model.residual(found.x - change, found.inputs)) / (2 * step)
-        for change in step * np.eye(model.size)
-    ]
-    stiffness = np.hstack([column.full() for column in columns])
+    stiffness = central_differences(lambda x: model.residual(x, found.inputs), found.x, 1e-6)
     squares = eig(stiffness, model.mass_matrix(found.x, found.inputs).full(), right=False).real
     wanted = np.sqrt(np.sort(squares)[:4]) / (2 * np.pi)
     frequencies = [mode.frequency for mode in modes_of(found, count=4).modes]
@@ -124,15 +120,7 @@ def test_a_stage_of_an_optimiser_has_the_equations_of_rods_that_touch() -> None:
     by_hand = model.jacobian(*at)[0].full().T @ weights
     assert_allclose(adjoint(*at, *outputs, *multipliers)[0].full()[:, 0], by_hand, rtol=1e-11, atol=1e-11)
     hessian = second(*at, *outputs, *multipliers, 0, 0)[0].full()
-    step = 1e-6
-    ahead, behind = (
-        [
-            adjoint(found.x + sign * step * way, found.inputs, *outputs, *multipliers)[0].full()
-            for way in np.eye(model.size)
-        ]
-        for sign in (1.0, -1.0)
-    )
-    differences = (np.hstack(ahead) - np.hstack(behind)) / (2 * step)
+    differences = central_differences(lambda x: adjoint(x, found.inputs, *outputs, *multipliers)[0], found.x, 1e-6)
     assert_allclose(hessian, differences, rtol=0, atol=1e-8 * abs(differences).max())
     # But for the contact no equation would have strains of both fingers.
     half = model.size // 2

@@ -22,6 +22,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.scene import Simulation
+from tests.derivatives import central_differences
 
 RADIUS = 5e-3
 WIDTH = 2e-3
@@ -262,12 +263,7 @@ def test_the_jacobian_is_that_of_differences_and_forces_leave_no_moment() -> Non
     assert solution.contacts
     x = solution.x + 1e-5 * np.random.default_rng(0).normal(size=model.size)
     jacobian = model.jacobian(x, solution.inputs)[0].full()
-    step = 1e-7
-    differences = [
-        (model.residual(x + step * e, solution.inputs) - model.residual(x - step * e, solution.inputs)).full()[:, 0]
-        for e in np.eye(model.size)
-    ]
-    wanted = np.column_stack(differences) / (2 * step)
+    wanted = central_differences(lambda x: model.residual(x, solution.inputs), x, 1e-7)
     assert_allclose(jacobian, wanted, rtol=0, atol=1e-7 * np.abs(wanted).max())
     (terms,) = System(model.discrete, Arguments(ca.MX(ca.DM(x)), ca.DM(solution.inputs))).pairs
     gradients = [ca.evalf(gradient).full().T for gradient in terms.section_pairs.gradient]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 from cosserat_casadi import Solution, build, discretise, parse_scene, solve
@@ -17,6 +16,7 @@ from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings, relative_norm
 from tests.contact.test_contact import TABLE, check_forces_sum, free_span
 from tests.families import mostly_slow
+from tests.reference.planar import elastica_end
 
 BENDING, WEIGHT, HEIGHT, LENGTH = 0.03, 0.981, 0.08, 1.2
 
@@ -181,13 +181,8 @@ BESIDE_LIFT_OFF = [(0.56, 0.005), (0.56, -0.005), (0.5, 0.03), (0.56, 0.03), (0.
 def test_a_moment_near_the_start_of_a_line_leaves_a_point(at: float, moment: float) -> None:
     """Shooting of the heavy elastica from the clamp over the point and the moment to where it lies down."""
 
-    def rate(s: float, y: np.ndarray, beyond: float) -> list[float]:
-        _, _, theta, kappa = y
-        return [np.cos(theta), np.sin(theta), kappa, -(beyond + WEIGHT * s) * np.cos(theta) / BENDING]
-
     def followed(start: float, end: float, y: np.ndarray, beyond: float) -> np.ndarray:
-        accuracy = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
-        return solve_ivp(rate, (start, end), y, args=(beyond,), **accuracy).y[:, -1]
+        return elastica_end(end - start, y, [0.0, beyond + WEIGHT * start], BENDING, WEIGHT)
 
     def missed(unknown: np.ndarray) -> np.ndarray:
         first, second, curvature, beyond, pressing = unknown
@@ -256,15 +251,11 @@ def test_a_load_on_the_free_span() -> None:
     load = 0.2
     place = 0.48 * LENGTH
 
-    def rate(s: float, y: np.ndarray, beyond: float) -> list[float]:
-        _, _, theta, kappa = y
-        return [np.cos(theta), np.sin(theta), kappa, -(beyond + WEIGHT * s) * np.cos(theta) / BENDING]
-
     def missed(unknown: np.ndarray) -> np.ndarray:
         length, curvature, force = unknown
-        accuracy = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
-        first = solve_ivp(rate, (0.0, place), [0.0, 0.0, 0.0, curvature], args=(force,), **accuracy).y[:, -1]
-        end = solve_ivp(rate, (place, length), first, args=(force + load,), **accuracy).y[:, -1]
+        first = elastica_end(place, [0.0, 0.0, 0.0, curvature], [0.0, force], BENDING, WEIGHT)
+        beyond = force + load + WEIGHT * place
+        end = elastica_end(length - place, first, [0.0, beyond], BENDING, WEIGHT)
         return np.array([end[1] + HEIGHT, end[2], end[3]])
 
     found = fsolve(missed, [0.61, -1.6, -0.4], xtol=1e-13)

@@ -13,6 +13,7 @@ from scipy.optimize import root
 
 from cosserat_casadi import Scene, Solution, read_scene, scene_from_dict, solve
 from tests.conftest import case_files
+from tests.reference.rods import hat, rotation_from_quaternion
 
 pytestmark = pytest.mark.slow
 
@@ -37,12 +38,6 @@ def solved(wanted: Scene) -> Solution:
 # Integration of a rod as an initial-value problem in rotation matrices: nothing of the library's is used
 
 
-def matrix(q: Any) -> np.ndarray:
-    w, v = q[0], np.asarray(q[1:], dtype=float)
-    hat = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3) + 2 * w * hat + 2 * hat @ hat
-
-
 def march(
     pose: tuple[np.ndarray, np.ndarray], force: np.ndarray, moment: np.ndarray, length: float, weight: np.ndarray
 ) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray, np.ndarray]:
@@ -51,8 +46,7 @@ def march(
     def slope(_: float, y: np.ndarray) -> np.ndarray:
         R, n, m = y[3:12].reshape(3, 3), y[12:15], y[15:18]
         K, G = R.T @ m / HOOKE[:3], R.T @ n / HOOKE[3:] + [0, 0, 1]
-        hat = np.array([[0, -K[2], K[1]], [K[2], 0, -K[0]], [-K[1], K[0], 0]])
-        return np.concatenate([R @ G, (R @ hat).ravel(), -weight, -np.cross(R @ G, n)])
+        return np.concatenate([R @ G, (R @ hat(K)).ravel(), -weight, -np.cross(R @ G, n)])
 
     start = np.concatenate([pose[0], pose[1].ravel(), force, moment])
     end = solve_ivp(slope, (0, length), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
@@ -100,7 +94,7 @@ def test_rod_carried_between_the_ends_vs_shooting() -> None:
     def poses(moments: np.ndarray) -> tuple[Any, ...]:
         root_force = -(push + G * 1.3)
         middle, n, m = march((np.zeros(3), np.eye(3)), -root_force, moments[:3], 0.4, G)
-        child = (middle[0] + middle[1] @ offset, middle[1] @ matrix(turn))
+        child = (middle[0] + middle[1] @ offset, middle[1] @ rotation_from_quaternion(turn))
         child_force = push + G * 0.5
         end_b, _, left_b = march(child, child_force, moments[3:], 0.5, G)
         passed = moments[3:] + np.cross(child[0] - middle[0], child_force)
@@ -142,7 +136,7 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     total = mass * np.array(WEIGHT["acceleration"])
 
     def defect(unknown: np.ndarray) -> np.ndarray:
-        position, R = unknown[:3], matrix(unknown[3:7] / np.linalg.norm(unknown[3:7]))
+        position, R = unknown[:3], rotation_from_quaternion(unknown[3:7])
         force, moment = total + SIDE, np.cross(R @ CENTRE, total)
         parts = [np.array([unknown[3:7] @ unknown[3:7] - 1])]
         for i, (foot, arm, length) in enumerate(zip(FEET, ARMS, LENGTHS, strict=True)):
@@ -159,7 +153,7 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     near = np.concatenate([pose.position, pose.quaternion, *roots])
     shot = solution_of(defect, near + 1e-3 * np.random.default_rng(3).standard_normal(len(near)))
     assert_allclose(pose.position, shot[:3], rtol=0, atol=1e-8)
-    assert_allclose(pose.rotation, matrix(shot[3:7]), rtol=0, atol=2e-8)
+    assert_allclose(pose.rotation, rotation_from_quaternion(shot[3:7]), rtol=0, atol=2e-8)
     assert_allclose(np.concatenate(roots), shot[7:], rtol=0, atol=1e-6)
     assert own.stable
 

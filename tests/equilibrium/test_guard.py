@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
-from scipy.optimize import root
 
-from cosserat_casadi import Outcome, Scene, Solution, build, discretise
+from cosserat_casadi import Outcome, Scene, Solution, build, discretise, scene_from_dict
 from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
 from cosserat_casadi.equilibrium.metrics import largest_turn
+from tests.catalogue.cases import helical_form
 from tests.equilibria import solve
-from tests.families import mostly_slow
 from tests.reference.closed_forms import roll_up
 from tests.scenes import push, rod, scene
-from tests.shooting_near import integrate
+from tests.shooting_near import shoot
 
 UNIT = {"planar": {"bending_y": 1.0}, "kirchhoff": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}}
 
@@ -27,14 +26,6 @@ def rolled(turns: float, strain: str = "planar", **changes: Any) -> Scene:
     """A straight rod under the tip moment that rolls it up."""
     straight = {"name": "rod", "length": 1.0, "strain": strain, "stiffness": UNIT[strain]}
     return scene(push(force=[0, 0, 0], moment=[0, 2 * np.pi * turns, 0]), rods=[straight], **changes)
-
-
-def helical(share: float) -> Scene:
-    """Straight cantilever rolled into up to ten turns and pulled out of their plane: Ibrahimbegovic 1997."""
-    stiffness = dict.fromkeys(("bending_x", "bending_y", "torsion"), 100.0)
-    stiffness |= dict.fromkeys(("shear_x", "shear_y", "extension"), 1e4)
-    straight = {"name": "rod", "length": 10.0, "strain": "reissner", "stiffness": stiffness}
-    return scene(push(force=[0, 50 * share, 0], moment=[0, 200 * np.pi * share, 0]), rods=[straight])
 
 
 def spring(force: float) -> Scene:
@@ -79,46 +70,19 @@ def test_literal_system_that_loses_the_unit_quaternion_is_unresolved() -> None:
         assert solve(build(wanted, discretise(wanted, 1, nodes, "permuted"))).outcome is outcome
 
 
-@pytest.mark.parametrize("strain", mostly_slow(["planar", "kirchhoff"], quick=["kirchhoff"]))
-@pytest.mark.parametrize("turns", mostly_slow([2, 5], quick=[5]))
-def test_roll_up_vs_circles(strain: str, turns: int) -> None:
-    solution = solve(rolled(turns, strain))
-    assert solution.converged
-    assert_allclose(solution.tip().position, roll_up(turns)[0], rtol=0, atol=1e-6)
-    assert float(solution.model.resolution_index(solution.x, solution.inputs)) <= 1.0
-
-
-def shot(wanted: Scene, force: np.ndarray, moment: np.ndarray) -> np.ndarray:
-    """Tip by shooting: the base moment near a given one with which the tip's load is left with nothing."""
-    balanced = root(lambda m: integrate(wanted, force, m).moment_left, moment, tol=1e-12)
-    return np.asarray(integrate(wanted, force, balanced.x).position)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("share", [0.3, 0.5, 1.0])
-def test_helical_form_vs_shooting(share: float) -> None:
-    wanted = helical(share)
-    solution = solve(wanted)
-    assert solution.converged
-    base = solution.base_wrench()
-    assert_allclose(solution.tip().position, shot(wanted, base.force, base.moment), rtol=0, atol=1e-5)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("force", [5e-4, 4e-3])
 def test_spring_of_ten_turns_vs_shooting(force: float) -> None:
-    wanted = spring(force)
-    solution = solve(wanted)
+    solution = solve(spring(force))
     assert solution.converged
-    base = solution.base_wrench()
-    length = wanted.rods[0].length
-    assert_allclose(solution.tip().position, shot(wanted, base.force, base.moment), rtol=0, atol=1e-6 * length)
+    length = solution.model.scene.rods[0].length
+    assert_allclose(solution.tip().position, shoot(solution, [1.0]).position[-1], rtol=0, atol=1e-6 * length)
 
 
 @pytest.mark.slow
 def test_wave_that_few_modes_cannot_see_shows_at_the_nodes() -> None:
     """Ten turns with seven modes: the equations hold, the balance of stress at the nodes does not."""
-    wanted = helical(1.0)
+    wanted = scene_from_dict(helical_form(1.0))
     blind = solve(build(wanted, discretise(wanted, 7, 56, "magnus6")))
     assert blind.converged
     assert node_residual(blind) > 1e-2

@@ -17,6 +17,7 @@ from cosserat_casadi.identification.misfit import Misfit
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.conftest import ROOT
+from tests.derivatives import central_differences
 from tests.identification.made_up import CASES, NAMES, SECTIONS, TRUTH, WIRE, MadeUp
 
 
@@ -63,14 +64,8 @@ def test_unknowns_are_recovered_to_the_noise(found: Identification) -> None:
 @pytest.fixture(scope="module")
 def by_differences(wire_model: Model, shapes: MadeUp, found: Identification) -> FloatArray:
     """Derivatives of the residuals with the unknowns, from `solve` on both sides."""
-    columns = []
-    for k, step in enumerate((3e6, 3e6, 1e-4, 1e-4)):
-        ahead, behind = found.shared.copy(), found.shared.copy()
-        ahead[k] += step
-        behind[k] -= step
-        change = residuals_by_solve(wire_model, shapes, ahead) - residuals_by_solve(wire_model, shapes, behind)
-        columns.append(change / (2 * step))
-    return np.stack(columns, axis=1)
+    steps = [3e6, 3e6, 1e-4, 1e-4]
+    return central_differences(lambda shared: residuals_by_solve(wire_model, shapes, shared), found.shared, steps)
 
 
 @pytest.mark.slow

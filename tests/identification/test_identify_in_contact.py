@@ -15,7 +15,9 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.fit_problem import Task, _Started
 from cosserat_casadi.identification.fit_unknowns import unknown_layout
 from cosserat_casadi.identification.measured_cases import read_cases
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.robust_loss import Loss
+from tests.derivatives import central_differences
 from tests.families import mostly_slow
 from tests.identification.over_floor import AT, MARKERS, MODULUS, SIGMA, WEIGHTS, markers, table, tables, truth
 
@@ -68,18 +70,17 @@ def test_derivatives_of_the_misfit_are_those_of_solves_that_find_their_contacts(
 ) -> None:
     misfit, state = started(measured(MODULUS), table([weight], np.zeros((1, len(AT), 3))))
     by_shared, _ = misfit.jacobians(state)
-    for column, change in enumerate((1e-4 * MODULUS, 1e-5)):
-        sides = []
-        for sign in (1.0, -1.0):
-            numbers = [MODULUS, 0.0]
-            numbers[column] += sign * change
-            scene = tables(numbers[0], weight)
-            scene["rods"][0]["base"]["position"] = [0.0, 0.0, numbers[1]]
-            solution = solve(build(scene_from_dict(scene)), start=truth(weight))
-            sides.append(solution.pose(np.array(AT)).position.ravel() / SIGMA)
-        differences = (sides[0] - sides[1]) / (2 * change)
-        scale = np.abs(differences).max()
-        assert_allclose(by_shared[:, column], differences, rtol=0, atol=2e-6 * scale)
+
+    def seen(numbers: FloatArray) -> FloatArray:
+        modulus, height = numbers.tolist()
+        scene = tables(modulus, weight)
+        scene["rods"][0]["base"]["position"] = [0.0, 0.0, height]
+        solution = solve(build(scene_from_dict(scene)), start=truth(weight))
+        return solution.pose(np.array(AT)).position.ravel() / SIGMA
+
+    differences = central_differences(seen, [MODULUS, 0.0], [1e-4 * MODULUS, 1e-5])
+    for column, wanted in zip(by_shared.T, differences.T, strict=True):
+        assert_allclose(column, wanted, rtol=0, atol=2e-6 * np.abs(wanted).max())
     # A contact that presses by little, or a small gap, is told: it may open or close on one side of the answer.
     assert not misfit.marginal(state)
     monkeypatch.setattr(pressing_contacts, "LEAST_TOLERANCE", 1e3)

@@ -17,6 +17,7 @@ from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotation_vector
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
+from tests.derivatives import central_differences
 
 OFFSET = np.array([3e-3, -2e-3, 1e-3])
 FIBRE = (2e-3, 1e-3)
@@ -151,13 +152,9 @@ def test_derivatives_are_those_of_differences(model: Model, columns: dict[str, F
     own = own + np.array([[0.1], [0.3]])
     state = state_at(misfit, shared, own)
     by_shared, by_own = misfit.jacobians(state)
-    for k, step in enumerate(STEPS):
-        change = np.zeros_like(shared)
-        change[k] = step
-        ahead = state_at(misfit, shared + change, own).residual
-        behind = state_at(misfit, shared - change, own).residual
-        expected = (ahead - behind) / (2 * step)
-        assert_allclose(by_shared[:, k], expected, rtol=0, atol=2e-6 * np.abs(expected).max())
+    differences = central_differences(lambda shared: state_at(misfit, shared, own).residual, shared, STEPS)
+    for column, expected in zip(by_shared.T, differences.T, strict=True):
+        assert_allclose(column, expected, rtol=0, atol=2e-6 * np.abs(expected).max())
     for case in range(2):
         change = np.zeros_like(own)
         change[case] = 1e-5

@@ -14,6 +14,7 @@ from cosserat_casadi.identification.measured_quantities import difference
 from cosserat_casadi.identification.model_identification import identify_model
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.tubes.tube_functions import TubeFunctions
+from tests.derivatives import central_differences
 from tests.families import mostly_slow
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -123,17 +124,16 @@ def test_derivatives_of_a_difference_are_difference_quotients(quantity: str) -> 
     function = difference(model, model.parametric_scene.measurements[0], 2)
     at, p = np.array([[0.8, 0.97]]), model.parameters.pack()
     arguments = [solution.x, solution.inputs, p]
-    _, *blocks = function(*arguments, at, np.column_stack([measured, measured]))
+    twice = np.column_stack([measured, measured])
+    _, *blocks = function(*arguments, at, twice)
     for number, block in enumerate(blocks):
-        for column, value in enumerate(arguments[number]):
-            step = 1e-6 * max(abs(value), 1e-2)
-            ends = []
-            for sign in (1, -1):
-                moved = [one.copy() for one in arguments]
-                moved[number][column] += sign * step
-                ends.append(function(*moved, at, np.column_stack([measured, measured]))[0].full().ravel())
-            difference_quotient = (ends[0] - ends[1]) / (2 * step)
-            assert_allclose(block.full()[:, column] * step, difference_quotient * step, rtol=1e-5, atol=1e-13)
+        steps = 1e-6 * np.maximum(np.abs(arguments[number]), 1e-2)
+        quotients = central_differences(
+            lambda moved, k=number: function(*arguments[:k], moved, *arguments[k + 1 :], at, twice)[0],
+            arguments[number],
+            steps,
+        )
+        assert_allclose(block.full() * steps, quotients * steps, rtol=1e-5, atol=1e-13)
 
 
 def test_what_is_not_measured_on_tubes_is_refused() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +12,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, follow, load, read_scene, solve
-from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.main import REFUSED, app, run
+from cosserat_casadi.cli.exit_codes import NOT_FOUND, REFUSED
 from cosserat_casadi.model.operation_cost import prices_of_effects
+from tests.commands import cosserat
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"
@@ -82,32 +81,23 @@ def test_reference_cases(name: str) -> None:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path) -> Path:
     (tmp_path / "finger.toml").write_text(SCENE)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
     return tmp_path
 
 
-def cosserat(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
-    monkeypatch.setattr(sys, "argv", ["cosserat", *words])
-    return run(app)
-
-
-def test_check_names_them_and_their_prices(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert cosserat(monkeypatch, "check", "finger.toml") == 0
-    printed = capsys.readouterr().out
+def test_check_names_them_and_their_prices(folder: Path) -> None:
+    checked = cosserat("check", "finger.toml", cwd=folder)
+    assert checked.returncode == 0
     price = prices_of_effects(read_scene(folder / "finger.toml"))
     for name, kind in (("magnet", "magnet"), ("tissue", "foundation"), ("water", "flow"), ("cable", "tendon")):
-        lines = [line for line in printed.splitlines() if name in line and kind in line]
+        lines = [line for line in checked.stdout.splitlines() if name in line and kind in line]
         assert any(str(price[name]) in line for line in lines), lines
 
 
 @pytest.mark.slow
-def test_solve_writes_and_draws_them(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert cosserat(monkeypatch, "solve", "finger.toml", "--output", "found.json", "--plot", "found.png") == 0
+def test_solve_writes_and_draws_them(folder: Path) -> None:
+    assert cosserat("solve", "finger.toml", "--output", "found.json", "--plot", "found.png", cwd=folder).returncode == 0
     result = json.loads((folder / "found.json").read_text())
     assert result["converged"]
     # A stream and a tendon that rubs have no potential.
@@ -115,9 +105,9 @@ def test_solve_writes_and_draws_them(folder: Path, monkeypatch: pytest.MonkeyPat
     assert (folder / "found.png").stat().st_size > 10_000
 
 
-def test_path_strengthens_the_source(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_path_strengthens_the_source(folder: Path) -> None:
     words = ["--input", "magnet.dipole.moment", "--to", "[0,20.0,60.0]", "--output", "path.json"]
-    assert cosserat(monkeypatch, "path", "finger.toml", *words) == 0
+    assert cosserat("path", "finger.toml", *words, cwd=folder).returncode == 0
     assert json.loads((folder / "path.json").read_text())["outcome"] == "converged"
 
 
@@ -139,7 +129,7 @@ def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_inverse_finds_where_the_source_was(folder: Path) -> None:
     moved = solve(read_scene(folder / "finger.toml"), {"magnet.dipole.position": [0.11, 0.03, 0.24]})
     # What is looked for alone is free.
     listed = SCENE[SCENE.index("inputs") : SCENE.index("accuracy")]
@@ -148,16 +138,16 @@ def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.Mo
     target = f'[[targets]]\nkind = "position"\nrod = "finger"\nposition = {wanted}\n'
     bound = '[[bounds]]\ninput = "magnet.dipole.position"\nlower = [0.08, 0.0, 0.22]\nupper = [0.2, 0.2, 0.4]\n'
     (folder / "wanted.toml").write_text(alone + target + bound)
-    assert cosserat(monkeypatch, "inverse", "wanted.toml", "--output", "found.json") == 0
+    assert cosserat("inverse", "wanted.toml", "--output", "found.json", cwd=folder).returncode == 0
     tip = json.loads((folder / "found.json").read_text())["rods"]["finger"]["tip"]["position"]
     assert_allclose(tip, wanted, rtol=0, atol=1e-6)
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no C compiler")
-def test_export_load_and_sweep(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_export_load_and_sweep(folder: Path) -> None:
     # Three modes do not keep the tolerance wherever the inputs may go: the export says so, and is there.
-    assert cosserat(monkeypatch, "export", "finger.toml", "--output", "finger") == NOT_FOUND
+    assert cosserat("export", "finger.toml", "--output", "finger", cwd=folder).returncode == NOT_FOUND
     library = load(folder / "finger")
     solution = solve(build(read_scene(folder / "finger.toml")))
     found = library.solve()
@@ -165,19 +155,17 @@ def test_export_load_and_sweep(folder: Path, monkeypatch: pytest.MonkeyPatch) ->
     position = library.tip["finger"](found.x, library.defaults)[0].full()[:, 0]
     assert_allclose(position, solution.tip().position, rtol=0, atol=1e-9)
     (folder / "grid.toml").write_text("water.velocity.x = [0.0, 0.2]\ncable.pull = [-1.0, 0.0, 1.0]\n")
-    assert cosserat(monkeypatch, "sweep", "finger.toml", "--over", "grid.toml", "--output", "rows.csv") == 0
+    assert cosserat("sweep", "finger.toml", "--over", "grid.toml", "--output", "rows.csv", cwd=folder).returncode == 0
     rows = list(csv.DictReader((folder / "rows.csv").read_text().splitlines()))
     assert len(rows) == 6
     assert {row["outcome"] for row in rows} == {"converged"}
 
 
-def test_faults_of_all_come_at_once(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_faults_of_all_come_at_once(folder: Path) -> None:
     bad = SCENE.replace("density = 1000.0", "density = -1000.0").replace("friction = 0.3", "friction = -0.3")
     bad = bad.replace("stiffness = [20.0, 10.0, 0.0]", "stiffness = [0, 0, 0]").replace("[0, 10.0, 40.0]", "[0, 0, 0]")
     (folder / "bad.toml").write_text(bad)
-    assert cosserat(monkeypatch, "check", "bad.toml") == REFUSED
-    told = capsys.readouterr().err
+    ended = cosserat("check", "bad.toml", cwd=folder)
+    assert ended.returncode == REFUSED
     for where in ("loads[0].dipole.moment", "loads[1].stiffness", "loads[2].density", "actuators[0].friction"):
-        assert where in told
+        assert where in ended.stderr

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, scene_from_dict, solve
 from tests.families import mostly_slow
+from tests.reference.rods import rotation_from_quaternion
 from tests.scenes import rod, scene
 
 FEW = {"modes": 3, "nodes": 8}
@@ -76,7 +77,7 @@ def test_residual_vs_gradient_of_the_energy(name: str, strain: str) -> None:
     for k in np.flatnonzero((middles > start) & (middles < end)):
         apart = moved[:, k] - anchors[:, k]
         if given.get("frame") == "body":
-            apart = ca.DM(rotation_of(quaternion[:, k])).T @ apart
+            apart = ca.DM(rotation_from_quaternion(quaternion[:, k])).T @ apart
         energy += lengths[k] / 2 * ca.dot(ca.DM(given["stiffness"]), apart**2)
     derivatives = ca.Function("d", [x], [ca.gradient(energy, x), ca.hessian(energy, x)[0]])
     elastic = discrete.stiffness
@@ -88,12 +89,6 @@ def test_residual_vs_gradient_of_the_energy(name: str, strain: str) -> None:
     jacobian = model.jacobian(point, inputs)[0].full() - elastic
     assert_allclose(jacobian, hessian / unit, rtol=0, atol=1e-12 * np.abs(hessian).max() / unit)
     assert model.has_potential(inputs)
-
-
-def rotation_of(quaternion: np.ndarray) -> np.ndarray:
-    w, x, y, z = quaternion
-    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + 2 * w * skew + 2 * skew @ skew
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [

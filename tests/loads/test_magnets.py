@@ -14,7 +14,9 @@ from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.loads.load_trace import traced
 from cosserat_casadi.model.arrow_records import DRAWN_SECTIONS, LoadArrows
 from cosserat_casadi.model.registry import EFFECTS
+from tests.derivatives import central_differences
 from tests.equilibria import solve
+from tests.reference.rods import rotation_from_quaternion
 from tests.scenes import rod, scene
 
 FEW = {"modes": 3, "nodes": 8}
@@ -85,19 +87,8 @@ def test_magnetisation_times_area_is_the_moment_per_length() -> None:
     _, quaternion, _, _, base_moment = model.fields["rod"](x, model.pack())
     total = np.zeros(3)
     for k, weight in enumerate(model.discrete.rods["rod"].node_lengths):
-        total += weight * np.cross(rotation_of(quaternion.full()[:, k]) @ local[:, k], [0.02, 0.03, 0.01])
+        total += weight * np.cross(rotation_from_quaternion(quaternion.full()[:, k]) @ local[:, k], [0.02, 0.03, 0.01])
     assert_allclose(base_moment.full()[:, 0], -total, rtol=1e-12, atol=1e-15)
-
-
-def rotation_of(quaternion: np.ndarray) -> np.ndarray:
-    w, x, y, z = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 AT_TIP = {"magnetisation": None, "moment": [0.3, -0.2, 0.8]}
@@ -130,14 +121,10 @@ def test_force_and_moment_of_a_dipole_vs_differences_of_its_energy(name: str) ->
     assert solution.converged
     tip = solution.tip()
     place, moment = tip.position, tip.rotation @ [0.3, -0.2, 0.8]
-    step = 2e-6
-    force = [
-        moment @ (field_at(place + step * unit, given) - field_at(place - step * unit, given)) / (2 * step)
-        for unit in np.eye(3)
-    ]
+    (force,) = central_differences(lambda place: moment @ field_at(place, given), place, 2e-6)
     couple = np.cross(moment, field_at(place, given))
     base = solution.base_wrench()
-    assert_allclose(base.force, -np.array(force), rtol=1e-8, atol=1e-8)
+    assert_allclose(base.force, -force, rtol=1e-8, atol=1e-8)
     assert_allclose(base.moment, -couple - np.cross(place, force), rtol=1e-8, atol=1e-8)
 
 

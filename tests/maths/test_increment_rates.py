@@ -10,6 +10,7 @@ from scipy.linalg import expm, expm_frechet
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.increment_rates import IncrementRates
+from tests.reference.rods import hat
 
 RATE = np.array([0.4, 0.9, -0.7])
 ACCELERATION = np.array([-1.1, 0.3, 0.8])
@@ -19,11 +20,6 @@ OMEGAS = [(0.0, 0.0, 0.0), (1e-9, -2e-9, 1e-9), (0.02, 0.01, -0.03), (0.6, -0.3,
 FIRST = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
 SECOND = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560])
 STEP = 0.02
-
-
-def hat(vector: np.ndarray) -> np.ndarray:
-    x, y, z = vector
-    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
 def vee(matrix: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths import rotation
+from tests.reference.rods import hat
 
 AXIS = np.array([2.0, -3.0, 6.0]) / 7.0
 
@@ -30,10 +31,6 @@ VECTORS = {
     "beyond_half_turn": 4.5 * AXIS,
 }
 BY_NAME = pytest.mark.parametrize("v", VECTORS.values(), ids=VECTORS)
-
-
-def np_hat(v):
-    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
 
 
 def scipy_quaternion(v):
@@ -140,7 +137,7 @@ def test_rate_matrix_turns_directors_with_the_rate_in_the_world_frame():
     slope = 0.5 * rotation.quaternion_rate_matrix(ca.DM(k)) @ q
     R = ca.Function("R", [Q], [rotation.quaternion_to_matrix(Q)])(q).full()
     R_slope = ca.Function("S", [Q], [ca.jtimes(rotation.quaternion_to_matrix(Q), Q, slope)])(q).full()
-    assert_allclose(R_slope, R @ np_hat(k), rtol=1e-13, atol=1e-14)
+    assert_allclose(R_slope, R @ hat(k), rtol=1e-13, atol=1e-14)
     assert_allclose(R_slope, np.cross(R @ k, R.T).T, rtol=1e-13, atol=1e-14)
 
 

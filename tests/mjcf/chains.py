@@ -10,6 +10,7 @@ import numpy as np
 from cosserat_casadi import Scene, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.export import mjcf_of
+from tests.derivatives import central_differences
 
 DIFFERENCE = 1e-6
 """Change of a coordinate by which forces are differenced, rad and m."""
@@ -52,16 +53,15 @@ class Chain:
 
     def stiffness(self) -> FloatArray:
         """Rate of minus the forces with the coordinates, shape (nv, nv)."""
-        columns = []
-        for step in DIFFERENCE * np.eye(self.model.nv):
-            ends = []
-            for sign in (-1.0, 1.0):
-                moved = self.q.copy()
-                mujoco.mj_integratePos(self.model, moved, sign * step, 1.0)
-                ends.append(self._force(moved))
-            columns.append((ends[0] - ends[1]) / (2 * DIFFERENCE))
+
+        def force_after(step: FloatArray) -> FloatArray:
+            moved = self.q.copy()
+            mujoco.mj_integratePos(self.model, moved, step, 1.0)
+            return self._force(moved)
+
+        rates = central_differences(force_after, np.zeros(self.model.nv), DIFFERENCE)
         self._force(self.q)
-        return np.ascontiguousarray(np.array(columns).T)
+        return -rates
 
     def frequencies(self, count: int) -> FloatArray:
         """Lowest frequencies without damping, Hz, shape (count,)."""

@@ -16,7 +16,7 @@ from cosserat_casadi.model.frame_motion import NORM_ROWS, BodyInertia, Quaternio
 from cosserat_casadi.rod.motion_tangent import Jet
 from cosserat_casadi.rod.rod_motion import FrameMotion
 from tests.moving_scenes import drawn_state, joint, rod, scene
-from tests.reference.tendons import hat
+from tests.reference.rods import hat
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 HALF_TURN = np.array([0.0, 0.6, 0.0, 0.8])

@@ -19,7 +19,9 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.materials import Law, LawOfRod
 from cosserat_casadi.rod.properties import EnergyBeyondHooke
 from cosserat_casadi.scene.material_records import Material
+from tests.derivatives import central_differences
 from tests.families import mostly_slow
+from tests.reference.material_scenes import fibre_stress
 from tests.registration import registered
 
 LENGTH = 0.2
@@ -43,20 +45,8 @@ TABLE = [[2.0, 1.2e-3], [5.0, 2.6e-3], [12.0, 4.2e-3], [30.0, 6.0e-3]]
 
 
 def nominal_stress(name: str, stretch: float) -> float:
-    """Force per unloaded area of a fibre of rubber in tension, Pa: textbook formulas."""
-    numbers = RUBBERS[name]
-    shrink = stretch - stretch**-2
-    if name == "neo_hookean":
-        return E / 3 * shrink
-    if name == "mooney_rivlin":
-        return 2 * shrink * (numbers["c10"] + numbers["c01"] / stretch)
-    if name == "yeoh":
-        above = stretch**2 + 2 / stretch - 3
-        return 2 * shrink * (numbers["c1"] + 2 * numbers["c2"] * above + 3 * numbers["c3"] * above**2)
-    # The pairs are printed to three digits; the law is scaled to Young's modulus.
-    scale = E / (1.5 * sum(mu * alpha for mu, alpha in numbers["ogden"]))
-    terms = [mu * (stretch ** (alpha - 1) - stretch ** (-alpha / 2 - 1)) for mu, alpha in numbers["ogden"]]
-    return scale * sum(terms)
+    """Force per unloaded area of a fibre of rubber in tension, Pa."""
+    return fibre_stress({"law": name, "youngs_modulus": E, **RUBBERS[name]}, stretch)
 
 
 def rod(material: dict[str, Any], section: dict[str, Any], strain: Any, **more: Any) -> dict[str, Any]:
@@ -115,11 +105,7 @@ def test_derivatives_are_exact_and_finite(name: str) -> None:
         jacobian = model.jacobian(x, inputs)[0].full()
         assert np.all(np.isfinite(jacobian))
         # A measured curve is smooth on either side of zero; across it the slope of its slope jumps.
-        step = 1e-6
-        columns = [
-            (model.residual(x + step * e, inputs) - model.residual(x - step * e, inputs)) for e in np.eye(len(x))
-        ]
-        differences = np.column_stack([column.full()[:, 0] for column in columns]) / (2 * step)
+        differences = central_differences(lambda x: model.residual(x, inputs), x, 1e-6)
         assert_allclose(jacobian, differences, rtol=0, atol=1e-6 * np.abs(jacobian).max())
     symbol = ca.MX.sym("x", model.size)
     gradient = ca.gradient(model.potential(symbol, inputs), symbol)

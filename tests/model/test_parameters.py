@@ -13,6 +13,7 @@ from cosserat_casadi import Model, Scene, SceneError, build, follow, modes_of, s
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene.load_records import LoadRecord
+from tests.derivatives import central_differences
 from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.loads.kinds import BedRecord, DipoleRecord, registered, with_loads
@@ -489,15 +490,8 @@ def test_derivatives_with_the_parameters(case: str) -> None:
     second = ca.Function("second", [x_symbol, argument], [ca.hessian(ca.sumsqr(residual), argument)[0]])
     for x in (random_x, np.zeros(model.size)):
         found = model.parameter_jacobian(x, inputs, p).full()
-        columns = []
-        for i, width in enumerate(step):
-            there, back = p.copy(), p.copy()
-            there[i] += width
-            back[i] -= width
-            difference = model.residual(x, inputs, there) - model.residual(x, inputs, back)
-            columns.append(difference.full()[:, 0] / (2 * width))
         # What each parameter does by a change of its own size.
-        wanted = np.stack(columns, axis=1) * step
+        wanted = central_differences(lambda given, x=x: model.residual(x, inputs, given), p, step) * step
         scale = np.abs(wanted).max()
         assert_allclose(found * step, wanted, rtol=1e-6, atol=1e-7 * scale)
         assert np.all(np.isfinite(second(x, p).full()))

@@ -1,4 +1,4 @@
-"""Tendons and chambers against closed forms, against tendons as distributed loads, and against their own energy."""
+"""Tendons and chambers against closed forms, against an integration from the clamp, and against their own energy."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from
 from cosserat_casadi.plots.scenery import actuator_routing
 from cosserat_casadi.plots.solved_shapes import SAMPLES
 from tests.conftest import case_files
+from tests.derivatives import central_differences
 from tests.equilibria import solve
 from tests.families import mostly_slow
-from tests.reference.tendons import TendonRod
+from tests.reference.routed_scenes import miss
 
 ROD = """
 schema = 1
@@ -75,29 +76,13 @@ MANY += tendon(COURSES["helical"], "tension = 1.5", "third")
 
 
 @pytest.mark.parametrize("course", mostly_slow([*COURSES, "several"], quick=["partial", "several"]))
-def test_tendons_vs_distributed_loads(course: str) -> None:
-    """From the strain at the base the rod with distributed loads comes to the same tip, and nothing is left there.
-
-    The strain of a section is less exact than the tip, which bounds what can be asked here; the test below asks more.
-    """
+def test_tendons_vs_integration(course: str) -> None:
+    """The tip and the lengths of the cables are those of the equilibrium that is integrated from the clamp."""
     cables = MANY if course == "several" else tendon(COURSES[course])
-    text = rod() + PRECURVED + LOADED + cables
-    solution, reference = solved(text, 14), TendonRod(tomllib.loads(text))
-    strain = solution.strain(0.0)
-    start = np.concatenate([strain[3:], strain[:3]])
-    end = reference.shoot(start, 1.0)
-    assert_allclose(reference.miss(end, 1.0), 0.0, rtol=0, atol=1e-6)
-    assert_allclose(solution.tip().position, end[:3], rtol=0, atol=2e-8)
-    assert_allclose(solution.tip().rotation, end[3:12].reshape(3, 3), rtol=0, atol=2e-7)
-
-
-@pytest.mark.slow
-def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
-    text = rod() + LOADED + MANY
-    position, rotation = TendonRod(tomllib.loads(text)).solve()
-    solution = solve(parse_scene(text))
-    assert_allclose(solution.tip().position, position, rtol=0, atol=0.2e-9)
-    assert_allclose(solution.tip().rotation, rotation, rtol=0, atol=2e-9)
+    solution = solved(rod() + PRECURVED + LOADED + cables, 14)
+    error = miss(solution.model.scene, solution)
+    assert error.tip <= 1e-9
+    assert error.cable <= 1e-9
 
 
 TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("tendon")]
@@ -250,9 +235,7 @@ def test_jacobian_vs_automatic_and_finite_differences(strain: str, slack: str) -
     assert np.abs(jacobian).max() > 0.01
     assert_allclose(jacobian, by_ad(x, u, 1.0).full(), rtol=0, atol=1e-13)
     assert_allclose(model.path_jacobian(x, u, 0.3).full(), by_ad(x, u, 0.3).full(), rtol=0, atol=1e-13)
-    step = 1e-6
-    columns = [(model.residual(x + step * e, u) - model.residual(x - step * e, u)).full() for e in np.eye(model.size)]
-    assert_allclose(jacobian, np.hstack(columns) / (2 * step), rtol=0, atol=1e-8)
+    assert_allclose(jacobian, central_differences(lambda x: model.residual(x, u), x, 1e-6), rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("strain", ['"planar"', '"kirchhoff"', '"reissner"'])

@@ -23,6 +23,7 @@ from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.numerics.motion_equations import Instant
+from tests.derivatives import central_differences
 
 HEAD = """
 schema = 1
@@ -213,11 +214,7 @@ def impulse_by_projection(model: Model, motion: Motion, time: float, body: str) 
     def height(x: FloatArray) -> float:
         return float(model.body[body](x, state.inputs)[0].full()[2, 0])
 
-    step = 1e-6
-    lifts = [
-        (height(state.x + step * unit) - height(state.x - step * unit)) / (2 * step) for unit in np.eye(model.size)
-    ]
-    rises = np.array(lifts)
+    (rises,) = central_differences(height, state.x, 1e-6)
     own = rises[moves] @ admitted
     approach = float(rises @ state.v)
     inverse_mass = own @ np.linalg.solve(admitted.T @ mass @ admitted, own)

@@ -15,6 +15,7 @@ from cosserat_casadi.numerics.consistent_start import consistent_start
 from cosserat_casadi.numerics.coupled_stages import CoupledStages, solve_coupled_stages
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome
+from tests.derivatives import central_differences
 
 SIZE = 0.2
 
@@ -46,11 +47,11 @@ def test_jacobian_vs_differences(method: Collocation, of_scene: Callable[[Colloc
     unknowns = unknowns + 0.1 * np.random.default_rng(0).standard_normal(unknowns.shape)
     scale = np.tile(np.where(stages.equations.differential, SIZE**-2, 1.0), method.stages)
     found = stages.jacobian(unknowns)
-    span = 1e-6
-    for j in range(unknowns.size):
-        change = (span * scale[j] * (np.arange(unknowns.size) == j)).reshape(unknowns.shape)
-        slope = (stages.residuals(unknowns + change) - stages.residuals(unknowns - change)).ravel() / (2 * span)
-        assert_allclose(found[:, j], slope, rtol=0, atol=1e-8 * (1 + np.abs(slope).max()))
+    slopes = central_differences(
+        lambda flat: stages.residuals(flat.reshape(unknowns.shape)).ravel(), unknowns.ravel(), 1e-6 * scale
+    )
+    for column, slope in zip(found.T, (slopes * scale).T, strict=True):
+        assert_allclose(column, slope, rtol=0, atol=1e-8 * (1 + np.abs(slope).max()))
 
 
 def test_few_corrections_solve_the_equations() -> None:

@@ -9,17 +9,18 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from rich.console import Console
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from cosserat_casadi import build, discretise, follow, parse_scene, solve
 from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.numerics.trace import PathOutcome
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
+from cosserat_casadi.paths.equilibrium_path import InputChange
 from cosserat_casadi.plots.path_plot import plot_path
 from tests.commands import cosserat
-from tests.contact.test_contact import PUSH, ROD
+from tests.contact.test_contact import PUSH, ROD, free_span
 from tests.contact.test_contact import TABLE as HEAVY_ROD
+from tests.reference.planar import elastica_end
 from tests.scenes import rod, scene
 
 BENDING, LENGTH, WEIGHT, HEIGHT = 0.03, 1.2, 0.981, 0.08
@@ -61,13 +62,7 @@ def lifted() -> ContactPath:
 
 def span(length: float, curvature: float, force: float, weight: float) -> np.ndarray:
     """x, z, θ and κ of a heavy elastica at the end of a span that begins level; force of what is beyond its start."""
-
-    def rate(s: float, y: np.ndarray) -> list[float]:
-        _, _, theta, kappa = y
-        return [np.cos(theta), np.sin(theta), kappa, -(force + weight * s) * np.cos(theta) / BENDING]
-
-    start = [0.0, 0.0, 0.0, curvature]
-    return solve_ivp(rate, (0.0, length), start, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    return elastica_end(length, [0.0, 0.0, 0.0, curvature], [0.0, force], BENDING, weight)
 
 
 def root(missed: object, guess: list[float]) -> np.ndarray:
@@ -150,12 +145,7 @@ def test_a_tip_that_is_lifted(lifted: ContactPath) -> None:
     # Without lift the tip lies there unloaded: it rises at once.
     assert_allclose(rises.factor, 0.0, rtol=0, atol=1e-9)
 
-    def hanging(unknown: np.ndarray) -> list[float]:
-        length, curvature, force = unknown
-        _, z, theta, kappa = span(length, curvature, force, WEIGHT)
-        return [z + HEIGHT, theta, kappa]
-
-    length, _, _ = root(hanging, [0.6, -1.6, -0.35])
+    length, _, _ = free_span(BENDING, WEIGHT, HEIGHT)
     free = LENGTH - length
     lift = brentq(lambda force: span(free, 0.0, force - WEIGHT * free, WEIGHT)[3], 0.1, 0.5, xtol=1e-14)
     assert_allclose(0.8 * shrinks.factor, lift, rtol=1e-8, atol=0)
@@ -189,19 +179,11 @@ def test_a_rod_is_drawn_over_a_bar() -> None:
     def at_tip(unknown: np.ndarray) -> list[float]:
         shift, curvature, force = unknown
 
-        def rate(s: float, y: np.ndarray) -> list[float]:
-            _, _, theta, kappa = y
-            # What is beyond a section pulls it by the push and by N along the normal at the tip.
-            sideways = -force * np.sin(angle)
-            upwards = force * np.cos(angle) - 3.0
-            return [np.cos(theta), np.sin(theta), kappa, (sideways * np.sin(theta) - upwards * np.cos(theta)) / 0.5]
-
         def shape(end: float) -> np.ndarray:
-            nonlocal angle
-            angle = end
-            return solve_ivp(rate, (0, 1), [-shift, 0, 0, curvature], method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+            # What is beyond a section pulls it by the push and by N along the normal at the tip.
+            pull = [-force * np.sin(end), force * np.cos(end) - 3.0]
+            return elastica_end(1.0, [-shift, 0.0, 0.0, curvature], pull, 0.5)
 
-        angle = 0.0
         angle = brentq(lambda end: shape(end)[2] - end, -1.0, 0.5, xtol=1e-14)
         x, z, theta, kappa = shape(angle)
         return [x + 0.05 * np.sin(theta) - 0.8, z - 0.05 * np.cos(theta) + 0.07, kappa]
@@ -303,7 +285,7 @@ def test_parameters_move_along_a_path() -> None:
     last = [0.02, np.cos(angle / 2), 0, np.sin(angle / 2), 0, 0.1]
     begin = np.append(model.pack(), model.parameters.pack())
     change = np.append(np.zeros(model.inputs.size), last - model.parameters.pack())
-    path = follow_contact_path(model, named[0], begin, change)
+    path = follow_contact_path(InputChange(model, named[0], begin, change))
     assert path.outcome is PathOutcome.CONVERGED
     wanted = solve(model, parameters=dict(zip(named, np.split(np.array(last), [1, 5]), strict=True)))
     assert_allclose(path.solution(-1).tip().position, wanted.tip().position, rtol=0, atol=1e-9)

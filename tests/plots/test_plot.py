@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import builtins
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from numpy.testing import assert_allclose
 from PIL import Image
 
 from cosserat_casadi import Outcome, SceneError, Solution, build, modes_of, parse_scene, read_scene, solve
-from cosserat_casadi.cli.main import REFUSED, app, run
+from cosserat_casadi.cli.exit_codes import REFUSED
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
@@ -31,6 +30,7 @@ from cosserat_casadi.plots.sweep_plot import plot_sweep
 from cosserat_casadi.plots.tubes_plot import _between, plot_tubes
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.tubes.tube_solution import TubeShape
+from tests.commands import cosserat
 from tests.conftest import ROOT
 from tests.families import mostly_slow
 from tests.mjcf.moved_chains import LOOPS
@@ -290,16 +290,14 @@ def test_every_curve_has_a_panel() -> None:
     assert words == ["small strains", "material", "beyond its law"]
 
 
-def test_linear_scene_has_no_figure(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_linear_scene_has_no_figure(tmp_path: Path) -> None:
     wire = ROOT / "examples" / "planar_strip.toml"
     with pytest.raises(SceneError, match="the scene has none"):
         plot_materials(read_scene(wire))
-    monkeypatch.setattr(sys, "argv", ["cosserat", "check", str(wire), "--plot", str(tmp_path / "laws.png")])
-    assert run(app) == REFUSED
+    ended = cosserat("check", str(wire), "--plot", "laws.png", cwd=tmp_path)
+    assert ended.returncode == REFUSED
     assert not list(tmp_path.iterdir())
-    assert "the scene has none" in " ".join(capsys.readouterr().err.split())
+    assert "the scene has none" in " ".join(ended.stderr.split())
 
 
 # Figures of concentric tubes: the line between stations.

@@ -12,6 +12,8 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
+from tests.reference.rods import hat
+
 Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
@@ -42,7 +44,7 @@ def constant_strain(strain: ArrayLike, length: float) -> Pose:
     """Tip of a rod whose strain [K; Γ] is the same everywhere: the exponential of SE(3), a helix."""
     k, g = np.split(np.asarray(strain, dtype=float), 2)
     generator = np.zeros((4, 4))
-    generator[:3, :3], generator[:3, 3] = _hat(k), g
+    generator[:3, :3], generator[:3, 3] = hat(k), g
     pose = expm(length * generator)
     return pose[:3, 3], pose[:3, :3]
 
@@ -57,8 +59,8 @@ def dead_moment(moment: ArrayLike, bending: float, torsion: float, length: float
     m, z = np.asarray(moment, dtype=float), np.array([0.0, 0.0, 1.0])
     tangent = base_rotation @ z
     twist = (m @ tangent) * (1 / torsion - 1 / bending)
-    turned, spun = expm(_hat(m) * length / bending), expm(_hat(z) * twist * length)
-    angle, axis = np.linalg.norm(m) * length / bending, _hat(m / np.linalg.norm(m))
+    turned, spun = expm(hat(m) * length / bending), expm(hat(z) * twist * length)
+    angle, axis = np.linalg.norm(m) * length / bending, hat(m / np.linalg.norm(m))
     mean = np.eye(3) + (1 - np.cos(angle)) / angle * axis + (1 - np.sin(angle) / angle) * axis @ axis
     return length * mean @ tangent, turned @ base_rotation @ spun
 
@@ -112,8 +114,3 @@ def elastica(alpha: float) -> tuple[float, float, float]:
 
 def _amplitude(square: float) -> float:
     return float(np.arcsin(min(1.0, 1 / np.sqrt(2 * square))))
-
-
-def _hat(v: ArrayLike) -> Array:
-    x, y, z = np.asarray(v, dtype=float)
-    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])

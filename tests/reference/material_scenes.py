@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -185,7 +186,7 @@ def _rubber(rod: Table, change: Array, X: Array) -> Array:
     found = np.zeros_like(change)
     x, y, area = _fibres(rod["section"], X)
     strain = change[:, 5:] + y * change[:, :1] - x * change[:, 1:2]
-    force = area * (_nominal(rod["material"], 1 + strain) - rod["material"]["youngs_modulus"] * strain)
+    force = area * (fibre_stress(rod["material"], 1 + strain) - rod["material"]["youngs_modulus"] * strain)
     for c, lever in ((0, y), (1, -x), (5, 1.0)):
         found[:, c] = np.sum(lever * force, axis=1)
     return found
@@ -210,8 +211,8 @@ def _ends(size: float | list[float]) -> list[float]:
     return size if isinstance(size, list) else [size, size]
 
 
-def _nominal(material: Table, stretch: Array) -> Array:
-    """Force per unloaded area, textbook formulas."""
+def fibre_stress(material: Table, stretch: Any) -> Any:
+    """Force per unloaded area of rubber that is stretched along itself, Pa: textbook formulas."""
     law, shrink = material["law"], stretch - stretch**-2
     if law == "mooney_rivlin":
         return 2 * shrink * (material["c10"] + material["c01"] / stretch)
@@ -219,7 +220,9 @@ def _nominal(material: Table, stretch: Array) -> Array:
         above = stretch**2 + 2 / stretch - 3
         return 2 * shrink * (material["c1"] + 2 * material["c2"] * above + 3 * material["c3"] * above**2)
     if law == "ogden":
-        return sum(mu * (stretch ** (a - 1) - stretch ** (-a / 2 - 1)) for mu, a in material["ogden"])
+        # The pairs may be printed to three digits; the law is scaled to Young's modulus.
+        scale = material["youngs_modulus"] / (1.5 * sum(mu * a for mu, a in material["ogden"]))
+        return scale * sum(mu * (stretch ** (a - 1) - stretch ** (-a / 2 - 1)) for mu, a in material["ogden"])
     return material["youngs_modulus"] / 3 * shrink
 
 

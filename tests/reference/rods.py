@@ -93,6 +93,11 @@ def rotation_from_quaternion(quaternion: ArrayLike) -> Array:
     )
 
 
+def hat(v: Array) -> Array:
+    """The matrix of the cross product with a vector."""
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
 def rotation_from_tangent(tangent: ArrayLike) -> Array:
     """The shortest rotation of z to a direction; for −z, where there is none, the half turn about x."""
     direction = np.asarray(tangent, dtype=float)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from cosserat_casadi import Scene, Solution
 from cosserat_casadi.model.scene_rods import rod_properties
 from tests.pose_errors import pose_error
 from tests.reference.random_scenes import between
-from tests.reference.tendons import hat
+from tests.reference.rods import hat
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Table = dict[str, Any]
@@ -152,7 +153,7 @@ def miss(scene: Scene, solution: Solution) -> Miss:
 
 
 class _Integrator:
-    """Clamped at the origin along z, one rod, dead wrench at the tip, spread loads.
+    """Clamped at the origin along z, one rod, dead wrench at the tip, spread loads, weight of uniform density.
 
     States are columns: position, rotation, force and moment in world axes, lengths of the cables.
     """
@@ -166,6 +167,9 @@ class _Integrator:
         for load in scene.loads:
             if load.kind == "distributed_wrench":
                 self.spread.append(load)
+            elif load.kind == "gravity":
+                weight = scene.rods[0].linear_density * np.array(load.acceleration)
+                self.spread.append(SimpleNamespace(frame="world", force=weight, moment=np.zeros(3)))
             else:
                 self.tip_wrench += np.concatenate([load.force, load.moment])
         self.loaded = bool(scene.loads)
@@ -219,7 +223,8 @@ class _Integrator:
         rates = np.zeros_like(y)
         r_rate = np.einsum("kij,kj->ki", R, strain[:, 3:])
         rates[:3] = r_rate.T
-        rates[3:12] = np.einsum("kij,kjl->kil", R, _hats(strain[:, :3])).reshape(count, 9).T
+        hats = np.cross(np.eye(3), strain[:, None, :3])
+        rates[3:12] = (R @ hats).reshape(count, 9).T
         rates[15:18] = -np.cross(r_rate, y[12:15].T).T
         for load in self.spread:
             turn = R if load.frame == "body" else np.eye(3)
@@ -267,10 +272,3 @@ def _offset(tendon: Any, X: float) -> tuple[Array, Array]:
         return helix.radius * np.array([c, s, 0.0]), helix.radius * rate * np.array([-s, c, 0.0])
     series = [np.polynomial.Polynomial(np.atleast_1d(component)) for component in tendon.offset]
     return np.array([*[p(X) for p in series], 0.0]), np.array([*[p.deriv()(X) for p in series], 0.0])
-
-
-def _hats(v: Array) -> Array:
-    hats = np.zeros((len(v), 3, 3))
-    hats[:, 0, 1], hats[:, 0, 2], hats[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
-    hats[:, 1, 0], hats[:, 2, 0], hats[:, 2, 1] = v[:, 2], -v[:, 1], v[:, 0]
-    return hats

@@ -151,9 +151,7 @@ def _rotations(rod: RodData, claim: Claim, X: Array, R0: Array) -> Array:
 def _exponentials(turns: Array) -> Array:
     """Rodrigues' formula for rows of rotation vectors."""
     angle = np.linalg.norm(turns, axis=1)[:, None, None]
-    hats = np.zeros((len(turns), 3, 3))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        hats[:, k, j], hats[:, j, k] = turns[:, i], -turns[:, i]
+    hats = np.cross(np.eye(3), turns[:, None])
     return np.eye(3) + np.sinc(angle / np.pi) * hats + np.sinc(angle / (2 * np.pi)) ** 2 / 2 * hats @ hats
 
 

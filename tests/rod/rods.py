@@ -21,7 +21,7 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import LineWrench, WrenchAt
-from tests.reference.tendons import hat
+from tests.reference.rods import hat
 
 HOOKE = np.array([1.0, 1.5, 0.8, 50.0, 60.0, 100.0])
 STRAIGHT = ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,))

@@ -13,28 +13,28 @@ from typing import Any
 import pytest
 
 from cosserat_casadi import SceneError, Solution, solve, sweep
-from cosserat_casadi.cli.main import INTERRUPTED, REFUSED, app, run
+from cosserat_casadi.cli.exit_codes import INTERRUPTED, REFUSED
 from cosserat_casadi.scene.writing import scene_text
+from tests.commands import cosserat
 from tests.scenes import rod, scene
 from tests.sweeps.conftest import PLANAR
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path) -> Path:
     (tmp_path / "scene.toml").write_text(scene_text(PLANAR))
     (tmp_path / "grid.toml").write_text("push.force.x = [0.0, 0.1]")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "400")
     return tmp_path
 
 
-def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: str) -> str:
+def refused(folder: Path, *words: str) -> str:
+    """What a sweep that is refused says, on one line."""
     before = sorted(file.name for file in folder.iterdir())
     over = [] if "--range" in words else ["--over", "grid.toml"]
-    monkeypatch.setattr(sys, "argv", ["cosserat", "sweep", "scene.toml", *over, *words])
-    assert run(app) == REFUSED
+    ended = cosserat("sweep", "scene.toml", *over, *words, cwd=folder)
+    assert ended.returncode == REFUSED
     assert sorted(file.name for file in folder.iterdir()) == before
-    return capsys.readouterr().err
+    return " ".join(ended.stderr.split())
 
 
 @pytest.mark.parametrize(
@@ -73,23 +73,15 @@ def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captur
         (("--output", "no/a.csv", "--plot", "a.bmp", "--over", "b.csv"), ["folder no", "--plot", "b.csv: cannot be"]),
     ],
 )
-def test_options_that_are_refused(
-    folder: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    words: tuple[str, ...],
-    said: list[str],
-) -> None:
-    told = refused(folder, monkeypatch, capsys, *words)
+def test_options_that_are_refused(folder: Path, words: tuple[str, ...], said: list[str]) -> None:
+    told = refused(folder, *words)
     for one in said:
         assert one in told
 
 
-def test_the_extra_that_lacks_is_named_whole(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_extra_that_lacks_is_named_whole(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert "pip install 'cosserat-casadi[sweep]'" in refused(folder, monkeypatch, capsys, "--output", "a.parquet")
+    assert "pip install 'cosserat-casadi[sweep]'" in refused(folder, "--output", "a.parquet")
 
 
 def test_no_core_is_refused() -> None:
@@ -106,7 +98,7 @@ def test_a_body_named_as_a_rod_is_refused() -> None:
 
 @pytest.mark.parametrize("command", ["sweep", "solve"])
 def test_an_interrupt_that_is_lost_stops_the_command(
-    command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As CasADi loses what is raised while it looks at its arguments."""
 
@@ -127,11 +119,11 @@ def test_an_interrupt_that_is_lost_stops_the_command(
     monkeypatch.setattr("cosserat_casadi.sweeps.choice.solve", losing(solve))
     monkeypatch.setattr("cosserat_casadi.cli.commands.solve.solve_scene", losing(solve))
     words = {"sweep": ["--over", "grid.toml", "--output", "out.csv"], "solve": ["--output", "out.json"]}[command]
-    monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words])
     before = signal.getsignal(signal.SIGINT)
-    assert run(app) == INTERRUPTED
+    ended = cosserat(command, "scene.toml", *words, cwd=folder)
+    assert ended.returncode == INTERRUPTED
     assert lost == [True]
     assert signal.getsignal(signal.SIGINT) is before
     # A stopped sweep keeps the rows that it has, under a name of their own.
     assert not [file for file in ("out.csv", "out.json") if (folder / file).exists()]
-    assert "Stopped" in capsys.readouterr().err
+    assert "Stopped" in ended.stderr

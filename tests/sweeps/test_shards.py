@@ -12,13 +12,14 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from cosserat_casadi import SceneError, read_sweep, sweep
-from cosserat_casadi.cli.main import REFUSED, app, run
+from cosserat_casadi.cli.exit_codes import REFUSED
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.choice import Choice
 from cosserat_casadi.sweeps.run import Plan, merge_shards, plan_sweep, run_shard
 from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.store import StoreChangedError
 from cosserat_casadi.sweeps.table import table_of
+from tests.commands import cosserat
 from tests.sweeps.conftest import PLANAR
 
 pytestmark = pytest.mark.usefixtures("few_checked")
@@ -137,26 +138,23 @@ def test_words_that_are_no_shard(word: str) -> None:
     assert Shard.read("03/064") == Shard(3, 64)
 
 
-def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(scene_text(PLANAR))
     (tmp_path / "rows.csv").write_text("push.force.x\n0.1\n0.2\n")
-    monkeypatch.chdir(tmp_path)
-    words = ["cosserat", "sweep", "scene.toml", "--over", "rows.csv", "--output", "found.csv"]
-    monkeypatch.setattr(sys, "argv", [*words, "--shard", "1/2", "--merge", "--plot", "a.png"])
-    assert run(app) == REFUSED
-    told = capsys.readouterr().err
-    assert "is for all shards together" in told
-    assert "is of all rows" in told
-    monkeypatch.setattr(sys, "argv", [*words, "--shard", "1/2", "--cores", "1"])
-    assert run(app) == 0
-    assert "Shard 1/2: 2 rows kept in found.csv.shard-1-of-2" in " ".join(capsys.readouterr().out.split())
-    monkeypatch.setattr(sys, "argv", [*words, "--merge"])
-    assert run(app) == 0
-    assert read_sweep("found.csv").converged.all()
+    words = ["sweep", "scene.toml", "--over", "rows.csv", "--output", "found.csv"]
+    refused = cosserat(*words, "--shard", "1/2", "--merge", "--plot", "a.png", cwd=tmp_path)
+    assert refused.returncode == REFUSED
+    assert "is for all shards together" in refused.stderr
+    assert "is of all rows" in refused.stderr
+    first = cosserat(*words, "--shard", "1/2", "--cores", "1", cwd=tmp_path)
+    assert first.returncode == 0
+    assert "Shard 1/2: 2 rows kept in found.csv.shard-1-of-2" in " ".join(first.stdout.split())
+    assert cosserat(*words, "--merge", cwd=tmp_path).returncode == 0
+    assert read_sweep(tmp_path / "found.csv").converged.all()
     # A job of an array that is started once more sees that all is done.
-    monkeypatch.setattr(sys, "argv", [*words, "--shard", "1/2"])
-    assert run(app) == 0
-    assert "found.csv holds this sweep already: nothing was computed" in " ".join(capsys.readouterr().out.split())
+    again = cosserat(*words, "--shard", "1/2", cwd=tmp_path)
+    assert again.returncode == 0
+    assert "found.csv holds this sweep already: nothing was computed" in " ".join(again.stdout.split())
     assert not list(tmp_path.glob("*.shard-*"))
 
 

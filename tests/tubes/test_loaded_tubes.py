@@ -9,10 +9,8 @@ import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
-from scipy.optimize import root
 
-from cosserat_casadi import SceneError, TubeSolution, parse_scene, solve
+from cosserat_casadi import SceneError, parse_scene, solve
 from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.loaded_tangent import tangent_step
 from cosserat_casadi.tubes.robot import robot_of
@@ -20,7 +18,8 @@ from cosserat_casadi.tubes.tube_arrows import load_arrows
 from cosserat_casadi.tubes.tube_solve import solution_near, solve_at
 from tests.families import mostly_slow
 from tests.tubes.functions_in_c import check_functions_in_c
-from tests.tubes.test_tube_robots import THREE, TWO, moved
+from tests.tubes.shooting import DENSITY, forces_of, shot
+from tests.tubes.test_tube_robots import THREE, TWO, check_tips, moved
 
 DIFFERENCE = 1e-6
 
@@ -55,84 +54,12 @@ rod = "inner"
 force = [0.0, 0.8, 0.5]
 """
 
-DENSITY = (0.03, 0.02, 0.01)
-
 
 def weighed(text: str) -> str:
     """The tubes with their masses."""
     parts = text.split("straight =")
     masses = [f"linear_density = {density}\nstraight =" for density in DENSITY[: len(parts) - 1]]
     return "".join(itertools.chain(*zip(parts, masses, strict=False))) + parts[-1]
-
-
-def forces_of(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
-    """Force at the tip of each tube, N, and per length along it, N/m, in world axes, shapes (n, 3)."""
-    inputs = dict(zip(found.robot.columns, found.inputs, strict=True))
-
-    def value(name: str) -> np.ndarray:
-        return np.array([inputs.get(f"{name}.{axis}", 0.0) for axis in "xyz"])
-
-    names = found.robot.names
-    at_tips = np.zeros((len(names), 3))
-    at_tips[names.index("inner")] += value("push.force")
-    at_tips[names.index("outer")] += value("poke.force")
-    along = np.outer(DENSITY[: len(names)], value("weight.acceleration"))
-    along[names.index("inner")] += value("wind.force")
-    return at_tips, along
-
-
-def shot(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
-    """Torques at the plate and position of the tip, by shooting from the plate.
-
-    The frame is that of the first tube, which turns about the tangent; unknown are the torques of the tubes and the
-    bending moment at the plate. D. C. Rucker, B. A. Jones, R. J. Webster, IEEE Trans. Robot. 26 (2010) 769.
-    """
-    robot = found.robot
-    n = robot.size
-    reach = robot.translations(found.inputs)
-    bends = reach - robot.curved
-    at_tips, along = forces_of(found)
-    inside = (robot.length - reach) / robot.torsion
-    cuts = sorted({0.0, *np.maximum(bends, 0.0), *reach})
-
-    def rate(s: float, y: np.ndarray) -> np.ndarray:
-        angles, torques, moment = y[:n], y[n : 2 * n], y[2 * n : 2 * n + 3]
-        rotation = y[2 * n + 3 : 2 * n + 12].reshape(3, 3)
-        here = s < reach
-        force = here @ (at_tips + (reach - s)[:, None] * along)
-        stiffness = robot.bending * here
-        wanted = np.zeros((n, 2))
-        for i in range(n):
-            angle = angles[i] - angles[0]
-            turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-            wanted[i] = turn @ [0.0, robot.curvature[i] * (s > bends[i])]
-        u = np.zeros(3)
-        u[:2] = (moment[:2] + stiffness @ wanted) / stiffness.sum()
-        u[2] = torques[0] / robot.torsion[0]
-        bending = stiffness[:, None] * (u[:2] - wanted)
-        gained = bending[:, 0] * wanted[:, 1] - bending[:, 1] * wanted[:, 0]
-        spin = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
-        moment_rate = -np.cross(u, moment) - np.cross([0, 0, 1], rotation.T @ force)
-        return np.concatenate([torques / robot.torsion, gained, moment_rate, (rotation @ spin).ravel(), rotation[:, 2]])
-
-    def tip(unknown: np.ndarray) -> np.ndarray:
-        torques, bending = unknown[:n], unknown[n:]
-        angles = robot.rotations(found.inputs) + inside * torques
-        c, s = np.cos(angles[0]), np.sin(angles[0])
-        # The first tube's own axes are turned by its angle at the plate.
-        start = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-        y = np.concatenate([angles, torques, bending, [torques.sum()], start.ravel(), np.zeros(3)])
-        for first, last in itertools.pairwise(cuts):
-            y = solve_ivp(rate, (first + 1e-14, last - 1e-14), y, method="DOP853", rtol=1e-10, atol=1e-12).y[:, -1]
-        return y
-
-    def missed(unknown: np.ndarray) -> np.ndarray:
-        return tip(unknown)[n : 2 * n + 2]
-
-    start = np.concatenate([found.shape.torques[0], np.zeros(2)])
-    end = root(missed, start, tol=1e-12)
-    assert np.abs(end.fun).max() < 1e-9
-    return end.x[:n], tip(end.x)[-3:]
 
 
 @pytest.mark.parametrize(
@@ -149,9 +76,9 @@ def test_against_shooting(text: str, inputs: dict[str, float]) -> None:
     assert found.converged
     assert found.error_estimate is not None
     assert found.error_estimate <= 1e-8
-    torques, position = shot(found)
-    assert_allclose(found.shape.torques[0], torques, rtol=0, atol=1e-8)
-    assert_allclose(found.tip().position, position, rtol=0, atol=1e-8)
+    truth = shot(found)
+    assert_allclose(found.shape.torques[0], truth.torques, rtol=0, atol=1e-8)
+    assert_allclose(found.tip().position, truth.position, rtol=0, atol=1e-8)
 
 
 ONE = """
@@ -331,12 +258,7 @@ def test_derivatives_of_energy_and_tips() -> None:
         behind = moved(found, index, -DIFFERENCE)
         assert ahead.converged
         assert behind.converged
-        for tube, tip in enumerate(robot.names):
-            position = (ahead.tip(tip).position - behind.tip(tip).position) / (2 * DIFFERENCE)
-            turn = (ahead.tip(tip).rotation - behind.tip(tip).rotation) / (2 * DIFFERENCE)
-            spin = turn @ found.tip(tip).rotation.T
-            assert_allclose(found.tip_jacobian[tube, 3:, index], position, rtol=0, atol=1e-7)
-            assert_allclose(found.tip_jacobian[tube, :3, index], [spin[2, 1], spin[0, 2], spin[1, 0]], atol=2e-6)
+        check_tips(found, index, ahead, behind, 2e-6)
         rate = (ahead.energy - behind.energy) / (2 * DIFFERENCE)
         if name.endswith(".rotation"):
             # The drive's torque is what the plate takes from the tube.

@@ -24,6 +24,7 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.parameters import ParameterLayout
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
+from cosserat_casadi.paths.equilibrium_path import InputChange
 
 MOST_ARRANGEMENTS = 16
 """Most arrangements of a library: each has its own equations."""
@@ -145,7 +146,7 @@ def chosen_arrangements(
             continue
         _check(case, f"load case {number}")
         if not np.array_equal(values, before):
-            met.add_path(follow_contact_path(free, names[0], before, values - before))
+            met.add_path(follow_contact_path(InputChange(free, names[0], before, values - before)))
         met.add(state_in(case.model.scene))
         before = values
     met.add(ContactState(()))
