@@ -16,7 +16,7 @@ from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.tube_solve import solution_near
 from tests.commands import cosserat
-from tests.loads.test_foundations import rotation_of
+from tests.reference.rods import rotation_from_quaternion
 from tests.scenes import push
 from tests.scenes import scene as scene_of_rods
 
@@ -131,7 +131,7 @@ class Elements:
         inside = (robot.length - robot.translations(robot.inputs)) / robot.torsion
         ends = np.arange(ELEMENTS + 1) * self.h
         # The tangent's turn from one end of an element to the other, in the axes of the frame there.
-        tangents = np.array([rotation_of(q) for q in shape.quaternion])
+        tangents = np.array([rotation_from_quaternion(q) for q in shape.quaternion])
         at_ends = [np.argmin(np.abs(shape.distance - end)) for end in ends]
         curvature = []
         for first, last in itertools.pairwise(at_ends):
