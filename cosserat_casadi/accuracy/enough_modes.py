@@ -143,5 +143,7 @@ class _Lack:
         growth = (by_grid / (GRID_SHARE * self.bound)) ** (1 / POWERS[own.transport])
         if growth > MOST_GROWTH and own.transport in NEXT_ORDER:
             return replace(own, nodes=own.nodes + 1, transport=NEXT_ORDER[own.transport])
-        nodes = ceil(own.nodes * min(growth, MOST_GROWTH))
-        return replace(own, nodes=max(nodes, own.nodes + 1))
+        growth = min(growth, MOST_GROWTH)
+        # What sums of layers leave is part of the change by the grid.
+        sections = ceil(own.sections * growth)
+        return replace(own, nodes=max(ceil(own.nodes * growth), own.nodes + 1), sections=sections)

@@ -158,6 +158,17 @@ class Preview:
         by_unknowns = self._tips(corrected).change_from(tips)
         return by_grid + by_unknowns
 
+    def sums_shift(self) -> FloatArray:
+        """Change of the watched numbers by sums of layers at the finer sections that show their error."""
+        discrete = self.model.discrete
+        if not discrete.finer_sections:
+            return self.no_shift
+        finer = replace(discrete, given_sections=discrete.finer_sections)
+        system = System(finer, Arguments(ca.DM(self.reference.x), ca.DM(self.reference.inputs)))
+        residual = _numbers(SceneEquations(system).residual)[:, 0]
+        corrected = self.reference.x - regular_inverse(self.jacobian) @ residual
+        return self._tips(corrected).change_from(self.tips)
+
     def finer_shift(self, grids: Mapping[str, Discretisation], sweeps: int) -> FinerShift:
         """Changes by modes that the reference lacks, on a grid that resolves them.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
@@ -176,7 +176,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     @property
     def resolution(self) -> dict[str, Any]:
         """Modes, nodes, element ends and integrator of every rod, as data."""
-        return {name: asdict(d) for name, d in self.discretisation.items()}
+        return {name: d.plain() for name, d in self.discretisation.items()}
 
     @property
     def resolution_words(self) -> list[str]:

@@ -15,6 +15,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_pairs import pair_widths
 from cosserat_casadi.rod.placed_sections import SummedSections
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 
 SURFACE_FORCE = 10.0
 """Force per length where the gap is zero, relative to EI/(L² width), of an obstacle that is given no stiffness.
@@ -39,6 +40,12 @@ USUAL_NODES = 12
 SECTION_SPACING = 0.5
 """Distance of the sections at which a thinner layer is summed over half of the stretch that it presses, on the fewest
 intervals: a force (1 − s²)³ within this stretch, |s| ≤ 1, is summed to 4 thousandths by equal parts of it."""
+
+COARSEST_SUM = 1.5e-3
+"""Error of poses with sections a quarter of the stretch apart that a layer presses: it falls with the fourth power."""
+
+POINTS_A_PART = 3
+"""Gauss points of equal parts of an element: as close to each other as they are few, and exact at its ends."""
 
 SPARE_SECTIONS = 2
 """Sections for each usual one, where inputs or parameters may stretch a rod or make a layer thinner."""
@@ -176,6 +183,27 @@ def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) ->
     return ceil(min(max((_nodes_for(own, radius, widest) for own in at_nodes), default=0.0), MOST_LAYER_NODES))
 
 
+def seeing_sections(
+    obstacle: scenes.ObstacleRecord, radius: float, length: float, widest: float, tolerance: float
+) -> int:
+    """Sections of an element at which a layer is summed to a tolerance of poses; 0 where it rubs.
+
+    Args:
+        obstacle: the obstacle.
+        radius: of the thinnest section, m.
+        length: of the rod, m.
+        widest: length of its longest element, m.
+        tolerance: distance over the length, or angle in rad.
+    """
+    if obstacle.rubs:
+        return 0
+    assert obstacle.width is not None, "it is smooth"
+    # A rod of curvature 2/L touches a plane as a straight one touches a cylinder of radius L/2.
+    half = pressed(obstacle, radius) if isfinite(obstacle.thickness) else sqrt(obstacle.width * length)
+    spacing = SECTION_SPACING * half * min((tolerance / COARSEST_SUM) ** 0.25, 1.0)
+    return ceil(min(widest / spacing, MOST_SECTIONS))
+
+
 def closer_sections(
     obstacle: scenes.ObstacleRecord, rod: DiscreteRod, *, moved: bool, stretched: bool
 ) -> SummedSections | None:
@@ -191,6 +219,9 @@ def closer_sections(
     """
     lengths = rod.properties.length * np.diff(rod.grid.breaks)
     radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
+    asked = rod.discretisation.sections
+    if asked and not obstacle.rubs:
+        return _parts_of_elements(rod, asked)
     ratio = _sections_a_node(obstacle, radius, float(lengths.max()))
     if ratio == 1:
         return None
@@ -198,6 +229,12 @@ def closer_sections(
     spare = SPARE_SECTIONS if stretched else 1
     counts = np.ceil(spare * ratio * rod.grid.intervals * shares).astype(int)
     return SummedSections(rod, tuple(counts.tolist()))
+
+
+def _parts_of_elements(rod: DiscreteRod, sections: int) -> SummedSections:
+    """Sections of each element, so many at least, at Gauss points of equal parts."""
+    count = POINTS_A_PART * ceil(sections / POINTS_A_PART)
+    return SummedSections(rod, (count,) * rod.grid.elements, POINTS_A_PART)
 
 
 def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSections:
@@ -210,7 +247,7 @@ def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSecti
     widest = float(rod.properties.length * np.diff(rod.grid.breaks).max())
     radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
     seeing = ceil(min(_nodes_for(obstacle, radius, widest), MOST_LAYER_NODES))
-    return SummedSections(rod, (max(seeing, rod.grid.intervals),) * rod.grid.elements, gauss=True)
+    return SummedSections(rod, (max(seeing, rod.grid.intervals),) * rod.grid.elements, points=0)
 
 
 def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> int:

@@ -534,9 +534,9 @@ class DiscreteScene:
             if sections is None:
                 points = points_for(layer.obstacle, self.nominal.rods[layer.rod])
                 sections = replace(points, rod=self.rods[layer.rod])
-            finer[layer.name] = sections.finer(
-                FINER_SECTIONS if isfinite(layer.obstacle.thickness) else FINER_ON_PLANES
-            )
+            by_nodes = layer.name not in self.closer_sections
+            on_plane = by_nodes and not isfinite(layer.obstacle.thickness)
+            finer[layer.name] = sections.finer(FINER_ON_PLANES if on_plane else FINER_SECTIONS)
         return finer
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:

@@ -67,8 +67,13 @@ def discretise(
         breaks = element_ends(scene, rod.name)
         check_places(rod.name, breaks)
         integrator = transport or fixed.rotation or DEFAULT_TRANSPORT
-        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator)
+        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator, fixed.sections or 0)
     return chosen
+
+
+def summed_at(chosen: Mapping[str, Discretisation], sections: int) -> dict[str, Discretisation]:
+    """A discretisation that sums layers at so many sections of each element at least."""
+    return {name: replace(own, sections=max(own.sections, sections)) for name, own in chosen.items()}
 
 
 def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation]) -> scenes.Scene:
@@ -99,7 +104,8 @@ def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation
 def _described(chosen: Discretisation) -> dict[str, Any]:
     """A discretisation in the words of the scene format: one number of modes where all strains have as many."""
     modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
-    return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport}
+    summed = {"sections": chosen.sections} if chosen.sections else {}
+    return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport, **summed}
 
 
 def nodes_for(modes: int) -> int:

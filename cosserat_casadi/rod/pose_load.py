@@ -128,6 +128,14 @@ class LoadedSections:
         return self.load.scale * operator
 
     @cached_property
+    def stiffness_of_nodes(self) -> Matrix:
+        """Operator from δr of the nodes to the weighted δf of sections between them, brought to the nodes, 3M×3M."""
+        assert self.load.sections is not None, "they lie between nodes"
+        of_positions = self.stiffness[: 3 * self.count, : 3 * self.count]
+        to_sections = ca.kron(ca.DM.eye(3), self.load.sections.placed.interpolation)
+        return to_sections.T @ (self.weighted(of_positions) @ to_sections)
+
+    @cached_property
     def with_rates(self) -> dict[str, Matrix]:
         """Operators from the variation of each rate of the sections, 3k×1, to [δf; δc], 6k×3k."""
         function = self.load.kernel.with_rates
