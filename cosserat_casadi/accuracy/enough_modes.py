@@ -15,10 +15,10 @@ import numpy as np
 from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
 from cosserat_casadi.accuracy.fixing import Chosen
 from cosserat_casadi.equilibrium.answer_error import (
-    SAFETY,
     believed_correction,
     change_with_following,
     richer_balance,
+    safety_for,
 )
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -55,7 +55,7 @@ def enough_for(solution: Solution, tolerance: float) -> Chosen:
     if not settled:
         # What the answer lacks is not known, but it is far from right: more of everything.
         return with_more_modes(with_more_modes(solution.model.discretisation))
-    return _Lack(solution, correction.missing, correction.change, tolerance / SAFETY).made_up()
+    return _Lack(solution, correction.missing, correction.change, tolerance / safety_for(solution.model)).made_up()
 
 
 def with_more_modes(chosen: Chosen) -> Chosen:

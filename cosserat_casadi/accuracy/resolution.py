@@ -97,7 +97,7 @@ class Resolution:
         """Error found by a look at modes that the solution lacks; 0 where the extrapolated one is negligible."""
         if self._sweeps == 0:
             return 0.0
-        return HIDDEN_SAFETY * change_size(self._look.tips)
+        return HIDDEN_SAFETY * (1 + self._beyond) * change_size(self._look.tips)
 
     @cached_property
     def extrapolated_error(self) -> float:
@@ -131,7 +131,7 @@ class Resolution:
     @cached_property
     def shape_error(self) -> float:
         """Error of all sections, sections between nodes included; no smaller than the error of the tips."""
-        between = HIDDEN_SAFETY * change_size(self._look.shapes)
+        between = HIDDEN_SAFETY * (1 + self._beyond) * change_size(self._look.shapes)
         return max(self.modes_error, between) + self.grid_error + self.sum_error
 
     def missing_modes(self, error: float, bound: float) -> int:
@@ -154,6 +154,11 @@ class Resolution:
         if self.extrapolated_error < NEGLIGIBLE * self.allowed and not pressed:
             return 0
         return SWEEPS
+
+    @cached_property
+    def _beyond(self) -> float:
+        """What modes beyond those of the look change, over what the look tells."""
+        return self.preview.model.discrete.share_of_more_modes(FURTHER_MODES)
 
     @cached_property
     def _look(self) -> FinerShift:

@@ -197,9 +197,7 @@ def seeing_sections(
     """
     if obstacle.rubs:
         return 0
-    assert obstacle.width is not None, "it is smooth"
-    # A rod of curvature 2/L touches a plane as a straight one touches a cylinder of radius L/2.
-    half = pressed(obstacle, radius) if isfinite(obstacle.thickness) else sqrt(obstacle.width * length)
+    half = half_of_stretch(obstacle, radius, length)
     spacing = SECTION_SPACING * half * min((tolerance / COARSEST_SUM) ** 0.25, 1.0)
     return ceil(min(widest / spacing, MOST_SECTIONS))
 
@@ -268,6 +266,35 @@ def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) ->
     if not obstacle.width or not isfinite(obstacle.thickness):
         return 0.0
     return pi / 2 * widest / (LOOSEST_NODES * pressed(obstacle, radius))
+
+
+def half_of_stretch(obstacle: scenes.ObstacleRecord, radius: float, length: float) -> float:
+    """How far to both sides of where it touches a rod is pressed, m; before a plane by a curvature of 2/L.
+
+    Args:
+        obstacle: the obstacle.
+        radius: of the rod, m.
+        length: L of the rod, m.
+    """
+    assert obstacle.width is not None, "it is smooth"
+    return pressed(obstacle, radius) if isfinite(obstacle.thickness) else sqrt(obstacle.width * length)
+
+
+def share_of_more_modes(modes: int, added: int, element: float, half: float) -> float:
+    """What modes beyond added ones change, over the change by those, where a layer presses a part of an element.
+
+    With few modes the push is at one point, for all that they see: the bending moment has a kink there, and the work of
+    the force lacks n⁻³ by n modes. Modes as short as the stretch see it as it is, and what follows them is next to
+    nothing.
+
+    Args:
+        modes: of the answer.
+        added: modes that it lacks, and whose change is known.
+        element: length of the element, m.
+        half: how far to both sides it is pressed, m.
+    """
+    lacking = [count**-3.0 for count in (modes, modes + added, max(pi / 2 * element / half, modes + added))]
+    return (lacking[1] - lacking[2]) / (lacking[0] - lacking[1])
 
 
 @overload

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import casadi as ca
@@ -22,10 +22,17 @@ from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.obstacle_load import section_radii
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_layers import closer_sections, contact_layers, points_for
+from cosserat_casadi.model.contact_layers import (
+    closer_sections,
+    contact_layers,
+    half_of_stretch,
+    points_for,
+    share_of_more_modes,
+)
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
@@ -323,6 +330,27 @@ class DiscreteScene:
         """Whether obstacles or rods push from a width on."""
         return bool(self.pairs) or any(isinstance(load, ContactLayer) for load in self.loads)
 
+    @property
+    def pressed_rods(self) -> dict[str, float]:
+        """How far to both sides the narrowest layer presses each rod that layers press, m."""
+        halves: dict[str, float] = {}
+        for layer in contact_layers(self.nominal.scene, self.nominal.rods):
+            if layer.rod is not None and layer.at is None:
+                rod = self.nominal.rods[layer.rod]
+                radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
+                half = half_of_stretch(layer.obstacle, radius, rod.length)
+                halves[layer.rod] = min(half, halves.get(layer.rod, inf))
+        return halves
+
+    def share_of_more_modes(self, added: int) -> float:
+        """What modes beyond added ones change where layers press rods, over the change by those; 0 without layers."""
+        shares = [0.0]
+        for name, half in self.pressed_rods.items():
+            rod = self.nominal.rods[name]
+            element = float(rod.length * np.diff(rod.grid.breaks).max())
+            shares.append(share_of_more_modes(max(rod.discretisation.modes), added, element, half))
+        return max(shares)
+
     def with_layers(self, ratio: float) -> DiscreteScene:
         """This scene with widths of smooth contact times a ratio; it pushes as hard where gaps are zero."""
         return replace(self, layers=ratio)
@@ -513,7 +541,12 @@ class DiscreteScene:
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
         discretisation = {
-            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
+            name: enriched(
+                rod.discretisation,
+                modes,
+                meets_obstacles=bool(nominal.scene.obstacles or self.pairs),
+                in_layers=name in self.pressed_rods,
+            )
             for name, rod in self.rods.items()
         }
         discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)

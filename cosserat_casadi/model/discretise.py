@@ -24,6 +24,9 @@ DEFAULT_TRANSPORT = "magnus6"
 ADDED_MODES = 3
 """Modes that are added to every strain: more than one step of an error that falls by every other mode alone."""
 
+ADDED_MODES_IN_LAYERS = 6
+"""Modes that are added where layers press a part of an element: the error falls with the third power of the modes."""
+
 ADDED_NODES = 4
 """Intervals that are added to every element at least."""
 
@@ -113,15 +116,19 @@ def nodes_for(modes: int) -> int:
     return 2 * modes + 2
 
 
-def enriched(discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool) -> Discretisation:
+def enriched(
+    discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool, in_layers: bool
+) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
         discretisation: of a rod.
         signal_modes: modes below which a rod is blind to what the scene puts along it.
         meets_obstacles: whether the scene has obstacles.
+        in_layers: whether layers press the rod.
     """
-    modes = tuple(max(count + ADDED_MODES, signal_modes) for count in discretisation.modes)
+    added = ADDED_MODES_IN_LAYERS if in_layers else ADDED_MODES
+    modes = tuple(max(count + added, signal_modes) for count in discretisation.modes)
     nodes_above_modes = NODES_ABOVE_MODES_IN_CONTACT if meets_obstacles else NODES_ABOVE_MODES
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + nodes_above_modes)
     transport = discretisation.transport
