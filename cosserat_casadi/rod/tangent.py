@@ -458,7 +458,7 @@ class Tangent:
         parts = []
         at_sections: dict[int, list[LoadedSections]] = defaultdict(list)
         for load in self.igm.pulled.pose_loads:
-            if load.load.sections is not None:
+            if load.is_cheaper_at_nodes:
                 moved = self.displacement_of_nodes
                 parts.append(moved.T @ (load.stiffness_of_nodes @ moved))
             elif load.load.at is None:
