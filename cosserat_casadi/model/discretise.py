@@ -117,7 +117,7 @@ def nodes_for(modes: int) -> int:
 
 
 def enriched(
-    discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool, in_layers: bool
+    discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool, in_layers: bool = False
 ) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
