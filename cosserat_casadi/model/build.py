@@ -96,8 +96,9 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @cached_property
     def in_motion(self) -> Model:
-        """The model with flows behind its unknowns where stress relaxes; else itself."""
-        if self.discrete.moving or not any(rod.properties.branches for rod in self.discrete.rods.values()):
+        """The model with flows behind its unknowns where stress relaxes, and margins of contact; without both itself."""
+        relaxes = any(rod.properties.branches for rod in self.discrete.rods.values())
+        if self.discrete.moving or not (relaxes or self.discrete.may_lie_apart):
             return self
         return Model(self.discrete.in_motion)
 

@@ -276,6 +276,14 @@ class DiscreteScene:
         is_longer = properties.ratio is not None or self.layout.of_rod(rod, "length") is not None
         return is_longer or any_symbolic([section_radii(properties, np.zeros(1))])
 
+    @property
+    def may_lie_apart(self) -> bool:
+        """Whether sections at which contact is summed may lie too far apart to tell its error in motion."""
+        rubs = any(obstacle.is_smooth and obstacle.rubs for obstacle in self.scene.obstacles)
+        touching = {name for pair in self.pairs for name in pair.rods}
+        drawn = any(map(self.draws_apart, {*touching, *self.pressed_rods}))
+        return rubs or drawn or bool(self.stretched_layers)
+
     def draws_apart(self, rod: str) -> bool:
         """Whether inputs or parameters may draw sections of a rod apart, or let less of it be pressed."""
         return self.is_stretched(rod) or self._named.rods[rod].grid.ends is not None
