@@ -17,12 +17,12 @@ from cosserat_casadi.accuracy.fixing import Chosen
 from cosserat_casadi.equilibrium.answer_error import (
     believed_correction,
     change_with_following,
+    inverse_jacobian,
     richer_balance,
     safety_for,
 )
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SHARE = 0.6
@@ -135,8 +135,7 @@ class _Lack:
 
     @cached_property
     def _inverse(self) -> FloatArray:
-        model = self.solution.model
-        return regular_inverse(model.path_jacobian(self.solution.x, self.solution.inputs, 1.0).full())
+        return inverse_jacobian(self.solution)
 
     def _finer(self, own: Discretisation, by_grid: float) -> Discretisation:
         """A rod's discretisation with so many intervals that the change by the grid is within its share."""

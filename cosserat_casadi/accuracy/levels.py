@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.contact_layers import seeing_nodes, seeing_sections
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.scene_rods import rod_properties
-from cosserat_casadi.model.watched import SAMPLES
+from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 
 REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
@@ -65,30 +65,21 @@ def nodes_for_turn(modes: int, turn: float) -> int:
 
 def layer_nodes(scene: scenes.Scene) -> int:
     """Intervals per element below which a rod sinks into a smooth obstacle that presses its nodes; 0 without any."""
-    if not any(obstacle.is_smooth for obstacle in scene.obstacles):
-        return 0
-    needed = [0]
-    for record in scene.rods:
-        rod = rod_properties(record)
-        widest = rod.length * float(np.diff(element_ends(scene, record.name)).max())
-        thinnest = float(section_radius(rod, SAMPLES).min())
-        needed.append(seeing_nodes(scene, record.name, thinnest, widest))
-    return max(needed)
+    return max((seeing_nodes(*met) for met in _layers(scene)), default=0)
 
 
 def layer_sections(scene: scenes.Scene, tolerance: float) -> int:
     """Sections per element at which layers that do not rub should be summed to a tolerance; 0 without any."""
-    needed = [0]
+    return max((seeing_sections(*met, tolerance) for met in _layers(scene)), default=0)
+
+
+def _layers(scene: scenes.Scene) -> Iterator[tuple[scenes.ObstacleRecord, RodProperties, float]]:
+    """Each smooth obstacle with each rod that it presses, and the length of the longest element of the rod, m."""
     for record in scene.rods:
-        rod = rod_properties(record)
-        widest = rod.length * float(np.diff(element_ends(scene, record.name)).max())
-        thinnest = float(section_radius(rod, SAMPLES).min())
-        needed += [
-            seeing_sections(obstacle, thinnest, rod.length, widest, tolerance)
-            for obstacle in scene.obstacles
-            if obstacle.is_smooth and obstacle.concerns(record.name)
-        ]
-    return max(needed)
+        for obstacle in scene.obstacles:
+            if obstacle.is_smooth and obstacle.concerns(record.name):
+                rod = rod_properties(record)
+                yield obstacle, rod, rod.length * float(np.diff(element_ends(scene, record.name)).max())
 
 
 def is_thin(scene: scenes.Scene) -> bool:

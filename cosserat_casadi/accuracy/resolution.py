@@ -150,8 +150,7 @@ class Resolution:
         if self.waves or self.preview.model.scene.supports:
             return LOADED_SWEEPS
         # A layer presses a part of an element, which few modes do not feel at all.
-        pressed = self.preview.model.discrete.has_layers
-        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not pressed:
+        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not self.preview.model.discrete.pressed_rods:
             return 0
         return SWEEPS
 

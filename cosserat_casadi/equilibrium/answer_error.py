@@ -276,8 +276,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     They end with the first step of the missing modes that does not contract.
     """
     model = solution.model
-    inputs = solution.inputs
-    inverse = regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
+    inverse = inverse_jacobian(solution)
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
     before = None
@@ -295,6 +294,11 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         contracts = before is not None or _contracts(missing_step, balance.missing_step)
         yield Correction(known, missing, change_with_following(solution, balance, following), contracts)
         before = missing_step
+
+
+def inverse_jacobian(solution: Solution) -> FloatArray:
+    """Inverse of the Jacobian at an answer, shape (n, n); what symmetry leaves neutral does not move."""
+    return regular_inverse(solution.model.path_jacobian(solution.x, solution.inputs, 1.0).full())
 
 
 def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) -> FloatArray:

@@ -96,7 +96,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @cached_property
     def in_motion(self) -> Model:
-        """The model with flows behind its unknowns where stress relaxes, and margins of contact; without both itself."""
+        """The model with flows behind its unknowns where stress relaxes, and with margins of contact; else itself."""
         relaxes = any(rod.properties.branches for rod in self.discrete.rods.values())
         if self.discrete.moving or not (relaxes or self.discrete.may_lie_apart):
             return self

@@ -12,8 +12,9 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_pairs import pair_widths
+from cosserat_casadi.model.contact_pairs import LOOKED_AT, pair_widths
 from cosserat_casadi.rod.placed_sections import SummedSections
+from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 
@@ -170,35 +171,32 @@ def longest_step(scene: scenes.Scene) -> float:
     return min(steps, default=inf)
 
 
-def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) -> int:
-    """Intervals of an element that see how smooth obstacles press a rod at its nodes; 0 without any.
+def seeing_nodes(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: float) -> int:
+    """Intervals of an element that see how a smooth obstacle presses a rod at its nodes; 0 where it does not.
 
     Args:
-        scene: the scene.
-        rod: name of the rod.
-        radius: of its thinnest section, m.
+        obstacle: the obstacle.
+        rod: the rod.
         widest: length of its longest element, m.
     """
-    at_nodes = [own for own in scene.obstacles if own.concerns(rod) and _sections_a_node(own, radius, widest) == 1]
-    return ceil(min(max((_nodes_for(own, radius, widest) for own in at_nodes), default=0.0), MOST_LAYER_NODES))
+    radius = _least_radius(rod)
+    at_nodes = _sections_a_node(obstacle, radius, widest) == 1
+    return ceil(min(_nodes_for(obstacle, radius, widest), MOST_LAYER_NODES)) if at_nodes else 0
 
 
-def seeing_sections(
-    obstacle: scenes.ObstacleRecord, radius: float, length: float, widest: float, tolerance: float
-) -> int:
+def seeing_sections(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: float, tolerance: float) -> int:
     """Sections of an element at which a layer is summed to a tolerance of poses; 0 where it rubs.
 
     Args:
         obstacle: the obstacle.
-        radius: of the thinnest section, m.
-        length: of the rod, m.
+        rod: the rod.
         widest: length of its longest element, m.
         tolerance: distance over the length, or angle in rad.
     """
     if obstacle.rubs:
         return 0
-    half = half_of_stretch(obstacle, radius, length)
-    spacing = SECTION_SPACING * half * min((tolerance / COARSEST_SUM) ** 0.25, 1.0)
+    closer = min(float((tolerance / COARSEST_SUM) ** 0.25), 1.0)
+    spacing = SECTION_SPACING * half_of_stretch(obstacle, rod) * closer
     return ceil(min(widest / spacing, MOST_SECTIONS))
 
 
@@ -216,11 +214,10 @@ def closer_sections(
             sections to spare.
     """
     lengths = rod.properties.length * np.diff(rod.grid.breaks)
-    radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
     asked = rod.discretisation.sections
     if asked and not obstacle.rubs:
         return _parts_of_elements(rod, asked)
-    ratio = _sections_a_node(obstacle, radius, float(lengths.max()))
+    ratio = _sections_a_node(obstacle, _least_radius(rod.properties), float(lengths.max()))
     if ratio == 1:
         return None
     shares = np.ones(len(lengths)) if moved else lengths / lengths.max()
@@ -243,8 +240,7 @@ def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSecti
         rod: with the scene's own numbers.
     """
     widest = float(rod.properties.length * np.diff(rod.grid.breaks).max())
-    radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
-    seeing = ceil(min(_nodes_for(obstacle, radius, widest), MOST_LAYER_NODES))
+    seeing = ceil(min(_nodes_for(obstacle, _least_radius(rod.properties), widest), MOST_LAYER_NODES))
     return SummedSections(rod, (max(seeing, rod.grid.intervals),) * rod.grid.elements, points=0)
 
 
@@ -268,16 +264,17 @@ def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) ->
     return pi / 2 * widest / (LOOSEST_NODES * pressed(obstacle, radius))
 
 
-def half_of_stretch(obstacle: scenes.ObstacleRecord, radius: float, length: float) -> float:
-    """How far to both sides of where it touches a rod is pressed, m; before a plane by a curvature of 2/L.
-
-    Args:
-        obstacle: the obstacle.
-        radius: of the rod, m.
-        length: L of the rod, m.
-    """
+def half_of_stretch(obstacle: scenes.ObstacleRecord, rod: RodProperties) -> float:
+    """How far to both sides of where it touches a rod is pressed, m; before a plane where it bends by 2/L."""
     assert obstacle.width is not None, "it is smooth"
-    return pressed(obstacle, radius) if isfinite(obstacle.thickness) else sqrt(obstacle.width * length)
+    if isfinite(obstacle.thickness):
+        return pressed(obstacle, _least_radius(rod))
+    return sqrt(obstacle.width * rod.length)
+
+
+def _least_radius(rod: RodProperties) -> float:
+    """Radius of the thinnest section of a rod, m."""
+    return float(section_radius(rod, LOOKED_AT).min())
 
 
 def share_of_more_modes(modes: int, added: int, element: float, half: float) -> float:
@@ -293,8 +290,9 @@ def share_of_more_modes(modes: int, added: int, element: float, half: float) -> 
         element: length of the element, m.
         half: how far to both sides it is pressed, m.
     """
-    lacking = [count**-3.0 for count in (modes, modes + added, max(pi / 2 * element / half, modes + added))]
-    return (lacking[1] - lacking[2]) / (lacking[0] - lacking[1])
+    richer = float(modes + added)
+    own, left, unseen = (float(count) ** -3 for count in (modes, richer, max(pi / 2 * element / half, richer)))
+    return (left - unseen) / (own - left)
 
 
 @overload

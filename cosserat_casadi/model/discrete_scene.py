@@ -22,7 +22,6 @@ from cosserat_casadi.constraints.held_directions import CLAMPED
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.obstacle_load import section_radii
-from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
@@ -344,9 +343,7 @@ class DiscreteScene:
         halves: dict[str, float] = {}
         for layer in contact_layers(self.nominal.scene, self.nominal.rods):
             if layer.rod is not None and layer.at is None:
-                rod = self.nominal.rods[layer.rod]
-                radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
-                half = half_of_stretch(layer.obstacle, radius, rod.length)
+                half = half_of_stretch(layer.obstacle, self.nominal.rods[layer.rod].properties)
                 halves[layer.rod] = min(half, halves.get(layer.rod, inf))
         return halves
 
