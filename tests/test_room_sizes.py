@@ -35,7 +35,7 @@ LINES = {
     "paths": 2_745,
     "plots": 4_000,
     "results": 2_050,
-    "rod": 6_040,
+    "rod": 6_055,
     "scene": 9_750,
     "sweeps": 3_770,
     "tubes": 3_270,

@@ -156,7 +156,7 @@ class Resolution:
 
     @cached_property
     def _beyond(self) -> float:
-        """What modes beyond those of the look change, over what the look tells."""
+        """Change by modes beyond the modes of the look, over the change that the look tells."""
         return self.preview.model.discrete.share_of_more_modes(FURTHER_MODES)
 
     @cached_property

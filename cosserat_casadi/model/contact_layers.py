@@ -278,7 +278,7 @@ def _least_radius(rod: RodProperties) -> float:
 
 
 def share_of_more_modes(modes: int, added: int, element: float, half: float) -> float:
-    """What modes beyond added ones change, over the change by those, where a layer presses a part of an element.
+    """Change by modes beyond added ones, over the change by the added ones, where a layer presses a part of an element.
 
     With few modes the push is at one point, for all that they see: the bending moment has a kink there, and the work of
     the force lacks n⁻³ by n modes. Modes as short as the stretch see it as it is, and what follows them is next to

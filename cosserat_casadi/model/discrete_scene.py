@@ -348,7 +348,7 @@ class DiscreteScene:
         return halves
 
     def share_of_more_modes(self, added: int) -> float:
-        """What modes beyond added ones change where layers press rods, over the change by those; 0 without layers."""
+        """Change by modes beyond added ones where layers press rods, over the change by the added ones; else 0."""
         shares = [0.0]
         for name, half in self.pressed_rods.items():
             rod = self.nominal.rods[name]

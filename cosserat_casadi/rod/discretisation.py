@@ -34,7 +34,7 @@ class Discretisation:
             raise ValueError(f"transport is one of {TRANSPORTS}, got {self.transport!r}")
 
     def plain(self) -> dict[str, Any]:
-        """The discretisation as data; sections of layers only where they are not those that the intervals ask for."""
+        """The discretisation as data; sections of layers only where they do not follow from the intervals."""
         return {name: value for name, value in asdict(self).items() if name != "sections" or value}
 
     @property

@@ -64,7 +64,9 @@ of_rods = [{ rod = "finger", modes = [6, 6, 2], nodes = 14, rotation = "magnus6"
     )
     nodes: Nodes = Field(description="intervals of the Chebyshev grid, a whole number")
     rotation: Rotation = Field(description="how the rotation is integrated, as of all rods")
-    sections: Sections | None = Field(None, description="sections of an element at which layers are summed")
+    sections: Sections | None = Field(
+        None, description="sections of an element at which layers are summed, a whole number"
+    )
 
 
 class Accuracy(Record):
@@ -93,8 +95,8 @@ shape = true
     )
     sections: Sections | None = Field(
         None,
-        description="sections of an element at which the push of obstacles with a width is summed; as many as the "
-        "intervals ask for when left out",
+        description="sections of an element at which the push of obstacles with a width is summed, a whole number; as "
+        "many as the intervals ask for when left out",
     )
     of_rods: tuple[RodDiscretisation, ...] = Field(
         (), description="modes, nodes and rotation of single rods, as `cosserat export` writes them where rods differ"
