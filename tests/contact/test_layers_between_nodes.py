@@ -237,11 +237,9 @@ def test_told_errors_bound_the_distance_to_shooting(tolerance: float) -> None:
     assert max(own.nodes for own in found.model.discretisation.values()) <= 20
 
 
-@pytest.mark.parametrize(
-    "place", [pytest.param(0.3, marks=pytest.mark.slow), 0.27, pytest.param(0.24, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("place", [0.285, pytest.param(0.27, marks=pytest.mark.slow)])
 def test_a_push_on_a_part_of_an_element_is_not_told_by_three_more_modes(place: float) -> None:
-    """Three modes more told 0.6 to 0.8 of it: for few modes the push is at a point."""
+    """Three modes more tell 4.2e-6 of 4.6e-6 at the first place: for few modes the push is at a point."""
     scene = parse_scene(FREE, [*THIN, f"rod.base.position=[{0.3 - place}, 0, 0]"])
     found = solve(build(scene, discretise(scene, 4, 8)))
     finer = build(scene, summed_at(discretise(scene, 14, 30, "magnus8"), 400))
