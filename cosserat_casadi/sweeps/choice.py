@@ -78,7 +78,7 @@ class Choice:
         discretisation = None
         if entries:
             modes = tuple(entries["modes"])
-            transport, sections = entries["rotation"], entries["sections"]
+            transport, sections = entries["rotation"], entries.get("sections", 0)
             discretisation = Discretisation(modes, entries["nodes"], transport=transport, sections=sections)
         return cls(discretisation, tuple(plain["rows"]), plain["converged"], plain["error_estimate"])
 
