@@ -6,6 +6,7 @@ The verdicts, in the order in which they are looked for; each has its step in ``
 ``NeedsNodes``        an interval turns too far, so the solution is not one of the rod
 ``NoEquilibrium``     the solve failed otherwise
 ``NeedsModes``        the last coefficients are blind to a wave, or their fall promises too much error
+``NeedsFinerSums``    the sections at which layers are summed leave too much error
 ``NeedsFinerGrid``    the intervals leave too much error
 ``NeedsModes``        a look at modes that the solution lacks finds too much error
 ``Enough``            the errors of modes and grid are small shares of the tolerance
@@ -26,6 +27,12 @@ from cosserat_casadi.numerics.outcome import Outcome
 
 REFERENCE_SHARE = 0.15
 """Share of the tolerance that the modes of a reference solution may be off by, its grid by a third of that."""
+
+SUM_SHARE = 0.25
+"""Share of the tolerance that sums of layers may be off by: answers on fewer modes have sums alike."""
+
+FASTEST_SUMS = 3.0
+"""Largest factor on the sections at which layers are summed: their error falls with the fourth power, about."""
 
 FLOOR = 1e-13
 """Error of a reference solution that cannot be distinguished from rounding."""
@@ -72,6 +79,17 @@ class NeedsNodes:
 
 
 @dataclass(frozen=True)
+class NeedsFinerSums:
+    """Layers are summed at too few sections.
+
+    Attributes:
+        factor: on their number.
+    """
+
+    factor: float
+
+
+@dataclass(frozen=True)
 class NeedsFinerGrid:
     """The grid leaves too large an error, though it resolves the rod."""
 
@@ -81,7 +99,7 @@ class NoEquilibrium:
     """There is no solution to judge."""
 
 
-Verdict = Enough | NeedsModes | NeedsNodes | NeedsFinerGrid | NoEquilibrium
+Verdict = Enough | NeedsModes | NeedsNodes | NeedsFinerSums | NeedsFinerGrid | NoEquilibrium
 
 
 def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict:
@@ -106,6 +124,10 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
     missing = resolution.missing_modes(resolution.extrapolated_error, modes_bound)
     if missing > 0:
         return NeedsModes(modes + missing, extrapolated=True)
+    sum_bound = max(SUM_SHARE * tolerance, FLOOR)
+    if resolution.sum_error > sum_bound:
+        growth = NODES_MARGIN * (resolution.sum_error / sum_bound) ** 0.25
+        return NeedsFinerSums(min(growth, FASTEST_SUMS))
     # What takes the equations on another grid is asked for last, the look at more modes after the cheaper one at a grid
     # alone: on a grid that is too coarse both see its error.
     grid_bound = max(REFERENCE_SHARE / 3 * tolerance, FLOOR)

@@ -369,7 +369,9 @@ class _GridSearch:
         # The turn of an interval is inverse to their number.
         resolution_index = float(model.resolution_index(reference.x, reference.inputs))
         resolving = resolution_index * nodes
-        return max(FEWEST, ceil(NODES_MARGIN * resolving), self.coarsening.wave_modes)
+        # Where sections sum layers the tips allow few nodes; on fewer than modes no look at an error settles.
+        modes = max(self.modes[self.name]) + 1 if self.grids[self.name].sections else 0
+        return max(FEWEST, ceil(NODES_MARGIN * resolving), self.coarsening.wave_modes, modes)
 
     @cached_property
     def _unknowns(self) -> FloatArray:

@@ -15,14 +15,14 @@ import numpy as np
 from cosserat_casadi.accuracy.coarsen import POWERS, alike_rods
 from cosserat_casadi.accuracy.fixing import Chosen
 from cosserat_casadi.equilibrium.answer_error import (
-    SAFETY,
     believed_correction,
     change_with_following,
+    inverse_jacobian,
     richer_balance,
+    safety_for,
 )
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.neutral import regular_inverse
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SHARE = 0.6
@@ -55,7 +55,7 @@ def enough_for(solution: Solution, tolerance: float) -> Chosen:
     if not settled:
         # What the answer lacks is not known, but it is far from right: more of everything.
         return with_more_modes(with_more_modes(solution.model.discretisation))
-    return _Lack(solution, correction.missing, correction.change, tolerance / SAFETY).made_up()
+    return _Lack(solution, correction.missing, correction.change, tolerance / safety_for(solution.model)).made_up()
 
 
 def with_more_modes(chosen: Chosen) -> Chosen:
@@ -135,13 +135,14 @@ class _Lack:
 
     @cached_property
     def _inverse(self) -> FloatArray:
-        model = self.solution.model
-        return regular_inverse(model.path_jacobian(self.solution.x, self.solution.inputs, 1.0).full())
+        return inverse_jacobian(self.solution)
 
     def _finer(self, own: Discretisation, by_grid: float) -> Discretisation:
         """A rod's discretisation with so many intervals that the change by the grid is within its share."""
         growth = (by_grid / (GRID_SHARE * self.bound)) ** (1 / POWERS[own.transport])
         if growth > MOST_GROWTH and own.transport in NEXT_ORDER:
             return replace(own, nodes=own.nodes + 1, transport=NEXT_ORDER[own.transport])
-        nodes = ceil(own.nodes * min(growth, MOST_GROWTH))
-        return replace(own, nodes=max(nodes, own.nodes + 1))
+        growth = min(growth, MOST_GROWTH)
+        # What sums of layers leave is part of the change by the grid.
+        sections = ceil(own.sections * growth)
+        return replace(own, nodes=max(ceil(own.nodes * growth), own.nodes + 1), sections=sections)

@@ -35,7 +35,8 @@ def union_of(chosen: Sequence[Discretisation]) -> Discretisation:
     nodes = max(d.nodes for d in chosen)
     # Names of the Magnus methods sort by their order.
     transport = max(d.transport for d in chosen)
-    return Discretisation(modes, nodes, transport=transport)
+    sections = max(d.sections for d in chosen)
+    return Discretisation(modes, nodes, transport=transport, sections=sections)
 
 
 def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
@@ -46,6 +47,7 @@ def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
         modes=None,
         nodes=None,
         rotation=None,
+        sections=None,
         of_rods=None,
         chosen_for=None,
     )
@@ -63,6 +65,7 @@ def fixed_alike(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
         modes=modes,
         nodes=chosen.nodes,
         rotation=chosen.transport,
+        sections=chosen.sections or None,
         of_rods=None,
     )
 

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import ceil
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.contact_layers import seeing_nodes
+from cosserat_casadi.model.contact_layers import seeing_nodes, seeing_sections
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.element_ends import NARROWEST, element_ends
 from cosserat_casadi.model.required_modes import signal_modes
 from cosserat_casadi.model.scene_rods import rod_properties
-from cosserat_casadi.model.watched import SAMPLES
+from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 
 REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
 """Modes per strain component and element of a reference solution, level by level."""
@@ -64,15 +65,21 @@ def nodes_for_turn(modes: int, turn: float) -> int:
 
 def layer_nodes(scene: scenes.Scene) -> int:
     """Intervals per element below which a rod sinks into a smooth obstacle that presses its nodes; 0 without any."""
-    if not any(obstacle.is_smooth for obstacle in scene.obstacles):
-        return 0
-    needed = [0]
+    return max((seeing_nodes(*met) for met in _layers(scene)), default=0)
+
+
+def layer_sections(scene: scenes.Scene, tolerance: float) -> int:
+    """Sections per element at which layers that do not rub should be summed to a tolerance; 0 without any."""
+    return max((seeing_sections(*met, tolerance) for met in _layers(scene)), default=0)
+
+
+def _layers(scene: scenes.Scene) -> Iterator[tuple[scenes.ObstacleRecord, RodProperties, float]]:
+    """Each smooth obstacle with each rod that it presses, and the length of the longest element of the rod, m."""
     for record in scene.rods:
-        rod = rod_properties(record)
-        widest = rod.length * float(np.diff(element_ends(scene, record.name)).max())
-        thinnest = float(section_radius(rod, SAMPLES).min())
-        needed.append(seeing_nodes(scene, record.name, thinnest, widest))
-    return max(needed)
+        for obstacle in scene.obstacles:
+            if obstacle.is_smooth and obstacle.concerns(record.name):
+                rod = rod_properties(record)
+                yield obstacle, rod, rod.length * float(np.diff(element_ends(scene, record.name)).max())
 
 
 def is_thin(scene: scenes.Scene) -> bool:
@@ -130,6 +137,7 @@ class Level:
         grid_factor: factor on the intervals.
         min_nodes: intervals below which a grid was too coarse for so bent a rod.
         layer_nodes: intervals that thin smooth obstacles ask for, before the factor.
+        sections: sections per element at which layers are summed; 0 for as many as the intervals ask for.
         finest: index of the last level that is tried whether or not the rods converge; those above, where they do.
     """
 
@@ -137,10 +145,11 @@ class Level:
     grid_factor: float = 1.0
     min_nodes: int = 0
     layer_nodes: int = 0
+    sections: int = 0
     finest: int = REFERENCE_MODES.index(USUAL_MODES)
 
     @classmethod
-    def first(cls, tolerance: float, signal_modes: int = 0, layer_nodes: int = 0) -> Level:
+    def first(cls, tolerance: float, signal_modes: int = 0, layer_nodes: int = 0, sections: int = 0) -> Level:
         """The level that a scene begins with.
 
         Args:
@@ -148,11 +157,12 @@ class Level:
             signal_modes: modes below which a level is blind to what the scene puts along its rods; the last level
                 where none has so many.
             layer_nodes: intervals that thin smooth obstacles ask for.
+            sections: per element, at which layers are summed.
         """
         suitable = (index for bound, index in FIRST_LEVELS if tolerance >= bound)
         visible = _lowest_with(signal_modes)
         finest = _lowest_with(max(USUAL_MODES, SIGNAL_FACTOR * signal_modes))
-        return cls(max(next(suitable), visible), layer_nodes=layer_nodes, finest=finest)
+        return cls(max(next(suitable), visible), layer_nodes=layer_nodes, sections=sections, finest=finest)
 
     @property
     def modes(self) -> int:
@@ -194,6 +204,18 @@ class Level:
     def with_min_nodes(self, nodes: int) -> Level:
         """This level on ``nodes`` intervals at least."""
         return replace(self, min_nodes=nodes)
+
+    def with_finer_sums(self, factor: float) -> Level | None:
+        """This level with layers summed at so many times as many sections, at intervals where these alone are summed.
+
+        Returns:
+            None where sums, or the grid, are given up.
+        """
+        if not self.sections:
+            return self.with_finer_grid()
+        if self.sections == MOST_SECTIONS:
+            return None
+        return replace(self, sections=min(ceil(factor * self.sections), MOST_SECTIONS))
 
     def with_finer_grid(self) -> Level | None:
         """This level on more intervals; None where the grid is given up."""

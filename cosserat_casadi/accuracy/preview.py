@@ -19,11 +19,12 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.answer_error import watched_at
 from cosserat_casadi.equilibrium.locking import degrees_of_freedom, motion, residual_by_inputs
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.discrete_scene import Richer, discrete_scene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer, discrete_scene
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, section_poses, watched, watched_cables
@@ -83,7 +84,7 @@ class Preview:
     @cached_property
     def tips(self) -> WatchedNumbers:
         """The watched poses and cables of the reference."""
-        return self._tips(self.reference.x)
+        return watched_at(self.reference, self.reference.x)
 
     @property
     def no_shift(self) -> FloatArray:
@@ -133,7 +134,7 @@ class Preview:
             # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
             with np.errstate(all="ignore"):
                 x = self.with_modes(modes)
-                shift = self._tips(x).change_from(self.tips)
+                shift = watched_at(self.reference, x).change_from(self.tips)
             finite = np.isfinite(shift)
             self._shifts[key] = np.where(finite, shift, np.inf)
         return self._shifts[key]
@@ -146,17 +147,29 @@ class Preview:
             modes: modes of every rod.
             grids: nodes and transport of every rod; their modes are not read.
         """
-        kept = self.kept(modes)
         regridded = self._regridded(x, grids)
-        residual = _numbers(SceneEquations(regridded).residual)[kept, 0]
-        # One Newton step with the Jacobian of the reference's grid.
+        # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
+        by_grid = _tips_of(regridded).change_from(watched_at(self.reference, x))
+        return by_grid + self._shift_by_unknowns(x, self.kept(modes), regridded)
+
+    def sums_shift(self) -> FloatArray:
+        """Change of the watched numbers by sums of layers at the finer sections that show their error."""
+        discrete = self.model.discrete
+        if not discrete.finer_sections:
+            return self.no_shift
+        x = self.reference.x
+        finer = self._system(replace(discrete, given_sections=discrete.finer_sections), x)
+        return self._shift_by_unknowns(x, np.ones(len(x), dtype=bool), finer)
+
+    def _shift_by_unknowns(self, x: FloatArray, kept: Mask, system: System) -> FloatArray:
+        """Change of the watched numbers by one Newton step from x with the equations of a system beside the reference.
+
+        The Jacobian is the reference's.
+        """
+        residual = _numbers(SceneEquations(system).residual)[kept, 0]
         corrected = x.copy()
         corrected[kept] -= self._inverse_of_kept(kept) @ residual
-        # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
-        tips = self._tips(x)
-        by_grid = _tips_of(regridded).change_from(tips)
-        by_unknowns = self._tips(corrected).change_from(tips)
-        return by_grid + by_unknowns
+        return watched_at(self.reference, corrected).change_from(watched_at(self.reference, x))
 
     def finer_shift(self, grids: Mapping[str, Discretisation], sweeps: int) -> FinerShift:
         """Changes by modes that the reference lacks, on a grid that resolves them.
@@ -175,8 +188,7 @@ class Preview:
         inverse = regular_inverse(self.jacobian)
 
         def system(known: FloatArray, missing: FloatArray) -> System:
-            unknowns = richer.joined(ca.DM(known), ca.DM(missing))
-            return System(richer.discrete, Arguments(unknowns, ca.DM(self.reference.inputs)))
+            return self._system(richer.discrete, richer.joined(ca.DM(known), ca.DM(missing)))
 
         known: FloatArray = self.reference.x
         missing: FloatArray = np.zeros(richer.missing_size)
@@ -236,16 +248,12 @@ class Preview:
         discretisation = {}
         for name, reference in self.model.discretisation.items():
             discretisation[name] = replace(grids[name], modes=reference.modes)
-        model = self.model
-        discrete = discrete_scene(model.scene, model.inputs, discretisation)
-        # Numbers for arguments: CasADi evaluates while it builds, so that no function is compiled for one look.
-        arguments = Arguments(ca.DM(x), ca.DM(self.reference.inputs))
-        return System(discrete, arguments)
+        return self._system(discrete_scene(self.model.scene, self.model.inputs, discretisation), x)
 
-    def _tips(self, x: FloatArray) -> WatchedNumbers:
-        """The watched numbers, on the reference's grid, by the model's functions."""
-        poses = _column(self.model.watched(x, self.reference.inputs))
-        return WatchedNumbers.of_column(poses, len(watched_cables(self.model.discrete)))
+    def _system(self, discrete: DiscreteScene, x: FloatArray | Matrix) -> System:
+        """The equations of a scene like the reference's at some unknowns and its inputs."""
+        # Numbers for arguments: CasADi evaluates while it builds, so that no function is compiled for one look.
+        return System(discrete, Arguments(ca.DM(x), ca.DM(self.reference.inputs)))
 
     @cached_property
     def _shapes(self) -> WatchedNumbers:

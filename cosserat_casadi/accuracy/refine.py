@@ -26,6 +26,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.assess import (
     Enough,
     NeedsFinerGrid,
+    NeedsFinerSums,
     NeedsModes,
     NeedsNodes,
     NoEquilibrium,
@@ -34,11 +35,11 @@ from cosserat_casadi.accuracy.assess import (
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
-from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, layer_nodes, nodes_for_turn
+from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, layer_nodes, layer_sections, nodes_for_turn
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
-from cosserat_casadi.equilibrium.answer_error import UNKNOWN, answer_error, with_notes
+from cosserat_casadi.equilibrium.answer_error import with_notes
 from cosserat_casadi.equilibrium.locking import locking_note
 from cosserat_casadi.equilibrium.metrics import ROUNDING, has_more_modes, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
@@ -47,7 +48,7 @@ from cosserat_casadi.equilibrium.solve import NONE_STABLE, Start, check_potentia
 from cosserat_casadi.equilibrium.solve import solve as solve_model
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.discretise import discretise, summed_at
 from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.system_functions import SystemFunctions
 from cosserat_casadi.model.tube_checks import refuse_tubes
@@ -256,7 +257,7 @@ def _for_tolerance(solver: SceneSolver, tolerance: float) -> _Reference | Soluti
     if solver.is_assembly:
         # On fewer modes what is extrapolated is far too large, and so is the model that it leads to.
         least = max(least, TELLING)
-    first = Level.first(tolerance, least, layer_nodes(solver.scene))
+    first = Level.first(tolerance, least, layer_nodes(solver.scene), layer_sections(solver.scene, tolerance))
     return _refined(solver, first, tolerance)
 
 
@@ -330,6 +331,8 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
             return level.with_extrapolated_modes(modes)
         case NeedsModes(modes):
             return level.with_modes(modes)
+        case NeedsFinerSums(factor):
+            return level.with_finer_sums(factor)
         case NeedsFinerGrid():
             return level.with_finer_grid()
         case Enough():
@@ -342,8 +345,8 @@ def _at_level(solver: SceneSolver, level: Level, coarser: Solution | None) -> So
     if coarser is not None:
         turn = max(turn, largest_turn(coarser))
     nodes = level.nodes(turn)
-    discretisation = discretise(solver.scene, level.modes, nodes, solver.reference_transport)
-    return solver.solve(discretisation, coarser)
+    uniform = discretise(solver.scene, level.modes, nodes, solver.reference_transport)
+    return solver.solve(summed_at(uniform, level.sections), coarser)
 
 
 def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
@@ -368,31 +371,12 @@ def _coarsened(solver: SceneSolver, resolution: Resolution) -> Solution:
             smallest_eigenvalue=reference.smallest_eigenvalue,
             message=reference.message,
         )
-        judged = _with_sums(judged)
         if judged.error_estimate is not None and judged.error_estimate <= solver.tolerance:
             return judged
-    return _with_sums(
-        replace(
-            reference,
-            error_estimate=reference_error + ROUNDING,
-            shape_error_estimate=resolution.shape_error + ROUNDING,
-        )
-    )
-
-
-def _with_sums(solution: Solution) -> Solution:
-    """A solution whose estimated errors contain what sums of layers miss, which nodes of a reference miss as well."""
-    if not solution.model.discrete.finer_sections or solution.error_estimate is None:
-        return solution
-    error = answer_error(solution)
-    if error.watched == UNKNOWN:
-        # The estimate beside the finer solution stands: the richer model of this one tells nothing.
-        return solution
-    assert solution.shape_error_estimate is not None, "told with that of the tips"
     return replace(
-        solution,
-        error_estimate=max(solution.error_estimate, error.watched),
-        shape_error_estimate=max(solution.shape_error_estimate, error.shape),
+        reference,
+        error_estimate=reference_error + ROUNDING,
+        shape_error_estimate=resolution.shape_error + ROUNDING,
     )
 
 
@@ -422,6 +406,8 @@ def _beside_finer(
         finer_nodes = max(fixed.nodes + FINER_NODES, resolving_nodes)
         # The fixed integrator may leave an error of its own: the reference takes the one that suits the tolerance.
         finer[name] = replace(fixed, modes=finer_modes, nodes=finer_nodes, transport=solver.reference_transport)
+    finer_sums = [max(sections.counts) for sections in solution.model.discrete.finer_sections.values()]
+    finer = summed_at(finer, max(finer_sums, default=0))
     reference = solver.solve(finer, meant or solution)
     if not reference.converged:
         return solution.unresolved()

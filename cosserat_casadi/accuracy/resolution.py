@@ -30,6 +30,9 @@ MODES_SAFETY = 2.0
 GRID_SAFETY = 1.5
 """Factor on the distance to a finer grid, which is not exact either."""
 
+SUM_SAFETY = 2.0
+"""Factor on the change by finer sums of layers, whose stiffness changes with them."""
+
 WAVES_FACTOR = 2
 """Factor on modes and intervals at which a look is taken for waves that the last coefficients do not show."""
 
@@ -94,7 +97,7 @@ class Resolution:
         """Error found by a look at modes that the solution lacks; 0 where the extrapolated one is negligible."""
         if self._sweeps == 0:
             return 0.0
-        return HIDDEN_SAFETY * change_size(self._look.tips)
+        return HIDDEN_SAFETY * (1 + self._beyond) * change_size(self._look.tips)
 
     @cached_property
     def extrapolated_error(self) -> float:
@@ -116,15 +119,20 @@ class Resolution:
         return GRID_SAFETY * change_size(shift)
 
     @cached_property
+    def sum_error(self) -> float:
+        """Error that sums of layers leave."""
+        return SUM_SAFETY * change_size(self.preview.sums_shift())
+
+    @cached_property
     def tip_error(self) -> float:
         """Error of the watched poses and cables."""
-        return self.modes_error + self.grid_error
+        return self.modes_error + self.grid_error + self.sum_error
 
     @cached_property
     def shape_error(self) -> float:
         """Error of all sections, sections between nodes included; no smaller than the error of the tips."""
-        between = HIDDEN_SAFETY * change_size(self._look.shapes)
-        return max(self.modes_error, between) + self.grid_error
+        between = HIDDEN_SAFETY * (1 + self._beyond) * change_size(self._look.shapes)
+        return max(self.modes_error, between) + self.grid_error + self.sum_error
 
     def missing_modes(self, error: float, bound: float) -> int:
         """Further modes per component after which an error of the modes should be below a bound."""
@@ -141,9 +149,15 @@ class Resolution:
         """Sweeps of the look; 0 where what the tips do needs none."""
         if self.waves or self.preview.model.scene.supports:
             return LOADED_SWEEPS
-        if self.extrapolated_error < NEGLIGIBLE * self.allowed:
+        # A layer presses a part of an element, which few modes do not feel at all.
+        if self.extrapolated_error < NEGLIGIBLE * self.allowed and not self.preview.model.discrete.pressed_rods:
             return 0
         return SWEEPS
+
+    @cached_property
+    def _beyond(self) -> float:
+        """Change by modes beyond the modes of the look, over the change that the look tells."""
+        return self.preview.model.discrete.share_of_more_modes(FURTHER_MODES)
 
     @cached_property
     def _look(self) -> FinerShift:

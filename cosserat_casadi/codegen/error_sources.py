@@ -53,7 +53,7 @@ def error_words(model: Model, names: Names) -> Words:
         "is_among_last": numbers(richer.is_among_last.astype(int).tolist()),
         "scene_tolerance": f"{tolerance:g}",
         "error_sweeps": answer_error.MOST_SWEEPS,
-        "error_safety": answer_error.SAFETY,
+        "error_safety": answer_error.safety_for(model),
         "error_settled": answer_error.settled_for(model),
         "error_followed": FOLLOWED,
         "error_contracting": answer_error.CONTRACTING,

@@ -38,7 +38,7 @@ from cosserat_casadi.equilibrium.load_path import continuation_limits, first_ste
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
-from cosserat_casadi.model.strain_margins import VANISHED, margins_of
+from cosserat_casadi.model.strain_margins import APART, VANISHED, margins_of
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
@@ -319,11 +319,12 @@ def _words(model: Model, names: Names, contents: FolderContents) -> dict[str, An
     sizes |= parameter_words(sizes, model, names, dynamics=motion is not None)
     linear = dense_words(sizes) if parts is None else block_words(sizes, parts)
     sizes |= {} if motion is None else contact_words(model, names)
+    margins = margins_of(model.discrete)
+    sizes["apart"] = any(margin.kind == APART for margin in margins)
     in_motion = {} if motion is None else motion_words(sizes, model, names, motion)
     sizes |= error_words(model, names) | passage_words(model, names)
     sizes |= batch_words(names.name, contents.batch_order) | _words_of_rows(names.name, contents.rows)
     functions = public_functions(model, names)
-    margins = margins_of(model.discrete)
     weights = model.discrete.unknowns.step_weights
     owners = "each rod,\n   then each body" if names.bodies else "each rod"
     return {

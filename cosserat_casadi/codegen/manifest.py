@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -138,7 +137,7 @@ def manifest(
         **head_entries(names, model),
         **_output_entries(model),
         "unknowns": [entry for entry, _ in described_unknowns(model)],
-        "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
+        "discretisation": model.resolution,
         **accuracy_entries(model.scene, error_estimate, verified),
         "functions": [_function_entry(kernel, known) for kernel in kernels],
     }

@@ -52,7 +52,7 @@ def motion_words(basics: Words, model: Model, names: Names, motion: MotionInC) -
         "in_motion": True,
         **_limits(),
         **_method(),
-        **motion_status_words(names),
+        **motion_status_words(names, may_lie_apart=basics["apart"]),
         "stage_entries": motion.blocks.pattern.nnz(),
         "stage_matrix": max(fronts.size, whole.size),
         "front_room": max(sum(front.order for front in fronts.fronts), model.size),

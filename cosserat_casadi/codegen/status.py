@@ -50,6 +50,10 @@ class MotionStatus(Enum):
         "At the end of the step a joint or a support is out of the plane that its rods bend in, or turned out of it: "
         "keep it in the plane, or admit the other bending and torsion of the rods."
     )
+    SECTIONS_APART = (
+        "Sections at which contact is summed lie too far apart for this length, radius or width: export the scene with "
+        "these numbers, or on more intervals."
+    )
 
     @property
     def label(self) -> str:
@@ -72,9 +76,15 @@ def status_words(names: Names, outcomes: Outcomes = OUTCOMES, prefix: str = "SOL
     return _words(names.macro, prefix, outcomes)
 
 
-def motion_status_words(names: Names) -> dict[str, str]:
-    """Words of the templates on the statuses of motions."""
-    words = _words(f"{names.macro}_MOTION", "SOLVER_MOTION", MOTION_STATUSES)
+def motion_status_words(names: Names, *, may_lie_apart: bool) -> dict[str, str]:
+    """Words of the templates on the statuses of motions.
+
+    Args:
+        names: what things are called.
+        may_lie_apart: whether sections at which contact is summed may lie too far apart: the last status tells it.
+    """
+    statuses = MOTION_STATUSES if may_lie_apart else MOTION_STATUSES[:-1]
+    words = _words(f"{names.macro}_MOTION", "SOLVER_MOTION", statuses)
     return {f"motion_{key}": text for key, text in words.items()}
 
 

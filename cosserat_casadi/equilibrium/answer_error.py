@@ -21,6 +21,7 @@ from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discretise import ADDED_MODES_IN_LAYERS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import SAMPLES, WatchedNumbers, watched_cables
 from cosserat_casadi.numerics.neutral import regular_inverse
@@ -209,10 +210,11 @@ def answer_error(solution: Solution) -> AnswerError:
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
     rest = _rest_of_series(solution, correction)
-    watched = _with_safety(correction.change + rest)
+    safety = safety_for(solution.model)
+    watched = safety * (correction.change + rest) + ROUNDING
     corrected = _richer_answer(solution, correction)
-    shape = _with_safety(_shape_change(solution, corrected) + rest)
-    wrench = _with_safety(_wrench_change(solution, corrected, correction))
+    shape = safety * (_shape_change(solution, corrected) + rest) + ROUNDING
+    wrench = safety * _wrench_change(solution, corrected, correction) + ROUNDING
     return AnswerError(watched, max(shape, watched), wrench)
 
 
@@ -225,12 +227,12 @@ def watched_error(solution: Solution) -> float:
     believed, correction = believed_correction(solution)
     if not believed:
         return UNKNOWN
-    return _with_safety(correction.change + _rest_of_series(solution, correction))
+    return safety_for(solution.model) * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
 
 
-def _with_safety(change: float) -> float:
-    """The estimate that a change by a richer model stands for."""
-    return SAFETY * change + ROUNDING
+def safety_for(model: Model) -> float:
+    """Factor on the change that a richer model makes, with what further modes would change where layers press rods."""
+    return SAFETY * (1.0 + model.discrete.share_of_more_modes(ADDED_MODES_IN_LAYERS))
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
@@ -274,8 +276,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     They end with the first step of the missing modes that does not contract.
     """
     model = solution.model
-    inputs = solution.inputs
-    inverse = regular_inverse(model.path_jacobian(solution.x, inputs, 1.0).full())
+    inverse = inverse_jacobian(solution)
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
     before = None
@@ -293,6 +294,11 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         contracts = before is not None or _contracts(missing_step, balance.missing_step)
         yield Correction(known, missing, change_with_following(solution, balance, following), contracts)
         before = missing_step
+
+
+def inverse_jacobian(solution: Solution) -> FloatArray:
+    """Inverse of the Jacobian at an answer, shape (n, n); what symmetry leaves neutral does not move."""
+    return regular_inverse(solution.model.path_jacobian(solution.x, solution.inputs, 1.0).full())
 
 
 def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) -> FloatArray:

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.answer_error import SAFETY, watched_at
+from cosserat_casadi.equilibrium.answer_error import SAFETY, inverse_jacobian, watched_at
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
-from cosserat_casadi.numerics.neutral import regular_inverse
 
 THINNER = 1e-3
 """Share by which widths are changed for a difference of residuals, whose second order is as small."""
@@ -41,8 +40,7 @@ def layer_error(solution: Solution) -> float | None:
     thinner = kept_with(model, "_thinner_layers", lambda: Model(model.discrete.with_layers(1.0 - THINNER)))
     arguments = (solution.x, solution.inputs, 1.0)
     residual_change = column(thinner.path_residual(*arguments)) - column(model.path_residual(*arguments))
-    jacobian = model.path_jacobian(*arguments).full()
-    change = -regular_inverse(jacobian) @ residual_change / THINNER
+    change = -inverse_jacobian(solution) @ residual_change / THINNER
     before, after = (watched_at(solution, x) for x in (solution.x, solution.x + WAY * change))
     estimate = SAFETY * change_size(after.change_from(before)) / WAY
     return float(estimate) if np.isfinite(estimate) else np.inf

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, normals, runs
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
@@ -63,19 +62,6 @@ def depths_along(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
         inputs: stacked inputs, shape (k, model.inputs.size).
     """
     return evaluated(model.contact_depth, x, inputs)[0][:, 0, 0]
-
-
-def lie_apart(model: Model, x: FloatArray, inputs: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether sections at which layers are summed are too far apart to tell an error, by state, shape (k,).
-
-    Args:
-        model: any model.
-        x: unknowns, shape (k, model.size).
-        inputs: stacked inputs, shape (k, model.inputs.size).
-    """
-    if model.sections_apart is None:
-        return np.zeros(len(x), dtype=bool)
-    return np.asarray(evaluated(model.sections_apart, x, inputs)[0][:, 0, 0] > 0.0)
 
 
 def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:

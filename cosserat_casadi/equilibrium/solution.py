@@ -24,7 +24,7 @@ from cosserat_casadi.result import Result
 
 SECTIONS_APART = (
     "sections at which contact is summed lie too far apart for this length, radius or width: build the scene with "
-    "these numbers."
+    "these numbers, or on more intervals."
 )
 """Remedy where inputs or parameters have drawn sections too far apart."""
 

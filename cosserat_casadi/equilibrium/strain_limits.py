@@ -10,7 +10,7 @@ import numpy as np
 from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.strain_margins import VANISHED, StrainMargin, margins_of
+from cosserat_casadi.model.strain_margins import APART, VANISHED, StrainMargin, margins_of
 from cosserat_casadi.numerics.outcome import Outcome
 
 JUDGED = (Outcome.CONVERGED, Outcome.LOAD_STALLED)
@@ -31,7 +31,8 @@ class BeyondLimit(NamedTuple):
     @property
     def word(self) -> str:
         """Name of the outcome, which solves, paths and motions share."""
-        return {"path": "PATH_VANISHED", "plane": "OUT_OF_PLANE"}.get(self.margin.kind, "BEYOND_MATERIAL")
+        words = {"path": "PATH_VANISHED", "plane": "OUT_OF_PLANE", APART: "UNRESOLVED"}
+        return words.get(self.margin.kind, "BEYOND_MATERIAL")
 
     @property
     def whose(self) -> str:
@@ -39,6 +40,8 @@ class BeyondLimit(NamedTuple):
         kind, name = self.margin
         if kind == "plane":
             return f"It is {name}"
+        if kind == APART:
+            return "Its sections at which contact is summed lie too far apart"
         return f"It is the {kind} of '{name}'" if kind in ("path", "material") else f"It is the {kind} '{name}'"
 
 
@@ -76,7 +79,8 @@ def within_limits(model: Model, x: FloatArray, inputs: FloatArray, outcome: Outc
     if outcome not in JUDGED:
         return outcome, outcome.value
     beyond = first_beyond(model, x[None, :], inputs[None, :])
-    if beyond is None:
+    if beyond is None or beyond.margin.kind == APART:
+        # Where sections lie apart the error is not known, and is told so.
         return outcome, outcome.value
     told = Outcome[beyond.word]
     return told, f"{told.value} {beyond.whose}."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
@@ -96,8 +96,9 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
 
     @cached_property
     def in_motion(self) -> Model:
-        """The model with flows behind its unknowns where stress relaxes; else itself."""
-        if self.discrete.moving or not any(rod.properties.branches for rod in self.discrete.rods.values()):
+        """The model with flows behind its unknowns where stress relaxes, and with margins of contact; else itself."""
+        relaxes = any(rod.properties.branches for rod in self.discrete.rods.values())
+        if self.discrete.moving or not (relaxes or self.discrete.may_lie_apart):
             return self
         return Model(self.discrete.in_motion)
 
@@ -176,7 +177,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     @property
     def resolution(self) -> dict[str, Any]:
         """Modes, nodes, element ends and integrator of every rod, as data."""
-        return {name: asdict(d) for name, d in self.discretisation.items()}
+        return {name: d.plain() for name, d in self.discretisation.items()}
 
     @property
     def resolution_words(self) -> list[str]:

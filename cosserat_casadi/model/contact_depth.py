@@ -12,7 +12,7 @@ from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_layers import LOOSEST_POINTS, LOOSEST_SECTIONS, pressed
+from cosserat_casadi.model.contact_layers import LOOSEST_NODES, LOOSEST_POINTS, LOOSEST_SECTIONS, pressed
 from cosserat_casadi.model.contact_pairs import LOOSEST_SPACING, half_of_stretch
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
@@ -37,31 +37,43 @@ def thin_layers(discrete: DiscreteScene) -> list[ContactLayer]:
 
 
 def sections_lie_apart(system: System) -> Matrix | None:
-    """Whether inputs or parameters draw sections too far apart at which thin layers, or rods that touch, are summed.
+    """Whether sections lie too far apart at which thin layers, or rods that touch, are summed.
+
+    Inputs or parameters may draw sections apart. Nodes at which a layer rubs, which no finer sum judges, may lie too
+    far apart as they are.
 
     Returns:
-        1 where they do, else 0, 1×1; None where neither inputs nor parameters can draw sections apart.
+        1 where they do, else 0, 1×1; None where none can.
     """
     discrete = system.discrete
     apart = []
     for layer in thin_layers(discrete):
-        if layer.name not in discrete.finer_sections:
+        if layer.rod is None or layer.at is not None:
             continue
-        if layer.name in discrete.stretched_layers or discrete.draws_apart(str(layer.rod)):
-            apart.append(_layer_lies_apart(system, layer))
+        is_drawn = layer.name in discrete.stretched_layers or discrete.draws_apart(layer.rod)
+        if is_drawn or layer.name not in discrete.finer_sections:
+            lies_apart = _layer_lies_apart(system, layer)
+            if is_drawn or bool(ca.evalf(lies_apart)):
+                apart.append(lies_apart)
     apart += [_pair_lies_apart(terms) for terms in system.pairs if any(map(discrete.draws_apart, terms.pair.rods))]
     return ca.mmax(ca.vertcat(*apart)) if apart else None
 
 
 def _layer_lies_apart(system: System, layer: ContactLayer) -> Matrix:
     """Whether sections at which a layer is summed are too far apart to show their error, 1×1."""
-    sections, loosest = system.discrete.closer_sections.get(layer.name), LOOSEST_SECTIONS
+    assert layer.rod is not None, "it presses a rod"
+    rod = system.discrete.rods[layer.rod]
+    closer, finer = (own.get(layer.name) for own in (system.discrete.closer_sections, system.discrete.finer_sections))
+    sections = closer or finer
     if sections is None:
-        # The scene sums it at nodes.
-        sections, loosest = system.discrete.finer_sections[layer.name], LOOSEST_POINTS
-    rod = sections.rod
-    radius = ca.mmin(as_matrix(section_radii(rod.properties, sections.placed.X)))
-    longest = ca.mmax(as_matrix(sections.lengths)) * system.length(rod.properties.name) / rod.length
+        # What rubs is summed at nodes alone.
+        X, lengths, loosest = rod.grid.nodes_at(np.arange(rod.grid.size)), rod.node_lengths, LOOSEST_NODES
+    else:
+        # Where the scene sums it at nodes, points of the richer scene tell.
+        X, lengths = sections.placed.X, sections.lengths
+        loosest = LOOSEST_SECTIONS if closer else LOOSEST_POINTS
+    radius = ca.mmin(as_matrix(section_radii(rod.properties, X)))
+    longest = ca.mmax(as_matrix(lengths)) * system.length(layer.rod) / rod.length
     return ca.MX(longest > loosest * pressed(layer.obstacle, radius))
 
 

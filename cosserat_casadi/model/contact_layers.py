@@ -12,9 +12,11 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_pairs import pair_widths
+from cosserat_casadi.model.contact_pairs import LOOKED_AT, pair_widths
 from cosserat_casadi.rod.placed_sections import SummedSections
+from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 
 SURFACE_FORCE = 10.0
 """Force per length where the gap is zero, relative to EI/(L² width), of an obstacle that is given no stiffness.
@@ -39,6 +41,12 @@ USUAL_NODES = 12
 SECTION_SPACING = 0.5
 """Distance of the sections at which a thinner layer is summed over half of the stretch that it presses, on the fewest
 intervals: a force (1 − s²)³ within this stretch, |s| ≤ 1, is summed to 4 thousandths by equal parts of it."""
+
+COARSEST_SUM = 1.5e-3
+"""Error of poses with sections a quarter of the stretch apart that a layer presses: it falls with the fourth power."""
+
+POINTS_A_PART = 3
+"""Gauss points of equal parts of an element: as close to each other as they are few, and exact at its ends."""
 
 SPARE_SECTIONS = 2
 """Sections for each usual one, where inputs or parameters may stretch a rod or make a layer thinner."""
@@ -163,17 +171,33 @@ def longest_step(scene: scenes.Scene) -> float:
     return min(steps, default=inf)
 
 
-def seeing_nodes(scene: scenes.Scene, rod: str, radius: float, widest: float) -> int:
-    """Intervals of an element that see how smooth obstacles press a rod at its nodes; 0 without any.
+def seeing_nodes(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: float) -> int:
+    """Intervals of an element that see how a smooth obstacle presses a rod at its nodes; 0 where it does not.
 
     Args:
-        scene: the scene.
-        rod: name of the rod.
-        radius: of its thinnest section, m.
+        obstacle: the obstacle.
+        rod: the rod.
         widest: length of its longest element, m.
     """
-    at_nodes = [own for own in scene.obstacles if own.concerns(rod) and _sections_a_node(own, radius, widest) == 1]
-    return ceil(min(max((_nodes_for(own, radius, widest) for own in at_nodes), default=0.0), MOST_LAYER_NODES))
+    radius = _least_radius(rod)
+    at_nodes = _sections_a_node(obstacle, radius, widest) == 1
+    return ceil(min(_nodes_for(obstacle, radius, widest), MOST_LAYER_NODES)) if at_nodes else 0
+
+
+def seeing_sections(obstacle: scenes.ObstacleRecord, rod: RodProperties, widest: float, tolerance: float) -> int:
+    """Sections of an element at which a layer is summed to a tolerance of poses; 0 where it rubs.
+
+    Args:
+        obstacle: the obstacle.
+        rod: the rod.
+        widest: length of its longest element, m.
+        tolerance: distance over the length, or angle in rad.
+    """
+    if obstacle.rubs:
+        return 0
+    closer = min(float((tolerance / COARSEST_SUM) ** 0.25), 1.0)
+    spacing = SECTION_SPACING * half_of_stretch(obstacle, rod) * closer
+    return ceil(min(widest / spacing, MOST_SECTIONS))
 
 
 def closer_sections(
@@ -190,14 +214,22 @@ def closer_sections(
             sections to spare.
     """
     lengths = rod.properties.length * np.diff(rod.grid.breaks)
-    radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
-    ratio = _sections_a_node(obstacle, radius, float(lengths.max()))
+    asked = rod.discretisation.sections
+    if asked and not obstacle.rubs:
+        return _parts_of_elements(rod, asked)
+    ratio = _sections_a_node(obstacle, _least_radius(rod.properties), float(lengths.max()))
     if ratio == 1:
         return None
     shares = np.ones(len(lengths)) if moved else lengths / lengths.max()
     spare = SPARE_SECTIONS if stretched else 1
     counts = np.ceil(spare * ratio * rod.grid.intervals * shares).astype(int)
     return SummedSections(rod, tuple(counts.tolist()))
+
+
+def _parts_of_elements(rod: DiscreteRod, sections: int) -> SummedSections:
+    """Sections of each element, so many at least, at Gauss points of equal parts."""
+    count = POINTS_A_PART * ceil(sections / POINTS_A_PART)
+    return SummedSections(rod, (count,) * rod.grid.elements, POINTS_A_PART)
 
 
 def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSections:
@@ -208,9 +240,8 @@ def points_for(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> SummedSecti
         rod: with the scene's own numbers.
     """
     widest = float(rod.properties.length * np.diff(rod.grid.breaks).max())
-    radius = float(section_radius(rod.properties, rod.grid.reference_nodes).min())
-    seeing = ceil(min(_nodes_for(obstacle, radius, widest), MOST_LAYER_NODES))
-    return SummedSections(rod, (max(seeing, rod.grid.intervals),) * rod.grid.elements, gauss=True)
+    seeing = ceil(min(_nodes_for(obstacle, _least_radius(rod.properties), widest), MOST_LAYER_NODES))
+    return SummedSections(rod, (max(seeing, rod.grid.intervals),) * rod.grid.elements, points=0)
 
 
 def _sections_a_node(obstacle: scenes.ObstacleRecord, radius: float, widest: float) -> int:
@@ -231,6 +262,37 @@ def _nodes_for(obstacle: scenes.ObstacleRecord, radius: float, widest: float) ->
     if not obstacle.width or not isfinite(obstacle.thickness):
         return 0.0
     return pi / 2 * widest / (LOOSEST_NODES * pressed(obstacle, radius))
+
+
+def half_of_stretch(obstacle: scenes.ObstacleRecord, rod: RodProperties) -> float:
+    """How far to both sides of where it touches a rod is pressed, m; before a plane where it bends by 2/L."""
+    assert obstacle.width is not None, "it is smooth"
+    if isfinite(obstacle.thickness):
+        return pressed(obstacle, _least_radius(rod))
+    return sqrt(obstacle.width * rod.length)
+
+
+def _least_radius(rod: RodProperties) -> float:
+    """Radius of the thinnest section of a rod, m."""
+    return float(section_radius(rod, LOOKED_AT).min())
+
+
+def share_of_more_modes(modes: int, added: int, element: float, half: float) -> float:
+    """Change by modes beyond added ones, over the change by the added ones, where a layer presses a part of an element.
+
+    With few modes the push is at one point, for all that they see: the bending moment has a kink there, and the work of
+    the force lacks n⁻³ by n modes. Modes as short as the stretch see it as it is, and what follows them is next to
+    nothing.
+
+    Args:
+        modes: of the answer.
+        added: modes that it lacks, and whose change is known.
+        element: length of the element, m.
+        half: how far to both sides it is pressed, m.
+    """
+    richer = float(modes + added)
+    own, left, unseen = (float(count) ** -3 for count in (modes, richer, max(pi / 2 * element / half, richer)))
+    return (left - unseen) / (own - left)
 
 
 @overload

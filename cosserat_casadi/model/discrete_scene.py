@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import casadi as ca
@@ -25,7 +25,13 @@ from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.contact_layers import closer_sections, contact_layers, points_for
+from cosserat_casadi.model.contact_layers import (
+    closer_sections,
+    contact_layers,
+    half_of_stretch,
+    points_for,
+    share_of_more_modes,
+)
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
 from cosserat_casadi.model.discretise import enriched
 from cosserat_casadi.model.element_ends import moved_ends
@@ -269,6 +275,14 @@ class DiscreteScene:
         is_longer = properties.ratio is not None or self.layout.of_rod(rod, "length") is not None
         return is_longer or any_symbolic([section_radii(properties, np.zeros(1))])
 
+    @property
+    def may_lie_apart(self) -> bool:
+        """Whether sections at which contact is summed may lie too far apart to tell its error in motion."""
+        rubs = any(obstacle.is_smooth and obstacle.rubs for obstacle in self.scene.obstacles)
+        touching = {name for pair in self.pairs for name in pair.rods}
+        drawn = any(map(self.draws_apart, {*touching, *self.pressed_rods}))
+        return rubs or drawn or bool(self.stretched_layers)
+
     def draws_apart(self, rod: str) -> bool:
         """Whether inputs or parameters may draw sections of a rod apart, or let less of it be pressed."""
         return self.is_stretched(rod) or self._named.rods[rod].grid.ends is not None
@@ -322,6 +336,25 @@ class DiscreteScene:
     def has_layers(self) -> bool:
         """Whether obstacles or rods push from a width on."""
         return bool(self.pairs) or any(isinstance(load, ContactLayer) for load in self.loads)
+
+    @property
+    def pressed_rods(self) -> dict[str, float]:
+        """How far to both sides the narrowest layer presses each rod that layers press, m."""
+        halves: dict[str, float] = {}
+        for layer in contact_layers(self.nominal.scene, self.nominal.rods):
+            if layer.rod is not None and layer.at is None:
+                half = half_of_stretch(layer.obstacle, self.nominal.rods[layer.rod].properties)
+                halves[layer.rod] = min(half, halves.get(layer.rod, inf))
+        return halves
+
+    def share_of_more_modes(self, added: int) -> float:
+        """Change by modes beyond added ones where layers press rods, over the change by the added ones; else 0."""
+        shares = [0.0]
+        for name, half in self.pressed_rods.items():
+            rod = self.nominal.rods[name]
+            element = float(rod.length * np.diff(rod.grid.breaks).max())
+            shares.append(share_of_more_modes(max(rod.discretisation.modes), added, element, half))
+        return max(shares)
 
     def with_layers(self, ratio: float) -> DiscreteScene:
         """This scene with widths of smooth contact times a ratio; it pushes as hard where gaps are zero."""
@@ -513,7 +546,12 @@ class DiscreteScene:
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
         discretisation = {
-            name: enriched(rod.discretisation, modes, meets_obstacles=bool(nominal.scene.obstacles or self.pairs))
+            name: enriched(
+                rod.discretisation,
+                modes,
+                meets_obstacles=bool(nominal.scene.obstacles or self.pairs),
+                in_layers=name in self.pressed_rods,
+            )
             for name, rod in self.rods.items()
         }
         discrete = discrete_scene(nominal.scene, self.layout, discretisation, self.moving)
@@ -534,9 +572,9 @@ class DiscreteScene:
             if sections is None:
                 points = points_for(layer.obstacle, self.nominal.rods[layer.rod])
                 sections = replace(points, rod=self.rods[layer.rod])
-            finer[layer.name] = sections.finer(
-                FINER_SECTIONS if isfinite(layer.obstacle.thickness) else FINER_ON_PLANES
-            )
+            by_nodes = layer.name not in self.closer_sections
+            on_plane = by_nodes and not isfinite(layer.obstacle.thickness)
+            finer[layer.name] = sections.finer(FINER_ON_PLANES if on_plane else FINER_SECTIONS)
         return finer
 
     def contact_unit(self, name: str, *, of_body: bool) -> float:

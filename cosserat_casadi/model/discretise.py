@@ -24,6 +24,9 @@ DEFAULT_TRANSPORT = "magnus6"
 ADDED_MODES = 3
 """Modes that are added to every strain: more than one step of an error that falls by every other mode alone."""
 
+ADDED_MODES_IN_LAYERS = 6
+"""Modes that are added where layers press a part of an element: the error falls with the third power of the modes."""
+
 ADDED_NODES = 4
 """Intervals that are added to every element at least."""
 
@@ -67,8 +70,13 @@ def discretise(
         breaks = element_ends(scene, rod.name)
         check_places(rod.name, breaks)
         integrator = transport or fixed.rotation or DEFAULT_TRANSPORT
-        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator)
+        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, integrator, fixed.sections or 0)
     return chosen
+
+
+def summed_at(chosen: Mapping[str, Discretisation], sections: int) -> dict[str, Discretisation]:
+    """A discretisation that sums layers at so many sections of each element at least."""
+    return {name: replace(own, sections=max(own.sections, sections)) for name, own in chosen.items()}
 
 
 def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation]) -> scenes.Scene:
@@ -99,7 +107,8 @@ def with_discretisation(scene: scenes.Scene, chosen: Mapping[str, Discretisation
 def _described(chosen: Discretisation) -> dict[str, Any]:
     """A discretisation in the words of the scene format: one number of modes where all strains have as many."""
     modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
-    return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport}
+    summed = {"sections": chosen.sections} if chosen.sections else {}
+    return {"modes": modes, "nodes": chosen.nodes, "rotation": chosen.transport, **summed}
 
 
 def nodes_for(modes: int) -> int:
@@ -107,15 +116,19 @@ def nodes_for(modes: int) -> int:
     return 2 * modes + 2
 
 
-def enriched(discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool) -> Discretisation:
+def enriched(
+    discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool, in_layers: bool = False
+) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
         discretisation: of a rod.
         signal_modes: modes below which a rod is blind to what the scene puts along it.
         meets_obstacles: whether the scene has obstacles.
+        in_layers: whether layers press the rod.
     """
-    modes = tuple(max(count + ADDED_MODES, signal_modes) for count in discretisation.modes)
+    added = ADDED_MODES_IN_LAYERS if in_layers else ADDED_MODES
+    modes = tuple(max(count + added, signal_modes) for count in discretisation.modes)
     nodes_above_modes = NODES_ABOVE_MODES_IN_CONTACT if meets_obstacles else NODES_ABOVE_MODES
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + nodes_above_modes)
     transport = discretisation.transport

@@ -20,6 +20,7 @@ import casadi as ca
 
 from cosserat_casadi.constraints.section_constraint import HeldDirections
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.contact_depth import sections_lie_apart
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.cable import RoutedCable
@@ -27,6 +28,9 @@ from cosserat_casadi.rod.material_functions import material_margin
 
 VANISHED = 1e-3
 """Margin that counts as none: a path that is followed to zero ends short of it by a last step."""
+
+APART = "sections"
+"""Kind of the margin of sections at which contact is summed."""
 
 BESIDE = 1e-6
 """Distance over the length, or angle, by which a joint may be out of the plane of its rods: rounding, of floats too."""
@@ -36,8 +40,8 @@ class StrainMargin(NamedTuple):
     """The actuator, the rod or the joint that has a margin.
 
     Attributes:
-        kind: "path" of a tendon, "plane" of a joint or a support, "material" of a rod, or the kind of an actuator whose
-            law has an end.
+        kind: "path" of a tendon, "plane" of a joint or a support, "material" of a rod, the kind of an actuator whose
+            law has an end, or "sections" of contact.
         name: name of the actuator or of the rod; of a joint or a support its two sides in words.
     """
 
@@ -46,12 +50,13 @@ class StrainMargin(NamedTuple):
 
 
 def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
-    """Margins where they are least, 1×1 each: first margins of paths, then of planes, then of laws.
+    """Margins where they are least, 1×1 each: first margins of paths, then of planes, then of laws, last of sections.
 
     Of a path its T_z, per length of the rod; tendons whose T_z no strain changes are left out. Of a joint in the plane
     of its rods one less the square of its distance from it, over BESIDE; none where neither inputs nor parameters move
     the places of constraints. Of a material the least pivot of its tangent stiffness relative to its Hooke tensor, or
     how far the strain is from the ends of its law. Of an actuator how far its inputs are from the end of its law.
+    Of sections at which contact is summed, in motion, 0 where they lie too far apart to tell an error, else 1.
     """
     margins: dict[StrainMargin, Matrix] = {}
     for actuator in system.discrete.scene.actuators:
@@ -72,6 +77,10 @@ def strain_margins(system: System) -> dict[StrainMargin, Matrix]:
         margin = system.actuators.margin(actuator)
         if margin is not None:
             margins[StrainMargin(actuator.kind, actuator.name)] = margin + VANISHED
+    # At rest they tell of an error that is not known.
+    apart = sections_lie_apart(system) if system.discrete.moving else None
+    if apart is not None:
+        margins[StrainMargin(APART, "contact")] = 1 - apart
     return margins
 
 

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
-from cosserat_casadi.equilibrium.smooth_contact import depths_along, lie_apart
+from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
-from cosserat_casadi.equilibrium.solution import SECTIONS_APART
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
@@ -97,18 +96,6 @@ def too_deep(history: History, duration: float) -> str:
         f"At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle or a rod, too deep "
         "to be contact: give the contact more width or stiffness."
     )
-
-
-def told_apart(history: History, duration: float) -> str:
-    """A sentence where a motion has sections at which contact is summed too far apart to tell its error; else nothing.
-
-    Args:
-        history: the motion.
-        duration: of the motion, s.
-    """
-    times, x, inputs = watched_states(history, duration)
-    apart = np.flatnonzero(lie_apart(history.model, x, inputs))
-    return f"At t = {times[apart[0]]:.6g} s {SECTIONS_APART}" if len(apart) else ""
 
 
 def told_passage(history: History, duration: float, model: Model | None = None) -> str:

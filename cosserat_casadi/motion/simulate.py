@@ -24,7 +24,6 @@ from cosserat_casadi.motion.checkpoint import Checkpoint, Strand
 from cosserat_casadi.motion.contact_checks import (
     NOT_OF_RODS,
     laid_down,
-    told_apart,
     told_inside,
     told_passage,
     too_deep,
@@ -648,12 +647,12 @@ def judged(
         message = f"{NOT_OF_RODS} {passed}"
     elif beyond is not None:
         outcome, message = beyond
+        if outcome is MotionOutcome.UNRESOLVED:
+            # Sections of contact lie too far apart to tell it.
+            error = float("inf")
     elif entered:
         outcome = MotionOutcome.CONTACT_UNSETTLED
         message = entered
-    elif apart := told_apart(history, duration):
-        outcome, error = MotionOutcome.UNRESOLVED, float("inf")
-        message = f"{outcome.value} {apart}"
     elif not error <= bound:
         outcome = MotionOutcome.UNRESOLVED
         found = f"The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."

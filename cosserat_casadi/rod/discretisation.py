@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from cosserat_casadi.maths.grid import Grid
 
@@ -19,16 +20,22 @@ class Discretisation:
         nodes: Chebyshev intervals per element.
         breaks: element ends on [0, 1]; a point load must sit on one.
         transport: one of TRANSPORTS.
+        sections: sections of an element at which thin layers are summed; 0 for as many as its intervals ask for.
     """
 
     modes: tuple[int, ...]
     nodes: int
     breaks: tuple[float, ...] = (0.0, 1.0)
     transport: str = "magnus6"
+    sections: int = 0
 
     def __post_init__(self) -> None:
         if self.transport not in TRANSPORTS:
             raise ValueError(f"transport is one of {TRANSPORTS}, got {self.transport!r}")
+
+    def plain(self) -> dict[str, Any]:
+        """The discretisation as data; sections of layers only where they do not follow from the intervals."""
+        return {name: value for name, value in asdict(self).items() if name != "sections" or value}
 
     @property
     def elements(self) -> int:

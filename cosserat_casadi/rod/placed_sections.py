@@ -55,20 +55,21 @@ class PlacedSections:
 
 @dataclass(frozen=True)
 class SummedSections:
-    """Sections of each element at which a load per length is summed: in the middle of equal parts, or Gauss points.
+    """Sections of each element at which a load per length is summed: Gauss points of equal parts of it.
 
-    A load that comes and goes within an element is summed by equal parts more exactly than by nodes as many. One along
-    all of an element is summed by Gauss points as exactly as by nodes.
+    A load that comes and goes within an element is summed in the middle of equal parts more exactly than by nodes as
+    many. One that ends with an element takes more points a part. One along all of an element is summed by Gauss points
+    of the element as exactly as by nodes.
 
     Attributes:
         rod: the rod.
         counts: sections of each element.
-        gauss: whether they are at Gauss points.
+        points: Gauss points of each part; 0 where an element is one part.
     """
 
     rod: DiscreteRod
     counts: tuple[int, ...]
-    gauss: bool = False
+    points: int = 1
 
     def finer(self, factor: int) -> SummedSections:
         """Sections of the same kind, ``factor`` times as many in each element."""
@@ -86,10 +87,10 @@ class SummedSections:
 
     def _rule(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Places in an element from 0 to 1, and the share of it that each stands for, shape (count,) each."""
-        if self.gauss:
-            points, weights = gauss_legendre(count)
-            return (points + 1) / 2, weights / 2
-        return (np.arange(count) + 0.5) / count, np.full(count, 1.0 / count)
+        points, weights = gauss_legendre(self.points or count)
+        parts = count // len(points)
+        places = np.arange(parts)[:, None] + (points + 1) / 2
+        return places.ravel() / parts, np.tile(weights / 2 / parts, parts)
 
     @property
     def size(self) -> int:
@@ -103,7 +104,7 @@ class SummedSections:
 
     def at_sections(self, field: Matrix) -> Matrix:
         """A field at the nodes, m×M, at the sections, m×k."""
-        if self.gauss:
+        if self.points != 1:
             return self._by_element(field, ca.MX(self._from_nodes))
         return field @ self.placed.interpolation.T
 
@@ -111,7 +112,7 @@ class SummedSections:
         """Loads per length at the sections, m×k, as loads at the nodes that do the same work, m×M."""
         # Lengths of sections and of nodes are drawn out alike where parameters move elements.
         lengths, of_nodes = self._reference_lengths, self.rod.reference_lengths
-        if self.gauss:
+        if self.points != 1:
             # The block is in C once, and turned there.
             block = ca.MX(self._from_nodes)
             rows, columns = block.shape

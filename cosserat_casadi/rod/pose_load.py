@@ -20,6 +20,9 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, Wrench, WrenchAt
 
+FAR_FEWER = 0.4
+"""Share of products below which other ones are taken, that generated C does not write as loops over columns."""
+
 
 @dataclass(frozen=True)
 class LoadedSections:
@@ -126,6 +129,25 @@ class LoadedSections:
         (blocks,) = self._mapped(function)
         operator = block_diagonal(blocks, function.sparsity_out(0))
         return self.load.scale * operator
+
+    @property
+    def is_cheaper_at_nodes(self) -> bool:
+        """Whether the stiffness of sections between nodes takes far fewer products when it is brought to the nodes."""
+        if self.load.sections is None:
+            return False
+        rod, count = self.shape.rod, self.count
+        of_element = rod.grid.size // rod.grid.elements
+        at_sections = 3 * count * rod.size * (of_element + rod.size)
+        at_nodes = 9 * count * of_element**2 + 3 * rod.grid.size * rod.size * (3 * of_element + rod.size)
+        return at_nodes < FAR_FEWER * at_sections
+
+    @cached_property
+    def stiffness_of_nodes(self) -> Matrix:
+        """Operator from δr of the nodes to the weighted δf of sections between them, brought to the nodes, 3M×3M."""
+        assert self.load.sections is not None, "they lie between nodes"
+        of_positions = self.stiffness[: 3 * self.count, : 3 * self.count]
+        to_sections = ca.kron(ca.DM.eye(3), self.load.sections.placed.interpolation)
+        return to_sections.T @ (self.weighted(of_positions) @ to_sections)
 
     @cached_property
     def with_rates(self) -> dict[str, Matrix]:

@@ -205,6 +205,13 @@ class Tangent:
             columns.append(ca.vertcat(*rows))
         return ca.horzcat(*columns)
 
+    @cached_property
+    def displacement_of_nodes(self) -> Matrix:
+        """δr of the nodes, 3M×n, m."""
+        grid = self.rod.grid
+        integrated = [grid.integrated(part.T).T for part in ca.vertsplit(self.tangent, grid.size)]
+        return ca.vertcat(*integrated)
+
     def position(self, node: int) -> Matrix:
         """δr of one node, 3×n, m."""
         return self._displacement(ca.DM(self.rod.grid.integration_matrix[[node]]))
@@ -451,7 +458,10 @@ class Tangent:
         parts = []
         at_sections: dict[int, list[LoadedSections]] = defaultdict(list)
         for load in self.igm.pulled.pose_loads:
-            if load.load.at is None:
+            if load.is_cheaper_at_nodes:
+                moved = self.displacement_of_nodes
+                parts.append(moved.T @ (load.stiffness_of_nodes @ moved))
+            elif load.load.at is None:
                 parts.append(self.motion(load).T @ self.wrench_variation(load))
             else:
                 at_sections[load.nodes[0]].append(load)

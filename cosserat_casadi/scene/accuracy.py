@@ -18,6 +18,9 @@ MOST_MODES = 200
 MOST_NODES = 1000
 """Intervals of a grid that a scene may ask for."""
 
+MOST_SECTIONS = 1500
+"""Sections of an element at which a scene may ask for sums of layers."""
+
 Modes = Annotated[Whole, Field(ge=1, le=MOST_MODES)]
 ModesChoice = Annotated[
     Annotated[Modes, SINGLE] | Annotated[tuple[Modes, ...], NotEmpty(), SEVERAL],
@@ -40,6 +43,7 @@ Range = Annotated[str, AfterValidator(_ascending)]
 
 
 Nodes = Annotated[Whole, Field(ge=2, le=MOST_NODES)]
+Sections = Annotated[Whole, Field(ge=1, le=MOST_SECTIONS)]
 Rotation = Literal["magnus4", "magnus6", "magnus8", "permuted"]
 
 
@@ -60,6 +64,9 @@ of_rods = [{ rod = "finger", modes = [6, 6, 2], nodes = 14, rotation = "magnus6"
     )
     nodes: Nodes = Field(description="intervals of the Chebyshev grid, a whole number")
     rotation: Rotation = Field(description="how the rotation is integrated, as of all rods")
+    sections: Sections | None = Field(
+        None, description="sections of an element at which layers are summed, a whole number"
+    )
 
 
 class Accuracy(Record):
@@ -86,7 +93,11 @@ shape = true
         description="how the rotation is integrated: products of exponentials of order 4, 6 or 8, or the literal "
         "'permuted' linear system",
     )
-
+    sections: Sections | None = Field(
+        None,
+        description="sections of an element at which the push of obstacles with a width is summed, a whole number; as "
+        "many as the intervals ask for when left out",
+    )
     of_rods: tuple[RodDiscretisation, ...] = Field(
         (), description="modes, nodes and rotation of single rods, as `cosserat export` writes them where rods differ"
     )
@@ -103,9 +114,11 @@ shape = true
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """Refuse ``chosen_for`` without modes, and ``of_rods`` without modes, nodes and rotation of the other rods."""
+        """Refuse what says nothing without modes, nodes or rotation of all rods."""
         if "chosen_for" in given and "modes" not in given:
             yield Fault(("chosen_for",), "stands without modes", "leave it out: it says what modes were chosen for")
+        if "sections" in given and "nodes" not in given:
+            yield Fault(("sections",), "stands without nodes", "give modes and nodes, or leave it out")
         if given.get("of_rods") and not {"modes", "nodes", "rotation"} <= given.keys():
             yield Fault(("of_rods",), "stands without modes, nodes and rotation of the others", "give all three")
 

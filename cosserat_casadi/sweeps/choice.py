@@ -58,7 +58,12 @@ class Choice:
         chosen = self.discretisation
         discretisation = None
         if chosen is not None:
-            discretisation = {"modes": list(chosen.modes), "nodes": chosen.nodes, "rotation": chosen.transport}
+            discretisation = {
+                "modes": list(chosen.modes),
+                "nodes": chosen.nodes,
+                "rotation": chosen.transport,
+                "sections": chosen.sections,
+            }
         return {
             "discretisation": discretisation,
             "rows": list(self.rows),
@@ -73,7 +78,8 @@ class Choice:
         discretisation = None
         if entries:
             modes = tuple(entries["modes"])
-            discretisation = Discretisation(modes, entries["nodes"], transport=entries["rotation"])
+            transport, sections = entries["rotation"], entries.get("sections", 0)
+            discretisation = Discretisation(modes, entries["nodes"], transport=transport, sections=sections)
         return cls(discretisation, tuple(plain["rows"]), plain["converged"], plain["error_estimate"])
 
 

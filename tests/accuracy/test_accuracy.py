@@ -307,6 +307,9 @@ class _Blind:
     supports = ()
     model = discrete = scene = property(lambda self: self)
 
+    def share_of_more_modes(self, added: int) -> float:
+        return 0.0
+
     def mode_shift(self, modes: object) -> np.ndarray:
         return np.full(12, np.nan)
 

@@ -25,11 +25,16 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
-from cosserat_casadi.equilibrium.metrics import distance_of_poses
+from cosserat_casadi.codegen.status import MotionStatus
+from cosserat_casadi.equilibrium.metrics import distance_of_poses, prolong
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.contact_layers import share_of_more_modes
+from cosserat_casadi.model.discretise import summed_at, with_discretisation
+from cosserat_casadi.model.strain_margins import VANISHED
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.motion.vibration_modes import ModesOutcome
+from cosserat_casadi.scene.writing import scene_text
 from tests.contact.test_smooth_contact import ON_A_BAR
 
 FREE = ON_A_BAR.replace("accuracy = { modes = 2, nodes = 24 }", "")
@@ -232,6 +237,76 @@ def test_told_errors_bound_the_distance_to_shooting(tolerance: float) -> None:
     assert max(own.nodes for own in found.model.discretisation.values()) <= 20
 
 
+@pytest.mark.parametrize("place", [0.285, pytest.param(0.27, marks=pytest.mark.slow)])
+def test_a_push_on_a_part_of_an_element_is_not_told_by_three_more_modes(place: float) -> None:
+    """Three modes more tell 4.2e-6 of 4.6e-6 at the first place: for few modes the push is at a point."""
+    scene = parse_scene(FREE, [*THIN, f"rod.base.position=[{0.3 - place}, 0, 0]"])
+    found = solve(build(scene, discretise(scene, 4, 8)))
+    finer = build(scene, summed_at(discretise(scene, 14, 30, "magnus8"), 400))
+    exact = solve(finer, start=prolong(found, finer), estimate_error=False)
+    assert found.converged and exact.converged and found.error_estimate is not None
+    true = distance_of_poses(found.tip(), exact.tip(), LENGTH)
+    assert 0.5 * found.error_estimate < true < found.error_estimate
+
+
+def test_what_modes_lack_of_a_push_at_a_point_falls_with_their_third_power() -> None:
+    """The moment |s − p| in Legendre polynomials, over places p of the push: the work of the modes beyond n."""
+    s, weights = np.polynomial.legendre.leggauss(600)
+    degrees = np.arange(200)
+    work = np.zeros(len(degrees))
+    for p in np.linspace(-0.9, 0.9, 19):
+        coefficients = np.polynomial.legendre.legvander(s, degrees[-1]).T @ (weights * abs(s - p))
+        work += coefficients**2 * (2 * degrees + 1) / 2
+    beyond = [float(work[n:].sum()) for n in (4, 10, 64)]
+    share = (beyond[1] - beyond[2]) / (beyond[0] - beyond[1])
+    assert_allclose(share_of_more_modes(4, 6, 1.0, np.pi / 2 / 64), share, rtol=0.3, atol=0)
+    # Modes as short as the stretch see the push as it is.
+    assert share_of_more_modes(4, 6, 1.0, np.pi / 2 / 10) == 0.0
+
+
+def test_a_tolerance_asks_for_sections_and_not_for_intervals() -> None:
+    """At nodes the sum took 108 intervals of an element for it."""
+    scene = parse_scene(FREE, ["bar.radius=0.02", "bar.width=2e-3", "accuracy.tolerance=1e-6"])
+    found = solve(scene)
+    assert isinstance(found, Solution) and found.converged
+    chosen = found.model.discretisation["rod"]
+    assert chosen.nodes <= 24 and chosen.sections >= 40
+    finer = build(scene, summed_at(discretise(scene, 24, 50, "magnus8"), 500))
+    exact = solve(finer, start=prolong(found, finer), estimate_error=False)
+    true = distance_of_poses(found.tip(), exact.tip(), LENGTH)
+    assert found.error_estimate is not None and exact.converged
+    assert 0.1 * found.error_estimate < true < found.error_estimate <= 1e-6
+    # A scene that is written with them is discretised alike.
+    written = parse_scene(scene_text(with_discretisation(scene, found.model.discretisation)))
+    assert discretise(written) == found.model.discretisation
+
+
+def test_nodes_at_which_a_layer_rubs_may_lie_apart() -> None:
+    """In motion no finer sum shows what they miss; at rest Gauss points do."""
+    for nodes, apart in ((5, True), (14, False)):
+        scene = parse_scene(FREE, [*THICK, "bar.friction=0.2"])
+        resting = build(scene, discretise(scene, 2, nodes))
+        assert resting.strain_margins is None
+        margins = resting.in_motion.strain_margins
+        assert (margins is not None) is apart
+        if margins is not None:
+            assert float(margins(resting.unloaded(), resting.pack())) <= VANISHED
+
+
+@pytest.mark.slow
+def test_steps_in_c_say_where_sections_lie_too_far_apart(tmp_path: Path) -> None:
+    export(stretched(), tmp_path / "rod", "rod", dynamics=True)
+    library = load(tmp_path / "rod")
+    assert isinstance(library, Compiled)
+    for width, status in ((WIDTH, MotionStatus.DONE), (WIDTH / 10, MotionStatus.SECTIONS_APART)):
+        p = library.parameters.pack({"bar.width": width})
+        found = library.solve(library.defaults, parameters=p)
+        assert found.converged and (found.error_estimate == 1.0) is (status is MotionStatus.SECTIONS_APART)
+        state = library.rest(library.defaults, found.x, parameters=p)
+        assert state is not None
+        assert library.step(state, 1e-4, library.defaults, parameters=p).status is status
+
+
 THICK = ["bar.radius=0.02", "bar.width=4e-3", "bar.from=[0.285, -0.2, -0.03]", "bar.to=[0.285, 0.2, -0.03]"]
 """A bar that presses on 13 mm of the rod to both sides, whose nodes are up to 14 mm apart on 14 intervals."""
 TABLE = (
@@ -267,7 +342,7 @@ def test_gauss_points_show_a_sum_at_nodes_without_friction_that_is_remembered() 
     coarse = build(scene, discretise(scene, 2, 3)).discrete
     (sections,) = coarse.richer.discrete.closer_sections.values()
     # Half of the stretch is 13.3 mm; an element of 125 mm has nodes up to 1.5 times as far apart on 10 intervals.
-    assert sections.gauss and sections.counts == (3 * 10,) * 4
+    assert sections.points == 0 and sections.counts == (3 * 10,) * 4
     # Exact for a polynomial along all of an element, where equal parts are not.
     work = np.sum(known(sections.lengths) * known(sections.placed.X) ** 7)
     assert_allclose(work, 0.5 / 8, rtol=1e-13, atol=0)
