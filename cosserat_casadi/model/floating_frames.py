@@ -361,15 +361,15 @@ class UnloadedScene:
         return placing
 
     @cached_property
-    def _ranks(self) -> dict[str, int]:
+    def _ranks(self) -> dict[str | None, int]:
         """How many joints of bodies lie between each body and the world or a rod that does not start on a body."""
-        ranks: dict[str, int] = {}
+        ranks: dict[str | None, int] = {}
         at_rods = [joint for joint in self.scene.joints if joint.carries is None and joint.body is not None]
         grounded = [joint.body for joint in at_rods if not self.starts_on_body(joint.rod)]
         grounded += [joint.carries.body for joint in self.scene.joints if joint.carries and joint.body is None]
         # Where no body is placed by others, rods that start on it are.
         for placed_first in (grounded, [joint.body for joint in at_rods]):
-            ranks = {name: 0 for name in placed_first if name is not None} | ranks
+            ranks = dict.fromkeys(placed_first, 0) | ranks
             for rank in range(1, len(self.scene.bodies)):
                 for joint in self.scene.joints:
                     names = [place.body for place in joint.places]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import (
@@ -227,14 +226,6 @@ def _without_list_of_one(entry: str | tuple[str, ...]) -> str | tuple[str, ...]:
     """The name alone where a list has no other: both spellings are one parameter."""
     names = names_in(entry)
     return names[0] if len(names) == 1 else entry
-
-
-def not_increasing(times: Sequence[float], path: Path) -> Iterator[Fault]:
-    """The first of several times that is not later than the one before it."""
-    for i, (before, time) in enumerate(itertools.pairwise(times), 1):
-        if not time > before:
-            yield Fault((*path, i), f"must be > {shown(before)}, the time before it, got {shown(time)}")
-            return
 
 
 def above_base(remedy_at_base: str) -> AfterValidator:

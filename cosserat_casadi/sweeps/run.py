@@ -516,7 +516,7 @@ class _Run:
             yield chunk, [(answer, given(rows))]
 
     def _compiled(self, variant: int) -> Answer:
-        """The library of a variant, beside Python in exact contact, and where rows may stall before what is smooth.
+        """The library of a variant, beside Python in exact contact, and where rows may stall before smooth contact.
 
         Python alone in exact contact where C does not know what the scene has.
         """
