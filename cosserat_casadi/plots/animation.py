@@ -373,14 +373,11 @@ class _Film:
             poses = poses_of(frames.model.body[obstacle.body], frames.x, frames.inputs)
             world_R_body = rotations(poses.quaternion)
             first = SolvedPoses(poses.position[0], world_R_body[0], poses.quaternion[0])
-            label: str | None = obstacle.name
             for outline in surface_lines(self._canvas, obstacle, shapes.points, first):
                 in_body = in_axes_of(first, outline)
                 moved = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, in_body)
-                line = self._canvas.line(moved[0], color=OBSTACLES, linewidth=1.2, label=label)
+                line = self._canvas.line(moved[0], color=OBSTACLES, linewidth=1.2, label=obstacle.name)
                 lines.append(_Moving(line, moved))
-                # The legend names an obstacle once.
-                label = None
         return lines
 
     def _draw_section_axes(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:
