@@ -356,9 +356,6 @@ class _Robot:
         if not self.weighs_rod(rod.name):
             put.element.set("gravcomp", "1")
         x, y = link.half_widths
-        obstacles = list(enumerate(self.scene.obstacles))
-        bits = sum(1 << i for i, obstacle in obstacles if obstacle.concerns(rod.name))
-        style = {"contype": str(bits), "conaffinity": "0", "rgba": "0 0.45 0.7 1"}
         length = float(np.linalg.norm(link.ends[1] - link.ends[0]))
         if x == y:
             size = {"type": "capsule", "fromto": _numbers(link.ends.ravel()), "size": _numbers(x)}
@@ -366,14 +363,19 @@ class _Robot:
             along = quaternion_from_tangent(link.ends[1] - link.ends[0])
             place = _place(NumericPose(link.ends.mean(axis=0), along))
             size = {"type": "box", "size": _numbers([x, y, length / 2]), **place}
-        ET.SubElement(put.element, "geom", {**size, **style})
+        obstacles = self.scene.obstacles
+        self._geom(put, size, "0 0.45 0.7 1", [obstacle.concerns(rod.name) for obstacle in obstacles])
         for row in self.scene.disks:
             if row.rod == rod.name and any(abs(at - link.at) < 1e-9 for at in row.places):
                 size = _cylinder(row.radius, row.thickness)
-                met = sum(1 << i for i, obstacle in obstacles if obstacle.concerns_disks(row.name))
-                style = {"contype": str(met), "conaffinity": "0", "rgba": ".5 .5 .5 .4"}
-                ET.SubElement(put.element, "geom", {**size, **style})
+                self._geom(put, size, ".5 .5 .5 .4", [obstacle.concerns_disks(row.name) for obstacle in obstacles])
         return put
+
+    def _geom(self, carrier: _Carrier, shape: dict[str, str], colour: str, meets: Sequence[bool]) -> None:
+        """A shape on a carrier; ``meets``: which of the obstacles it does."""
+        bits = sum(1 << i for i, is_met in enumerate(meets) if is_met)
+        style = {"contype": str(bits), "conaffinity": "0", "rgba": colour}
+        ET.SubElement(carrier.element, "geom", {**shape, **style})
 
     def _element(
         self,
@@ -462,13 +464,12 @@ class _Robot:
         self.begins[body.name] = lambda solution: _solved(solution.body(body.name))
         if not self.weighs_body(body.name):
             put.element.set("gravcomp", "1")
-        bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns_body(body.name))
         radius = body.radius or 0.02 * self.size
-        style = {"contype": str(bits), "conaffinity": "0", "rgba": "0.5 0.5 0.5 1"}
         shape = {"type": "sphere", "size": _numbers(radius)}
         if body.thickness is not None:
             shape = _cylinder(radius, body.thickness)
-        ET.SubElement(put.element, "geom", {**shape, **style})
+        meets = [obstacle.concerns_body(body.name) for obstacle in self.scene.obstacles]
+        self._geom(put, shape, "0.5 0.5 0.5 1", meets)
         self.bodies[body.name] = put
 
     def _tree_joint(

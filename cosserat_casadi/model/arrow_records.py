@@ -140,10 +140,6 @@ class LoadArrows:
 def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray) -> tuple[Matrix, Matrix]:
     """Force and moment at sections, world axes, 3×k each."""
     position, rotation = poses
-    forces = []
-    moments = []
-    for k in range(data.shape[1]):
-        force, moment = kernel.kernel.world_wrench(position[:, k], rotation[k], parameters, data[:, k])
-        forces.append(force)
-        moments.append(moment)
-    return ca.horzcat(*forces), ca.horzcat(*moments)
+    wrench = kernel.kernel.world_wrench
+    wrenches = [wrench(position[:, k], rotation[k], parameters, data[:, k]) for k in range(data.shape[1])]
+    return ca.horzcat(*[force for force, _ in wrenches]), ca.horzcat(*[moment for _, moment in wrenches])

@@ -31,6 +31,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import casadi as ca
 
@@ -549,14 +550,10 @@ class BlockMatrix:
 
     def matrix(self) -> Matrix:
         """The whole, sparse."""
-        starts = [0, *self.ends[:-1]]
-        ranges = list(zip(starts, self.ends, strict=True))
-        rows = []
-        for top, bottom in ranges:
-            row = []
-            for left, right in ranges:
-                # Unknowns that do not meet have a block without a stored entry.
-                nothing = ca.DM(bottom - top, right - left)
-                row.append(self.entries.get((top, left), nothing))
-            rows.append(ca.horzcat(*row))
-        return ca.vertcat(*rows)
+        ranges = list(pairwise([0, *self.ends]))
+        # Unknowns that do not meet have a block without a stored entry.
+        blocks = [
+            [self.entries.get((top, left), ca.DM(bottom - top, right - left)) for left, right in ranges]
+            for top, bottom in ranges
+        ]
+        return ca.vertcat(*[ca.horzcat(*row) for row in blocks])

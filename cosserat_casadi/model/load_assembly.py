@@ -282,10 +282,7 @@ def _constant(field: Matrix) -> Numbers:
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
     layout = discrete.layout
-    indices: list[int] = []
-    for entry, span in layout:
-        if entry.declared.nonlinear:
-            indices.extend(range(span.start, span.stop))
+    indices = layout.indices("nonlinear")
     # What depends on a pose does so whatever its numbers are.
     discrete = discrete.nominal
     for load in discrete.loads:

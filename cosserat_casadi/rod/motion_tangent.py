@@ -71,12 +71,7 @@ class MotionTangent:
         The forces are minus the virtual work of the inertia: the rows of the residual, and minus the moment about the
         base and the force on it.
         """
-        matrices = self._matrices
-        return MotionMatrices(
-            stiffness=self._ordered(matrices.stiffness),
-            damping=self._ordered(matrices.damping),
-            mass=self._ordered(matrices.mass),
-        )
+        return MotionMatrices(*map(self._ordered, self._matrices.orders))
 
     @cached_property
     def rotation(self) -> Jet:
@@ -137,28 +132,26 @@ class MotionTangent:
         A floating base adds a row to each component, and its shift as columns.
         """
         rod = self.tangent.rod
-        fields: dict[str, list[Matrix]] = {"mass": [], "damping": [], "stiffness": []}
+        # By z, by ż and by z̈.
+        fields: tuple[list[Matrix], ...] = ([], [], [])
         for component in rod.linear:
             axis = component - 3
             stretch = ca.DM(rod.length * rod.at_nodes[component])
-            orders = {
-                "mass": self.motion.shape.directors[axis],
-                "damping": 2 * self.motion.director_rate(axis),
-                "stiffness": self.motion.director_acceleration(axis),
-            }
-            for word, director in orders.items():
+            rate, acceleration = self.motion.director_rate(axis), self.motion.director_acceleration(axis)
+            orders = (acceleration, 2 * rate, self.motion.shape.directors[axis])
+            for columns, director in zip(fields, orders, strict=True):
                 rows = [self._with_shift_row(ca.diag(row) @ stretch) for row in ca.vertsplit(director)]
-                fields[word].append(ca.vertcat(*rows))
+                columns.append(ca.vertcat(*rows))
         if self.floating:
             nodes = rod.grid.size
             shift_rows = [(nodes + 1) * component + nodes for component in range(3)]
             by_shift = ca.DM(ca.Sparsity.triplet(3 * (nodes + 1), 3, shift_rows, [0, 1, 2]), 1.0)
-            fields["mass"].append(by_shift)
-            fields["damping"].append(ca.DM(*by_shift.shape))
-            fields["stiffness"].append(ca.DM(*by_shift.shape))
-        if not fields["mass"]:
+            none = ca.DM(*by_shift.shape)
+            for columns, order in zip(fields, (none, none, by_shift), strict=True):
+                columns.append(order)
+        if not fields[0]:
             return None
-        return MotionMatrices(**{word: ca.horzcat(*columns) for word, columns in fields.items()})
+        return MotionMatrices(*(ca.horzcat(*columns) for columns in fields))
 
     def _with_shift_row(self, rows: Matrix) -> Matrix:
         """One component at the nodes, with a row of zeros for the shift of a floating base."""

@@ -154,12 +154,8 @@ def _hat_row(field: Matrix) -> Matrix:
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
     """Change of a wrench of fixed direction, as the base sees it, while the base turns about one of its axes."""
-    force = wrench.force
-    if force is not None:
-        force = _cross_with_axis(force, axis)
-    moment = wrench.moment
-    if moment is not None:
-        moment = _cross_with_axis(moment, axis)
+    parts = (wrench.force, wrench.moment)
+    force, moment = (None if part is None else _cross_with_axis(part, axis) for part in parts)
     return replace(wrench, force=force, moment=moment)
 
 
