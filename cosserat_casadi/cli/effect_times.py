@@ -102,9 +102,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
         whole: times of the scene; a sentence where it could not be timed.
         parts: times of the scene without each effect, by its name.
     """
-    igm = "IGM"
-    if len(rods) > 1:
-        igm = f"IGM of {escape(rods[0])} alone"
+    igm = f"IGM of {escape(rods[0])} alone" if len(rods) > 1 else "IGM"
     if isinstance(whole, str):
         console.print(f"Not timed: {escape(whole)}")
         return

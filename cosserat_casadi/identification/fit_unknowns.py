@@ -360,9 +360,7 @@ def _quaternion_derivative(vector: FloatArray) -> FloatArray:
     angle = float(np.linalg.norm(vector))
     sine = np.sinc(angle / (2 * np.pi)) / 2
     # (d sine / d angle) / angle; the quotient cancels at small angles.
-    slope = -1 / 24
-    if angle > TURN:
-        slope = (np.cos(angle / 2) / 2 - sine) / angle**2
+    slope = (np.cos(angle / 2) / 2 - sine) / angle**2 if angle > TURN else -1 / 24
     by_vector = np.empty((4, 3))
     by_vector[0] = -sine * vector / 2
     by_vector[1:] = sine * np.eye(3) + slope * np.outer(vector, vector)

@@ -94,9 +94,7 @@ class LoadArrows:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
         start, end = member.span(load)
-        X = start + (end - start) * DRAWN_SECTIONS
-        if at is not None:
-            X = np.array([at])
+        X = start + (end - start) * DRAWN_SECTIONS if at is None else np.array([at])
         # The legend names a load once: the arrows of its first rod carry the label.
         label = load.name
         for rod, discrete_rod in self.discrete.rods.items():

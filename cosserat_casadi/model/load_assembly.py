@@ -185,9 +185,7 @@ class RodLoads:
             assert kernel.moving is not None
             section_kernel = kernel.moving
         # A load per length of a rod whose length is free acts on that length; a load at a point does not.
-        scale: Matrix | float = 1.0
-        if at is None and self.ratio is not None:
-            scale = self.ratio
+        scale: Matrix | float = self.ratio if at is None and self.ratio is not None else 1.0
         base = self.base_of(kernel.load)
         return PoseWrench(
             at=at,

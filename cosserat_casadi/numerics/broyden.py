@@ -82,9 +82,7 @@ class UpdatedJacobian:
             the change, shape (n,); None where it is not finite.
         """
         steps = self.steps
-        following_step = None
-        if steps:
-            following_step = self.step(residual)
+        following_step = self.step(residual) if steps else None
         if following_step is not None:
             steps = [*steps, following_step]
         change = self._apply_inverse(rate, steps)

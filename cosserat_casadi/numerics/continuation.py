@@ -110,9 +110,7 @@ class ContinuationSettings:
 
         What would not be accepted is given up at once: Newton may neither shorten a step nor take more Jacobians.
         """
-        inexact = self.inexact
-        if target == 1.0:
-            inexact = 0.0
+        inexact = 0.0 if target == 1.0 else self.inexact
         return replace(self.newton, inexact=inexact, jacobians=self.reject_above, damping=False)
 
 

@@ -242,9 +242,7 @@ def ball_minimum(curvatures: FloatArray, slopes: FloatArray, radius: float, side
     at_smallest = -slopes / (curvatures + smallest)
     if length_of(at_smallest) < radius:
         # The hard case: no slope along the lowest curvature, the boundary is reached along it.
-        rest = 0.0
-        if lowest < -rounding:
-            rest = side * np.sqrt(radius**2 - length_of(at_smallest) ** 2)
+        rest = side * np.sqrt(radius**2 - length_of(at_smallest) ** 2) if lowest < -rounding else 0.0
         at_smallest[0] += rest
         return np.asarray(at_smallest)
 

@@ -235,9 +235,7 @@ def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationF
     rows = np.arange(intervals * finer + 1) / finer
     states = [motion.at(float(time)) for time in np.interp(rows, np.arange(len(times)), times)]
     shown_seconds = (times[-1] - times[0]) / speed
-    colour = PLAIN_TEXT
-    if not motion.converged:
-        colour = FAILURE
+    colour = PLAIN_TEXT if motion.converged else FAILURE
     return AnimationFrames(
         model=motion.model,
         x=np.array([state.x for state in states]),
@@ -253,9 +251,7 @@ def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationF
 def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
     """The time of each frame, with as many digits as tell it from the next, and the speed where it is not real."""
     interval = times[-1] / max(1, len(times) - 1)
-    digits = 1
-    if interval > 0:
-        digits = max(1, int(np.ceil(-np.log10(interval))))
+    digits = max(1, int(np.ceil(-np.log10(interval)))) if interval > 0 else 1
     remark = ""
     if speed != 1.0:
         remark += f", at {speed:g} of its speed"

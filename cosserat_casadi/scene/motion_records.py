@@ -311,9 +311,7 @@ def _value_columns(header: Sequence[str]) -> list[str]:
     given = [column for column in header if column.startswith("value")]
     if given in ([], ["value"]):
         return ["value"]
-    components = 3
-    if "value.w" in given:
-        components = 4
+    components = 4 if "value.w" in given else 3
     # A number behind the axis is the degree of a Legendre coefficient.
     matches = [re.fullmatch(r"value\.[xyz]\.([0-9]{1,2})", column) for column in given]
     degrees = [int(match[1]) for match in matches if match is not None]

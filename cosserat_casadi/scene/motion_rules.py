@@ -106,9 +106,7 @@ def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
         return
     key = "values" if motion.is_table else "amplitude"
     numbers = "1 number" if wanted == 1 else f"{wanted} numbers"
-    remedy = ""
-    if wanted > moving.declared.components:
-        remedy = "those of each Legendre coefficient in turn"
+    remedy = "those of each Legendre coefficient in turn" if wanted > moving.declared.components else ""
     problem = f"must have {numbers} at each time, got {motion.entry_count}"
     yield Fault((key,), problem, remedy)
 

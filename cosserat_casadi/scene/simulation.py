@@ -66,9 +66,7 @@ start = "unloaded"
         """Times of the rows of the result, ascending, shape (rows,), s."""
         if self.times is not None:
             return np.asarray(self.times, dtype=float)
-        frames = FRAMES
-        if self.frames is not None:
-            frames = self.frames
+        frames = FRAMES if self.frames is None else self.frames
         return np.linspace(0.0, self.duration, frames)
 
     @classmethod

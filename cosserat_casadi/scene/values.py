@@ -47,9 +47,7 @@ def listed(count: int, what: str) -> BeforeValidator:
     """Refuse lists of any other length in one sentence, instead of one for each missing entry."""
 
     def check(value: Any) -> Any:
-        got: object = shown(value)
-        if isinstance(value, list | tuple):
-            got = len(value)
+        got: object = len(value) if isinstance(value, list | tuple) else shown(value)
         if got != count:
             raise refusal([Fault((), f"must be a list of {what}, got {got}")])
         return value
@@ -139,9 +137,7 @@ class Varying:
             "powers": {**coefficients, "description": "coefficients of powers of X"},
         }
         positive, not_negative, any_values = TABLE_TITLES
-        title = any_values
-        if "minimum" in number:
-            title = not_negative
+        title = not_negative if "minimum" in number else any_values
         if "exclusiveMinimum" in number:
             title = positive
         return {
