@@ -316,9 +316,7 @@ class System:
 
     def turned_to(self, body: str | None, vectors: Matrix) -> Matrix:
         """World vectors, 3×k, in the axes of a body; as they are where that is None, the world."""
-        if body is None:
-            return vectors
-        return self.body(body).rotation.T @ vectors
+        return vectors if body is None else self.body(body).rotation.T @ vectors
 
     def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that a constraint reads."""
@@ -478,9 +476,7 @@ class System:
 
     def _inertia_wrenches(self, rod: str) -> list[Wrench]:
         """Inertia of a rod as a wrench on its sections; none at rest."""
-        if rod not in self.inertias:
-            return []
-        return [self.inertias[rod].wrench]
+        return [] if rod not in self.inertias else [self.inertias[rod].wrench]
 
     def _riding_on(self, rod: str) -> list[RidingBody]:
         """Bodies that ride on a rod."""

@@ -236,9 +236,7 @@ class RoutedCable(Cable):
 
 def _constant(row: Numbers) -> Row:
     """A row of numbers or expressions; None where all are zero."""
-    if is_zero(row):
-        return None
-    return as_matrix(row).T
+    return None if is_zero(row) else as_matrix(row).T
 
 
 def added(*rows: Row) -> Row:
@@ -255,6 +253,4 @@ def product(a: Row, b: Row) -> Row:
 
 def negative(row: Row) -> Row:
     """A field of the other sign."""
-    if row is None:
-        return None
-    return -row
+    return None if row is None else -row

@@ -158,9 +158,7 @@ class InverseGeometricModel:
 
     def _elastic(self, value: Matrix) -> Matrix:
         """A value in proportion to the stiffness: a longer rod is softer."""
-        if self.shape.ratio is None:
-            return value
-        return value / self.shape.ratio
+        return value if self.shape.ratio is None else value / self.shape.ratio
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""

@@ -155,9 +155,7 @@ class MotionTangent:
 
     def _with_shift_row(self, rows: Matrix) -> Matrix:
         """One component at the nodes, with a row of zeros for the shift of a floating base."""
-        if not self.floating:
-            return rows
-        return ca.vertcat(rows, ca.DM(1, rows.shape[1]))
+        return ca.vertcat(rows, ca.DM(1, rows.shape[1])) if self.floating else rows
 
     @cached_property
     def _gram(self) -> Numbers:
@@ -305,15 +303,11 @@ class MotionTangent:
 
     def _ordered(self, matrix: Matrix) -> Matrix:
         """A matrix in the order of the coordinates: turns of the base follow all strains."""
-        if not self.floating:
-            return matrix
-        return matrix[self._order, self._order]
+        return matrix[self._order, self._order] if self.floating else matrix
 
     def _ordered_columns(self, matrix: Matrix) -> Matrix:
         """A matrix whose columns are in the order of the coordinates."""
-        if not self.floating:
-            return matrix
-        return matrix[:, self._order]
+        return matrix[:, self._order] if self.floating else matrix
 
     @cached_property
     def _order(self) -> list[int]:

@@ -223,9 +223,7 @@ class LoadedSections:
         return [self.at_sections(self.load.motion.undamped(rate)) for rate in self.load.kernel.rates]
 
     def _scaled(self, part: Matrix) -> Matrix | None:
-        if not part.nnz():
-            return None
-        return self.load.scale * part
+        return self.load.scale * part if part.nnz() else None
 
     def _mapped(self, function: ca.Function) -> list[Matrix]:
         """Results of a function of the kernel at all sections, side by side."""

@@ -58,9 +58,7 @@ Ratio: TypeAlias = Matrix | None
 
 def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
     """A density per length of the rod as a density per reference length; unchanged where the length is fixed."""
-    if ratio is None:
-        return value
-    return value * ratio
+    return value if ratio is None else value * ratio
 
 
 @dataclass(frozen=True)

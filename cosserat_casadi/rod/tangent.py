@@ -146,9 +146,7 @@ class Tangent:
     @cached_property
     def _turns(self) -> Matrix:
         """Derivative of the stacked turns with respect to the coordinates of the columns."""
-        if self.turns is not None:
-            return self.turns
-        return self.turn_matrix.unfolded
+        return self.turns if self.turns is not None else self.turn_matrix.unfolded
 
     @cached_property
     def interval_operators(self) -> tuple[Matrix, Matrix, Matrix]:

@@ -172,9 +172,7 @@ def printable(text: str) -> str:
 
 def shortened(text: str) -> str:
     """A text, cut off where it is too long for a message."""
-    if len(text) <= LONGEST_TEXT:
-        return text
-    return text[: LONGEST_TEXT - 3] + "..."
+    return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 3] + "..."
 
 
 def listing(names: Iterable[str], what: str) -> str:

@@ -59,9 +59,7 @@ def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _numbers(count: int) -> str:
-    if count == 1:
-        return "1 number"
-    return f"1 number or {count}"
+    return "1 number" if count == 1 else f"1 number or {count}"
 
 
 def owners_of(scene: SceneTables) -> Owners:

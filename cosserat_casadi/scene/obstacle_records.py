@@ -67,9 +67,7 @@ TABLE = Tag("⟨table⟩")
 
 
 def _number_or_table(value: Any) -> str:
-    if isinstance(value, Mapping | Friction):
-        return TABLE.tag
-    return SINGLE.tag
+    return TABLE.tag if isinstance(value, Mapping | Friction) else SINGLE.tag
 
 
 Coefficients = Annotated[

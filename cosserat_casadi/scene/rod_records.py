@@ -307,9 +307,7 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
 
     def held(self) -> Base:
         """The base clamped where it starts."""
-        if not self.free:
-            return self
-        return self.model_copy(update={"free": False})
+        return self.model_copy(update={"free": False}) if self.free else self
 
 
 RotaryInertia = Annotated[tuple[NotNegative, NotNegative, NotNegative], listed(3, "3 numbers")]

@@ -132,9 +132,7 @@ translation = 0.15
 
     def input_upper(self, field: str) -> float:
         """A tube is not pushed out of its drive; inf of its rotation."""
-        if field == "translation":
-            return self.length
-        return super().input_upper(field)
+        return self.length if field == "translation" else super().input_upper(field)
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -259,6 +257,4 @@ def _nesting_faults(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _named(name: Any) -> str:
-    if isinstance(name, str):
-        return shown(name)
-    return "without a name"
+    return shown(name) if isinstance(name, str) else "without a name"

@@ -77,9 +77,7 @@ SEVERAL = Tag("⟨list⟩")
 
 
 def _single_or_several(value: Any) -> str:
-    if isinstance(value, list | tuple):
-        return SEVERAL.tag
-    return SINGLE.tag
+    return SEVERAL.tag if isinstance(value, list | tuple) else SINGLE.tag
 
 
 BY_LENGTH = Discriminator(_single_or_several)

@@ -234,9 +234,7 @@ def _print_parameters(console: Console, model: Model) -> None:
 
 
 def _with_unit(number: float, unit: str) -> str:
-    if unit == "1":
-        return f"{number:.6g}"
-    return f"{number:.6g} {unit}"
+    return f"{number:.6g}" if unit == "1" else f"{number:.6g} {unit}"
 
 
 def _print_price(console: Console, model: Model, cost: Price) -> None:
