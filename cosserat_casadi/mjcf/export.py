@@ -353,7 +353,7 @@ class _Robot:
         name = f"{rod.name}/{number}"
         put = self._element(carrier, link.frame, name, link.inertia, joints)
         self.begins[name] = lambda solution: _solved(solution.pose(link.at, rod.name))
-        if not self.weighs_rod(rod.name):
+        if self.gravity is not None and not self.gravity.acts_on_rod(rod.name):
             put.element.set("gravcomp", "1")
         x, y = link.half_widths
         length = float(np.linalg.norm(link.ends[1] - link.ends[0]))
@@ -462,7 +462,7 @@ class _Robot:
         inertia = Inertia(mass, np.array(body.centre_of_mass), body.inertia_matrix)
         put = self._element(carrier, frame, body.name, inertia, joints, in_carrier)
         self.begins[body.name] = lambda solution: _solved(solution.body(body.name))
-        if not self.weighs_body(body.name):
+        if self.gravity is not None and not self.gravity.acts_on_body(body.name):
             put.element.set("gravcomp", "1")
         radius = body.radius or 0.02 * self.size
         shape = {"type": "sphere", "size": _numbers(radius)}
@@ -613,14 +613,6 @@ class _Robot:
         for load in fields[1:]:
             if not (load.acts_on_all and fields[0].acts_on_all):
                 self._leave_out(load.name, "MuJoCo has one field of gravity, and this is the second")
-
-    def weighs_rod(self, rod: str) -> bool:
-        """Whether the field of gravity acts on a rod."""
-        return self.gravity is None or self.gravity.acts_on_rod(rod)
-
-    def weighs_body(self, body: str) -> bool:
-        """Whether the field of gravity acts on a body."""
-        return self.gravity is None or self.gravity.acts_on_body(body)
 
     def _control(self, name: str, value: float, kind: str, **attributes: str) -> None:
         """An actuator, and its value in the keyframe."""

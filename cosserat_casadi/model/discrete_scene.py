@@ -320,14 +320,10 @@ class DiscreteScene:
         if not self.scene.rod_contacts:
             return ()
         pairs = [pair.widened(self.layers) for pair in contact_pairs(self.scene, self.nominal.rods, self.rods)]
-        if not self.is_richer:
+        # With sections of another scene it is there to show the errors of that one.
+        if self.given_sections is None:
             return tuple(pairs)
         return tuple(pair.finer(FINER_PAIRS) if any(map(self.draws_apart, pair.rods)) else pair for pair in pairs)
-
-    @property
-    def is_richer(self) -> bool:
-        """Whether it is there to show the errors of another scene."""
-        return self.given_sections is not None
 
     @property
     def has_layers(self) -> bool:

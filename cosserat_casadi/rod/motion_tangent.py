@@ -264,7 +264,9 @@ class MotionTangent:
     def _matrices(self) -> MotionMatrices:
         """The matrices, turning rows and columns first."""
         rows = 3 * len(self._nodes)
-        turned = self._left_of_turning.T
+        ratio = self.motion.shape.ratio
+        # A longer rod has more mass.
+        turned = (self.rotation.value if ratio is None else ratio * self.rotation.value).T
         every = ca.diagcat(*[turned] * ORDERS) @ self._wrenches
         count = turned.shape[0]
         stiffness, damping, mass = (every[k * count : (k + 1) * count, :] for k in range(ORDERS))
@@ -272,34 +274,18 @@ class MotionTangent:
         others = self._stretch
         if others is None:
             return MotionMatrices(stiffness, damping, mass)
-        of_turning = [self._others_on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
+        on_turning, on_others = self._rows_of(others, self._nodes), self._rows_of(others, None)
+        of_turning = [on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
         columns = [others.stiffness, others.damping, others.mass]
         by_others = [turned @ (self._levers @ self._pulled(self._nodes, None, field)) for field in columns[:2]]
         by_others.append(of_turning[2].T)
-        of_others = [self._others_on_others @ field for field in columns]
+        of_others = [on_others @ field for field in columns]
         blocks = zip((stiffness, damping, mass), by_others, of_turning, of_others, strict=True)
         return MotionMatrices(*(ca.blockcat([[one, two], [three, four]]) for one, two, three, four in blocks))
 
-    @cached_property
-    def _left_of_turning(self) -> Matrix:
-        """Rotations Θ times the ratio of the lengths: a longer rod has more mass."""
-        if self.motion.shape.ratio is None:
-            return self.rotation.value
-        return self.motion.shape.ratio * self.rotation.value
-
-    @cached_property
-    def _others_on_turning(self) -> Matrix:
-        """Rows of the linear strains and the shift, as they pull at accelerations of the nodes that turn."""
-        assert self._stretch is not None, "asked for with other columns"
-        pulled = self._pulled(self._nodes, None, self._stretch.mass)
-        return (self._mass * self.inertia.ratio) * pulled.T
-
-    @cached_property
-    def _others_on_others(self) -> Matrix:
-        """Rows of the linear strains and the shift, as they pull at accelerations of all nodes."""
-        assert self._stretch is not None, "asked for with other columns"
-        pulled = self._pulled(None, None, self._stretch.mass)
-        return (self._mass * self.inertia.ratio) * pulled.T
+    def _rows_of(self, others: MotionMatrices, nodes: list[int] | None) -> Matrix:
+        """Rows of the linear strains and the shift, as they pull at accelerations of some nodes, or of all."""
+        return (self._mass * self.inertia.ratio) * self._pulled(nodes, None, others.mass).T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
         """A matrix in the order of the coordinates: turns of the base follow all strains."""
