@@ -139,20 +139,17 @@ class Assembly:
     @cached_property
     def cable_rows(self) -> list[Matrix]:
         """Residual of every cable of given length, at the load factor."""
-        rows = []
-        for cable in self.discrete.cables:
-            equation = self.system.actuators.cable_lengths[cable.tendon.name]
-            rows.append(row_at(equation.residual, equation.tension, cable.compliance, self.load_factor))
-        return rows
+        equations = self.system.actuators.cable_lengths
+        pairs = [(cable, equations[cable.tendon.name]) for cable in self.discrete.cables]
+        return [row_at(own.residual, own.tension, cable.compliance, self.load_factor) for cable, own in pairs]
 
     @cached_property
     def stop_rows(self) -> list[Matrix]:
         """Pair of every stop of a joint and its push, at the load factor."""
-        rows = []
-        for stop, (residual, _, _) in self._stop_pairs:
-            push = self.system.arguments.x[self.discrete.stop(stop)]
-            rows.append(row_at(residual, push, STOP_COMPLIANCE, self.load_factor))
-        return rows
+        return [
+            row_at(residual, self.system.arguments.x[self.discrete.stop(stop)], STOP_COMPLIANCE, self.load_factor)
+            for stop, (residual, _, _) in self._stop_pairs
+        ]
 
     @cached_property
     def _stop_pairs(self) -> list[tuple[JointStop, tuple[Matrix, Matrix, Matrix]]]:
@@ -361,11 +358,8 @@ class Assembly:
     @cached_property
     def _reactions(self) -> dict[str, Reaction]:
         """Variations of the base wrenches of rods whose bases float."""
-        reactions = {}
-        for rod in self.discrete.unloaded.floating_rods:
-            tangent = self.system.tangents[rod.name]
-            reactions[rod.name] = Reaction(tangent, self.system.dead_wrenches(rod.name))
-        return reactions
+        names = [rod.name for rod in self.discrete.unloaded.floating_rods]
+        return {name: Reaction(self.system.tangents[name], self.system.dead_wrenches(name)) for name in names}
 
     def _add_balance(self, blocks: BlockMatrix, name: FrameName) -> None:
         """Rows of a frame's balance, from the variations of the wrench on it."""

@@ -88,14 +88,12 @@ class FramePose:
     @cached_property
     def position(self) -> Matrix:
         """Position p, 3×1, m."""
-        start = ca.DM(self.frame.start.position)
-        return start + self.frame.length * self.deviation[:3]
+        return ca.DM(self.frame.start.position) + self.frame.length * self.deviation[:3]
 
     @cached_property
     def quaternion(self) -> Matrix:
         """Quaternion Q, 4×1, not zero and of any norm."""
-        start = ca.DM(self.frame.start.quaternion)
-        return start + self.deviation[3:]
+        return ca.DM(self.frame.start.quaternion) + self.deviation[3:]
 
     @cached_property
     def pose(self) -> Pose:
@@ -246,9 +244,7 @@ class UnloadedScene:
         if carrier is None:
             return own
         plane_of_carrier = self.plane(carrier)
-        if plane_of_carrier is None:
-            return None
-        if not same_plane(plane_of_carrier, own, self.records[rod].length):
+        if plane_of_carrier is None or not same_plane(plane_of_carrier, own, record.length):
             return None
         return own
 

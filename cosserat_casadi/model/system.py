@@ -553,12 +553,8 @@ class System:
     @cached_property
     def _base_R_world(self) -> dict[str, Matrix]:
         """Rotations from the world into the bases of the rods, 3×3 each; sparse where they are constant."""
-        rotations = {}
-        for rod in self.discrete.rods:
-            rotation = quaternion_to_matrix(self.base(rod).quaternion)
-            # Zeros of a constant base, an upright rod's above all, cost no product.
-            rotations[rod] = sparse_known(rotation).T
-        return rotations
+        # Zeros of a constant base, an upright rod's above all, cost no product.
+        return {rod: sparse_known(quaternion_to_matrix(self.base(rod).quaternion)).T for rod in self.discrete.rods}
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:

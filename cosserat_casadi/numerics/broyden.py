@@ -125,9 +125,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
             return sparse_step
         # A sparse QR factorisation gives no shortest step.
         jacobian = dense(jacobian)
-    if not np.all(np.isfinite(jacobian)):
-        return None
-    if not np.all(np.isfinite(residual)):
+    if not np.all(np.isfinite(jacobian)) or not np.all(np.isfinite(residual)):
         return None
     step = _regular_step(jacobian, residual)
     return shortest_step(jacobian, residual) if step is None else _finite_or_none(step)

@@ -271,9 +271,7 @@ def _stays(path: Path, current: _Point, exact: NewtonResult) -> bool:
         current: the point, corrected inexactly.
         exact: Newton's method from there, at the same t.
     """
-    if exact.outcome is not Outcome.CONVERGED:
-        return False
-    if not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
+    if exact.outcome is not Outcome.CONVERGED or not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
         return False
     return path.admitted((current.x, current.t), (exact.x, current.t))
 

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import SINGULAR, ArcPoint, Curve, Monitor
@@ -106,6 +105,9 @@ def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], 
     Returns:
         the argument last evaluated, within LOCATED of the zero; not a number where the function is not.
     """
+    # Imported here, because a solve meets no event and needs none of SciPy.
+    from scipy.optimize import brentq
+
     known = dict((first, last))
 
     def value_at(s: float) -> float:

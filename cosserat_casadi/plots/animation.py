@@ -344,10 +344,8 @@ class _Film:
     def _draw(self, shapes: MovingShapes) -> list[_Moving]:
         """Draw all that moves; returns it."""
         canvas = self._canvas
-        lines = []
-        for path in shapes.followed.values():
-            trail = canvas.line(path[:1], color="0.55", linewidth=1.2)
-            lines.append(_Moving(trail, path))
+        followed = shapes.followed.values()
+        lines = [_Moving(canvas.line(path[:1], color="0.55", linewidth=1.2), path) for path in followed]
         for name, outlines in shapes.outlines.items():
             body = canvas.line(outlines[0], linewidth=2.0, label=name, **shapes.outline_style(name))
             lines.append(_Moving(body, outlines))

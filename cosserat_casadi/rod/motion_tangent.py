@@ -378,6 +378,5 @@ def _outer(left: Matrix, right: Matrix, weights: Numbers) -> Matrix:
     rows: list[Sequence[Matrix]] = []
     for left_row in ca.vertsplit(left):
         weighted = left_row.T * columns
-        blocks = [ca.diag(weighted * right_row.T) for right_row in ca.vertsplit(right)]
-        rows.append(blocks)
+        rows.append([ca.diag(weighted * right_row.T) for right_row in ca.vertsplit(right)])
     return ca.blockcat(rows)

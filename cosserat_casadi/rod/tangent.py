@@ -185,11 +185,8 @@ class Tangent:
         """Variations at the nodes, 3M×k, from variations of the sections beyond the base, which has none; stacked."""
         # Both nodes at a break turn with their one section; the base does not turn.
         section_of_node = np.asarray(self.rod.grid.section_of_node).tolist()
-        parts = []
-        for part in ca.vertsplit(sections, self.intervals):
-            with_base = _with_base(part)
-            parts.append(with_base[section_of_node, :])
-        return ca.vertcat(*parts)
+        parts = ca.vertsplit(sections, self.intervals)
+        return ca.vertcat(*[_with_base(part)[section_of_node, :] for part in parts])
 
     @cached_property
     def tangent(self) -> Matrix:
@@ -345,12 +342,10 @@ class Tangent:
     @property
     def _have_potential(self) -> bool:
         """Whether all wrenches have a potential once wrenches that depend on poses are taken as dead ones."""
-        for wrench in self.igm.pulled.wrenches:
-            if wrench.follower and wrench.force is not None:
-                return False
-            if wrench.moment is not None and not self._about_one_axis:
-                return False
-        return True
+        wrenches = self.igm.pulled.wrenches
+        follows = any(wrench.follower and wrench.force is not None for wrench in wrenches)
+        turns = any(wrench.moment is not None for wrench in wrenches)
+        return not follows and (self._about_one_axis or not turns)
 
     @property
     def _potential_lacks_at_points(self) -> bool:
