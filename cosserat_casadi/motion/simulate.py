@@ -161,11 +161,13 @@ class Companion:
         history: the motion.
         factor: error of the other motion over the distance of their paths.
         impacts: energy that its impacts took more than impacts of the other motion before both went on, J.
+        by_modes: whether it tells the error of the modes; else that of the steps.
     """
 
     history: History
     factor: float
     impacts: float = 0.0
+    by_modes: bool = False
 
 
 @dataclass(frozen=True)
@@ -280,7 +282,8 @@ class Simulator:
         duration = self.simulation.duration
         if duration not in history.paths_until:
             states = watched_states(history, duration)
-            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self.library)
+            found = paths(self.model, states.x, states.inputs, self.library)
+            history.paths_until[duration] = replace(found, every=states.every)
         known: Paths = history.paths_until[duration]
         return known
 
@@ -297,13 +300,20 @@ class Simulator:
             return self._with_halved_steps(tolerance)
         return self.tightened(self.controlled(first), first, lambda _: tolerance)
 
-    def tightened(self, coarse: History, first: float, tolerance_of_paths: Callable[[History], float]) -> TimedHistory:
+    def tightened(
+        self,
+        coarse: History,
+        first: float,
+        tolerance_of_paths: Callable[[History], float],
+        fine: History | None = None,
+    ) -> TimedHistory:
         """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
 
         Args:
             coarse: the motion to begin with.
             first: tolerance of a step, over the length, that it was computed with.
             tolerance_of_paths: what its steps may make of the paths of a motion, over the length.
+            fine: the motion with steps TIGHTER times as exact, where it is known.
         """
         timed = TimedHistory(coarse, float("nan"), first)
         factor = TIGHTER
@@ -311,7 +321,8 @@ class Simulator:
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
-            finer = self.finer(timed, factor)
+            finer = self.finer(timed, factor, fine)
+            fine = None
             if finer.history.outcome not in (StepOutcome.COMPLETED, StepOutcome.INTERRUPTED) and timed.companion:
                 # The error of the last whole motion is known.
                 break
@@ -327,10 +338,16 @@ class Simulator:
             factor = TIGHTER if is_struck(timed.history) else factor_for(timed.error, tolerance)
         return timed
 
-    def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
-        """The motion with a tolerance of a step that is smaller by a factor, or more, and its error by the distance."""
+    def finer(self, timed: TimedHistory, factor: float, fine: History | None = None) -> TimedHistory:
+        """The motion with a tolerance of a step that is smaller by a factor, or more, and its error by the distance.
+
+        Args:
+            timed: the motion that is compared with it.
+            factor: between the tolerances.
+            fine: the motion with the smaller tolerance, where it is known.
+        """
         tolerance = timed.tolerance / factor
-        fine = self.controlled(tolerance)
+        fine = fine or self.controlled(tolerance)
         steps = fine.statistics.steps
         if fine.completed and steps <= timed.history.statistics.steps and not has_shorter_steps_at_events(fine):
             # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
@@ -594,7 +611,7 @@ def unresolved(history: History, duration: float, library: str | None = None) ->
         library: shared object that has :func:`functions_of_limits`; None without one.
     """
     model = history.model
-    _, x, inputs = watched_states(history, duration)
+    _, x, inputs, _ = watched_states(history, duration)
     index = model.resolution_index if library is None else external(RESOLUTION, library)
     (indices,) = evaluated(index, x, inputs)
     return bool(indices.max() > 1.0)
@@ -608,7 +625,7 @@ def told_beyond(history: History, duration: float, library: str | None = None) -
         duration: its end, s.
         library: shared object that has the margins of strains; None without one.
     """
-    times, x, inputs = watched_states(history, duration)
+    times, x, inputs, _ = watched_states(history, duration)
     limited = history.model.strain_margins is not None and library is not None
     beyond = first_beyond(history.model, x, inputs, external(MARGINS, library) if limited else None)
     if beyond is None:
@@ -698,8 +715,8 @@ def motion_of(
         x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
-    strands = [_strand(history, 0.0, 0.0)]
-    strands += [_strand(one.history, one.factor, one.impacts + one.history.lost - history.lost) for one in others]
+    strands = [_strand(Companion(history, 0.0), 0.0)]
+    strands += [_strand(one, one.impacts + one.history.lost - history.lost) for one in others]
     spread = max((abs(strand.impacts) for strand in strands[1:]), default=float("nan"))
     return Motion(
         model=model,
@@ -745,10 +762,18 @@ def _nothing() -> Account:
     return Energies(none, none, none, none, none, none, none), None
 
 
-def _strand(history: History, factor: float, impacts: float) -> Strand:
-    """A motion as far as it has come."""
-    method = history.method.stiffly_accurate
-    return Strand(history.model.discretisation, history.settings, not method, factor, impacts, history.resume)
+def _strand(one: Companion, impacts: float) -> Strand:
+    """A motion as far as it has come; impacts as of :class:`Strand`."""
+    history = one.history
+    return Strand(
+        discretisation=history.model.discretisation,
+        settings=history.settings,
+        gauss=not history.method.stiffly_accurate,
+        factor=one.factor,
+        impacts=impacts,
+        by_modes=one.by_modes,
+        resume=history.resume,
+    )
 
 
 def _tips(history: History, time: float) -> dict[str, list[float]]:
