@@ -602,10 +602,11 @@ def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
 
 def _make_last(search: _Search, timed: TimedHistory) -> None:
     """Put a motion of exact steps in the place of the last level's."""
-    # The first motion that tells an error is TIGHTER times as exact as those of the levels.
+    # The first motion that tells an error is TIGHTER times as exact as those of the levels. The level counts as one of
+    # them: its own steps are told by steps of half their size.
     search.step_tolerance = TIGHTER * timed.tolerance
     paths = search.last.simulator.paths(timed.history)
-    search.levels[-1] = replace(search.last, history=timed.history, paths=paths, step_tolerance=timed.tolerance)
+    search.levels[-1] = replace(search.last, history=timed.history, paths=paths, step_tolerance=search.step_tolerance)
 
 
 def _is_erratic(search: _Search) -> bool:
