@@ -89,6 +89,18 @@ Until steps tell the waves along a rod, motions may be nearer to each other than
 LEAST_SLOPE_OF_ALIKE = 0.2
 """Least power for two motions whose impacts are alike: neither is off by an impact that the other has elsewhere."""
 
+SLOPE_OF_THREE_ALIKE = 0.5
+"""Power for three motions whose impacts are alike and whose distances fall as errors of steps do.
+
+Outside of AS_STEPS it is LEAST_SLOPE: two distances tell that no impact is elsewhere.
+"""
+
+AS_STEPS = (0.05, 0.2)
+"""Distance over the distance of motions TIGHTER times as coarse, between which it falls as errors of steps do.
+
+By SLOPE it would be 0.16.
+"""
+
 LYING = ("lie_down", LAID_DOWN)
 """Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
 
@@ -361,10 +373,11 @@ class Simulator:
                 break
             fine, tolerance = finer, tolerance / TIGHTER
         distance = path_distance(self.paths(timed.history), self.paths(fine))
-        left = left_by(factor, fine, timed.history)
         alike = are_struck_alike(fine, timed.history)
         earlier = timed.companion
         three_alike = alike and earlier is not None and are_struck_alike(timed.history, earlier.history)
+        fallen = distance / timed.distance if three_alike and timed.distance > 0.0 else float("nan")
+        left = left_by(factor, fine, timed.history, fallen)
         if earlier is not None and is_struck(fine) and not three_alike and distance > 0.0:
             # Which section strikes next may be decided by chance: two motions may agree that both err as others do.
             left = max(left, timed.distance / distance)
@@ -490,18 +503,22 @@ def are_struck_alike(first: History, second: History) -> bool:
     )
 
 
-def left_by(factor: float, finer: History, coarser: History | None = None) -> float:
+def left_by(factor: float, finer: History, coarser: History | None = None, fallen: float = float("nan")) -> float:
     """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances.
 
     Args:
         factor: the larger tolerance of a step over the smaller one.
         finer: the motion with the smaller one.
         coarser: the other motion; None where its impacts count as unlike.
+        fallen: their distance over that of the coarser one from a third, TIGHTER times as coarse, where the impacts of
+            all three are alike; else nan.
     """
     slope = LEAST_SLOPE
     if is_struck(finer) or (coarser is not None and is_struck(coarser)):
         alike = coarser is not None and are_struck_alike(finer, coarser)
         slope = LEAST_SLOPE_OF_ALIKE if alike else LEAST_SLOPE_AFTER_IMPACTS
+        if alike and np.isfinite(fallen):
+            slope = SLOPE_OF_THREE_ALIKE if AS_STEPS[0] <= fallen <= AS_STEPS[1] else LEAST_SLOPE
     return (1.0 + FEW_STEPS / max(finer.statistics.steps, 1)) / float(factor**slope - 1.0)
 
 
