@@ -727,8 +727,7 @@ def motion_of(
         times = np.union1d(times, history.end.time)
     x, v, a = (np.empty((len(times), model.size)) for _ in range(3))
     inputs = np.empty((len(times), model.inputs.size))
-    for row, time in enumerate(times.tolist()):
-        state = history.at(time)
+    for row, state in enumerate(history.states_at(times)):
         x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
