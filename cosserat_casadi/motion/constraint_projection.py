@@ -6,7 +6,6 @@ is far below the tolerance of the motion.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -103,52 +102,29 @@ class Closing:
             return RepeatedCall(external(GAPS, self.library))
         return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
 
-    def look_ahead(self, nears: Sequence[tuple[Instant, MotionEquations]]) -> None:
-        """Make the answers at some ends of steps, with their equations, all at once, and remember them alone."""
-        self._remembered.clear()
-        stiffness = np.array([equations.linearised(near).stiffness[self.rows] for near, equations in nears])
-        answers = self._regular_answers(stiffness)
-        if answers is not None:
-            self._remembered.update(zip((near.time for near, _ in nears), answers, strict=True))
-
     def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
         """Displacements that answer to gaps, as :meth:`_answer`, at an end of a step; the last answer is remembered."""
-        answer = self._remembered.get(near.time)
-        if answer is None:
+        time, answer = self._remembered.get("last", (None, None))
+        if answer is None or time != near.time:
             answer = self._answer(equations.linearised(near).stiffness)
-            self._remembered.clear()
-            self._remembered[near.time] = answer
+            self._remembered["last"] = near.time, answer
         return answer
 
     @cached_property
-    def _remembered(self) -> dict[float, FloatArray]:
+    def _remembered(self) -> dict[str, tuple[float, FloatArray]]:
         return {}
 
     def _answer(self, stiffness: FloatArray) -> FloatArray:
         """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
-        of_rows = stiffness[self.rows]
-        regular = self._regular_answers(of_rows)
+        moves = self.model.discrete.unknowns.differential
+        weighted = np.where(moves, stiffness[self.rows] / self._sizes, 0.0)
+        # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
+        regular = regular_inverse(weighted @ weighted.T, INDEPENDENT)
         if regular is not None:
-            return regular
-        weighted = self._weighted(of_rows)
+            return np.asarray(weighted.T @ regular / self._sizes[:, None])
         # Constraints that repeat each other have singular values of that size, over the largest.
         rounding = float(np.finfo(np.float64).eps) * max(weighted.shape)
         return np.asarray(np.linalg.pinv(weighted, rcond=rounding) / self._sizes[:, None])
-
-    def _weighted(self, stiffness: FloatArray) -> FloatArray:
-        """Rows of the stiffness, shape (…, rows, size), in displacements that move coordinates."""
-        return np.where(self.model.discrete.unknowns.differential, stiffness / self._sizes, 0.0)
-
-    def _regular_answers(self, stiffness: FloatArray) -> FloatArray | None:
-        """Answers to gaps, shape (…, size, rows), by rows of the stiffness, shape (…, rows, size).
-
-        By the normal equations, which a correction solves well enough; None where constraints are not all clearly
-        independent.
-        """
-        weighted = self._weighted(stiffness)
-        turned = weighted.swapaxes(-1, -2)
-        regular = regular_inverse(weighted @ turned, INDEPENDENT)
-        return None if regular is None else np.asarray(turned @ regular / self._sizes[:, None])
 
     @cached_property
     def _sizes(self) -> FloatArray:

@@ -87,7 +87,7 @@ def too_deep(history: History, duration: float) -> str:
     """A sentence where a motion does not resolve its contact: rods are deeper inside obstacles than their width."""
     if history.model.contact_depth is None:
         return ""
-    times, x, inputs, _ = watched_states(history, duration)
+    times, x, inputs = watched_states(history, duration)
     depths = depths_along(history.model, x, inputs)
     worst = int(np.argmax(depths))
     if depths[worst] <= 1.0:
@@ -147,7 +147,7 @@ def told_inside(history: History, duration: float, deepest: float) -> str:
     """
     if history.contacts is None:
         return ""
-    times, x, inputs, _ = watched_states(history, duration)
+    times, x, inputs = watched_states(history, duration)
     found = [history.contacts.deepest(*state) for state in zip(x, inputs, strict=True)]
     number = int(np.argmax([one.depth for one in found]))
     worst = found[number]

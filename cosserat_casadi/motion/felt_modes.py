@@ -90,12 +90,8 @@ def most_modes(chosen: Mapping[str, Discretisation]) -> int:
 
 def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
-    if duration not in history.felt_until:
-        states = watched_states(history, duration)
-        sizes = np.abs(states.x).max(axis=0) * displacements(history.model)
-        history.felt_until[duration] = _by_strain(history.model, sizes)
-    known_of: ByStrain = history.felt_until[duration]
-    return known_of
+    states = watched_states(history, duration)
+    return _by_strain(history.model, np.abs(states.x).max(axis=0) * displacements(history.model))
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Protocol
@@ -66,9 +66,6 @@ SHORTER = 0.25
 
 AT_ONCE = 1e-6
 """Time, over the duration, that counts as next to no time for changes."""
-
-AHEAD = 64
-"""States whose constraints are closed together."""
 
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
 """The remedy where nothing can follow an input that has a speed."""
@@ -245,26 +242,8 @@ class History:
         near = instant
         if self.steps:
             _, step = self.steps[self.number_at(time)]
-            near = self._nearer_end(step, time)
+            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time)))
         return MotionState(self._closing.closed(instant, inputs, equations, near), instant.v, instant.a, inputs)
-
-    def states_at(self, times: FloatArray) -> Iterator[MotionState]:
-        """The states at times that were reached, as of :meth:`at`."""
-        for first in range(0, len(times), AHEAD):
-            some = times[first : first + AHEAD].tolist()
-            if len(self._closing.rows) and self.steps:
-                places = [(*self.steps[self.number_at(time)], time) for time in some]
-                self._closing.look_ahead(
-                    [
-                        (self._nearer_end(step, time), leg.equations or equations_of(self.model, leg.piece))
-                        for leg, step, time in places
-                    ]
-                )
-            yield from map(self.at, some)
-
-    def _nearer_end(self, step: TimeStep, time: float) -> Instant:
-        """The end of a step that is nearer to a time, in the unknowns of the model."""
-        return self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time)))
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
@@ -338,11 +317,6 @@ class History:
     @cached_property
     def watched_until(self) -> dict[float, Any]:
         """States at the times at which paths are compared, by the duration up to which they are."""
-        return {}
-
-    @cached_property
-    def felt_until(self) -> dict[float, Any]:
-        """Displacements by coefficients of strains up to a duration: all that looks at modes asks for them."""
         return {}
 
     @cached_property

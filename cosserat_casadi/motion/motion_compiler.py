@@ -109,11 +109,6 @@ class MotionCompiler:
         """Command of the C compiler; an ExportError is raised where there is none."""
         return find_compiler()
 
-    @cached_property
-    def _folder(self) -> Path:
-        """Folder of the cache."""
-        return cache_folder()
-
     def learn(self, statistics: StepStatistics) -> None:
         """Take note of the work of the motion for which kernels were asked last."""
         saved_by_steps = self._saved_by_steps(statistics)
@@ -208,9 +203,9 @@ class MotionCompiler:
         of_model, found = self.asked.get(name, (None, None))
         try:
             if of_model is not model:
-                found = _in_machine_code(model, name, self._compiler, self._folder, write=self.always)
+                found = _in_machine_code(model, name, self._compiler, write=self.always)
             if found is None and self._pays(model, name):
-                found = _in_machine_code(model, name, self._compiler, self._folder, write=True)
+                found = _in_machine_code(model, name, self._compiler, write=True)
         except ExportError:
             if self.always:
                 raise
@@ -281,14 +276,13 @@ def _instructions(model: Model) -> int:
     return count
 
 
-def _in_machine_code(model: Model, name: str, compiler: str, folder: Path, *, write: bool) -> RepeatedCall | None:
+def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> RepeatedCall | None:
     """A function of a model in machine code.
 
     Args:
         model: the model.
         name: RESIDUAL or JACOBIANS.
         compiler: its command.
-        folder: of the cache.
         write: whether to write and compile it where the cache has none; else the answer is None then.
 
     Raises:
@@ -296,14 +290,14 @@ def _in_machine_code(model: Model, name: str, compiler: str, folder: Path, *, wr
     """
     results, _ = WRITTEN[name]
     # Every motion of a model asks for them: the files of the cache are looked at once.
-    loaded: dict[tuple[str, str, Path], str] = kept_with(model, "_machine_code", dict)
-    place = (name, compiler, folder)
+    loaded: dict[tuple[str, str, Path], Path] = kept_with(model, "_machine_code", dict)
+    place = (name, compiler, cache_folder())
     if place not in loaded:
         library = _library(model, name, compiler, write=write)
         if library is None:
             return None
-        loaded[place] = os.fspath(library)
-    return RepeatedCall(external(name, loaded[place]), results, loaded[place])
+        loaded[place] = library
+    return RepeatedCall(external(name, os.fspath(loaded[place])), results, loaded[place])
 
 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:

@@ -602,8 +602,7 @@ def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
 
 def _make_last(search: _Search, timed: TimedHistory) -> None:
     """Put a motion of exact steps in the place of the last level's."""
-    # The first motion that tells an error is TIGHTER times as exact as those of the levels. The level counts as one of
-    # them: its own steps are told by steps of half their size.
+    # The level counts as one of the others, TIGHTER times as coarse: steps of half its own tell their error.
     search.step_tolerance = TIGHTER * timed.tolerance
     paths = search.last.simulator.paths(timed.history)
     search.levels[-1] = replace(search.last, history=timed.history, paths=paths, step_tolerance=search.step_tolerance)
@@ -745,13 +744,12 @@ def _told_by_level_before(search: _Search) -> TimedHistory:
     """
     before, level = search.levels[-2:]
     factor = before.step_tolerance / level.step_tolerance
-    left = left_by(factor, level.history, before.history)
-    if level.history.statistics.steps <= before.history.statistics.steps:
-        # Its steps are no shorter ones: the two motions say nothing of their error.
-        left = float("inf")
+    # Where its steps are no shorter ones the two motions say nothing of their error.
+    are_shorter = level.history.statistics.steps > before.history.statistics.steps
+    left = left_by(factor, level.history, before.history) if are_shorter else float("inf")
     distance = path_distance(before.paths, level.paths)
-    companion = Companion(before.history, left)
-    return TimedHistory(level.history, left * distance, level.step_tolerance, companion, distance)
+    told = left * distance
+    return TimedHistory(level.history, told, level.step_tolerance, Companion(before.history, left), distance)
 
 
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:

@@ -90,16 +90,10 @@ LEAST_SLOPE_OF_ALIKE = 0.2
 """Least power for two motions whose impacts are alike: neither is off by an impact that the other has elsewhere."""
 
 SLOPE_OF_THREE_ALIKE = 0.5
-"""Power for three motions whose impacts are alike and whose distances fall as errors of steps do.
-
-Outside of AS_STEPS it is LEAST_SLOPE: two distances tell that no impact is elsewhere.
-"""
+"""Power for three motions whose impacts are alike and whose distances fall as AS_STEPS; else it is LEAST_SLOPE."""
 
 AS_STEPS = (0.05, 0.2)
-"""Distance over the distance of motions TIGHTER times as coarse, between which it falls as errors of steps do.
-
-By SLOPE it would be 0.16.
-"""
+"""Distance over the one of motions TIGHTER times as coarse, between which it falls as errors do; 0.16 by SLOPE."""
 
 LYING = ("lie_down", LAID_DOWN)
 """Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
@@ -294,8 +288,7 @@ class Simulator:
         duration = self.simulation.duration
         if duration not in history.paths_until:
             states = watched_states(history, duration)
-            found = paths(self.model, states.x, states.inputs, self.library)
-            history.paths_until[duration] = replace(found, every=states.every)
+            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self.library)
         known: Paths = history.paths_until[duration]
         return known
 
@@ -628,7 +621,7 @@ def unresolved(history: History, duration: float, library: str | None = None) ->
         library: shared object that has :func:`functions_of_limits`; None without one.
     """
     model = history.model
-    _, x, inputs, _ = watched_states(history, duration)
+    _, x, inputs = watched_states(history, duration)
     index = model.resolution_index if library is None else external(RESOLUTION, library)
     (indices,) = evaluated(index, x, inputs)
     return bool(indices.max() > 1.0)
@@ -642,7 +635,7 @@ def told_beyond(history: History, duration: float, library: str | None = None) -
         duration: its end, s.
         library: shared object that has the margins of strains; None without one.
     """
-    times, x, inputs, _ = watched_states(history, duration)
+    times, x, inputs = watched_states(history, duration)
     limited = history.model.strain_margins is not None and library is not None
     beyond = first_beyond(history.model, x, inputs, external(MARGINS, library) if limited else None)
     if beyond is None:
@@ -727,12 +720,13 @@ def motion_of(
         times = np.union1d(times, history.end.time)
     x, v, a = (np.empty((len(times), model.size)) for _ in range(3))
     inputs = np.empty((len(times), model.inputs.size))
-    for row, state in enumerate(history.states_at(times)):
+    for row, time in enumerate(times.tolist()):
+        state = history.at(time)
         x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
-    strands = [_strand(Companion(history, 0.0), 0.0)]
-    strands += [_strand(one, one.impacts + one.history.lost - history.lost) for one in others]
+    strands = [_strand(Companion(history, 0.0))]
+    strands += [_strand(replace(one, impacts=one.impacts + one.history.lost - history.lost)) for one in others]
     spread = max((abs(strand.impacts) for strand in strands[1:]), default=float("nan"))
     return Motion(
         model=model,
@@ -778,18 +772,10 @@ def _nothing() -> Account:
     return Energies(none, none, none, none, none, none, none), None
 
 
-def _strand(one: Companion, impacts: float) -> Strand:
-    """A motion as far as it has come; impacts as of :class:`Strand`."""
-    history = one.history
-    return Strand(
-        discretisation=history.model.discretisation,
-        settings=history.settings,
-        gauss=not history.method.stiffly_accurate,
-        factor=one.factor,
-        impacts=impacts,
-        by_modes=one.by_modes,
-        resume=history.resume,
-    )
+def _strand(one: Companion) -> Strand:
+    """A motion as far as it has come; its impacts are counted up to there."""
+    told, stepped = one.history, (one.history.settings, not one.history.method.stiffly_accurate)
+    return Strand(told.model.discretisation, *stepped, one.factor, one.impacts, one.by_modes, told.resume)
 
 
 def _tips(history: History, time: float) -> dict[str, list[float]]:

@@ -33,15 +33,6 @@ PATHS = "motion_paths"
 WATCHED = 401
 """Times at which paths are compared, evenly spaced."""
 
-EVERY = (4, 2)
-"""Every which of these times is enough for motions of few steps; the larger numbers are multiples of the smaller."""
-
-IN_STEP = 3
-"""Times of a step that are enough, on average: the distance of two motions at most of them is 0.95 to 1 of the largest.
-
-The distances of 70 pairs of motions, of rods and robots that nothing strikes, lie there but for three, at least 0.8.
-"""
-
 
 @dataclass(frozen=True)
 class Paths:
@@ -53,17 +44,10 @@ class Paths:
         points: positions of sections, of bases that have unknowns and of points of bodies over the length,
             shape (T, points, 3), without unit.
         section_axes: x and y axes of the sections in world axes, shape (T, sections, 3, 2), an axis a column.
-        every: every which of the WATCHED times they are at.
     """
 
     points: FloatArray
     section_axes: FloatArray
-    every: int = 1
-
-    def at_every(self, every: int) -> Paths:
-        """Paths at every so-manieth of the WATCHED times, a multiple of theirs."""
-        ways = slice(None, None, every // self.every)
-        return Paths(self.points[ways], self.section_axes[ways], every)
 
 
 class WatchedStates(NamedTuple):
@@ -73,33 +57,21 @@ class WatchedStates(NamedTuple):
         times: shape (T,), s.
         x: unknowns, shape (T, model.size).
         inputs: stacked inputs, shape (T, model.inputs.size).
-        every: every which of the WATCHED times they are.
     """
 
     times: FloatArray
     x: FloatArray
     inputs: FloatArray
-    every: int
 
 
 def watched_states(history: History, duration: float) -> WatchedStates:
     """The states of a motion at the times at which it is compared with another one of a duration, s."""
     if duration not in history.watched_until:
-        every = _every(history, duration)
-        times = np.linspace(history.begin, duration, WATCHED)[::every]
+        times = np.linspace(history.begin, duration, WATCHED)
         times = times[times <= history.end.time]
-        history.watched_until[duration] = WatchedStates(times, *history.rough_positions(times), every)
+        history.watched_until[duration] = WatchedStates(times, *history.rough_positions(times))
     known: WatchedStates = history.watched_until[duration]
     return known
-
-
-def _every(history: History, duration: float) -> int:
-    """Every which of the WATCHED times a motion is looked at: all where something may touch."""
-    reached = (history.end.time - history.begin) / (duration - history.begin)
-    if history.model.scene.has_contact or not reached > 0.0:
-        return 1
-    steps = history.statistics.steps / reached
-    return next((every for every in EVERY if (WATCHED - 1) // every >= IN_STEP * steps), 1)
 
 
 def function_of_paths(model: Model) -> ca.Function:
@@ -199,12 +171,10 @@ def _places_between(model: Model, rod: str) -> list[float]:
 
 
 def path_distance(first: Paths, second: Paths) -> float:
-    """Largest distance of two sets of paths at the times that both have and reach, over the length, without unit.
+    """Largest distance of two sets of paths at the times that both reach, over the length, without unit.
 
     What a section is turned about its tangent counts on an arm of LEVER lengths.
     """
-    every = max(first.every, second.every)
-    first, second = first.at_every(every), second.at_every(every)
     rows = min(len(first.points), len(second.points))
     distances = np.linalg.norm(first.points[:rows] - second.points[:rows], axis=2)
     rolls = _rolls(first.section_axes[:rows], second.section_axes[:rows])
