@@ -73,7 +73,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
         if not all(function.is_a("SXFunction") for function in plain):
             every += plain
         elif kind == RATE:
-            every.append(in_one(entries[0].function, parts.blocks.owners, entries[0].kernel))
+            every.append(in_one(entries[0].function, parts.blocks.parts, entries[0].kernel))
         else:
             every += sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
     return every
@@ -83,7 +83,7 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     """A function that judges the error of an answer of an assembly; rods that compute alike share code."""
     discrete = model.discrete
     numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
-    unknowns = parts.blocks.owners
+    unknowns = parts.blocks.parts
     missing = [numbers[rod] for rod in discrete.richer.missing_rods]
     watched = [numbers[owner] for owner in watched_owners(discrete)]
     owners = {
@@ -104,7 +104,7 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     plain = kernel(model, parameter_rate(model.path_residual, name), name, STRAIGHT_IN_SHARES)
     if parts is None or not plain.is_a("SXFunction"):
         return [plain]
-    return [in_one(parameter_rate(model.path_residual, name), parts.blocks.owners, name)]
+    return [in_one(parameter_rate(model.path_residual, name), parts.blocks.parts, name)]
 
 
 def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most_in_columns: int) -> list[Kernel]:

@@ -97,12 +97,35 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
             return straight
     if not programs:
         return _whole(function, f"{name}_0")
+    return _of_programs(programs, name)
+
+
+def in_loops(function: ca.Function, places: Sequence[list[int]], name: str, first: int) -> Parted | None:
+    """Some entries of a function in parts that are in loops where they are long.
+
+    Args:
+        function: map (x, inputs, factor) ↦ one matrix.
+        places: numbers of the entries of each part.
+        name: what the kernels are called, before their numbers.
+        first: the first of these numbers.
+
+    Returns:
+        the parts; None where the function is not known as a program.
+    """
+    program = _program(function)
+    if program is None:
+        return None
+    return _of_programs([partial_program(program, own) for own in places], name, first)
+
+
+def _of_programs(programs: Sequence[PartialProgram], name: str, first: int = 0) -> Parted:
+    """Programs as parts, with a kernel for all that compute alike."""
     kernels = list[Kernel]()
     parts = list[Part]()
-    for number, group in enumerate(groups):
+    for number, group in enumerate(alike(program.key for program in programs), first):
         one, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
         # Of the steps of a short part, such as a platform's, few entries are read: it is foreseen ten times too long.
-        may_be_short = max(lengths[i] for i in group) <= STRAIGHT_IN_SHARES
+        may_be_short = max(foreseen(programs[i].steps) for i in group) <= STRAIGHT_IN_SHARES
         kernels.append(_short_or_in_loops(one) if may_be_short else function_of(one))
         for i, constants in zip(group, constants_of_each, strict=True):
             parts.append(Part(number, programs[i].reads, constants, programs[i].entries))

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
+from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -50,6 +51,10 @@ REDUCTIONS = {ca.OP_DOT: ca.dot, ca.OP_MMIN: ca.mmin, ca.OP_MMAX: ca.mmax}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
+_Key: TypeAlias = tuple[int | None | tuple[int, bytes], ...]
+"""Key of a step: the function that it calls or its operation, None for a product of matrices, and its operands."""
+
+
 class UnknownInstructionError(Exception):
     """An instruction that can not be given other operands."""
 
@@ -71,6 +76,8 @@ class _Reading:
         self.function = function
         self.origins = Origins()
         self.steps: list[Step] = []
+        self._results_of: dict[_Key, list[Value]] = {}
+        self._constants: dict[bytes, Value] = {}
         self._ordered = set[bytes]()
         self._factors_of: dict[tuple[tuple[int, int], bytes], tuple[Value, Value]] = {}
         self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
@@ -119,7 +126,7 @@ class _Reading:
                 numbers = arguments[info["ind"]].numbers
                 results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
             elif code == ca.OP_CONST:
-                results = [self.origins.add(node.sparsity(), node.to_DM().nonzeros())]
+                results = [self._constant(node.to_DM())]
             else:
                 operands = [values[variable] for variable in given]
                 results = _moved(code, node, operands) or self._computed(code, node, operands)
@@ -183,10 +190,22 @@ class _Reading:
         called: bool = False,
         operation: int | None = None,
     ) -> list[Value]:
-        results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
-        self.steps.append(Step(function, list(operands), results, instructions, called, operation))
-        self._ordered |= {operand.numbers.tobytes() for operand in operands}
-        return results
+        """Results of a step, which is taken once for the same operands."""
+        key = (hash(function) if called else operation, *map(_key_of, operands))
+        if key not in self._results_of:
+            results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
+            self.steps.append(Step(function, list(operands), results, instructions, called, operation))
+            self._ordered |= {operand.numbers.tobytes() for operand in operands}
+            self._results_of[key] = results
+        return self._results_of[key]
+
+    def _constant(self, matrix: ca.DM) -> Value:
+        """A constant matrix; entries of several that are equal have the same numbers."""
+        entries = matrix.nonzeros()
+        key = np.array(entries).tobytes()
+        if key not in self._constants:
+            self._constants[key] = self.origins.add(matrix.sparsity(), entries)
+        return Value(matrix.sparsity(), self._constants[key].numbers)
 
     # Entry by entry
 
@@ -320,7 +339,7 @@ class _Reading:
         before = _multiplications(outer.dense, right) + _multiplications(inner.dense, factor)
         if product.nnz() * factor.pattern.size2() > before:
             return outer, right
-        return self.origins.add(product.sparsity(), product.nonzeros()), factor
+        return self._constant(product), factor
 
     def _factors(self, value: Value) -> tuple[Value, Value] | None:
         """Factors of a matrix that is a product, or the transpose of one; None of any other."""
@@ -433,6 +452,11 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
 def _taken(node: ca.MX) -> Numbers:
     """Entries that an instruction takes out of a matrix, or puts into it."""
     return np.array(node.mapping().nonzeros(), dtype=np.int64)
+
+
+def _key_of(value: Value) -> tuple[int, bytes]:
+    """Key of a matrix: equal ones have it."""
+    return value.pattern.hash(), value.numbers.tobytes()
 
 
 def _multiplications(left: Value, right: Value) -> int:
