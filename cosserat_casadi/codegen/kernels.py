@@ -33,8 +33,8 @@ PARTED = ("path_residual", "path_jacobian")
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
-SELDOM = ("igm", "energies", "momentum")
-"""Functions that no iteration calls: where they are long, they are in loops, whose C is shorter."""
+SELDOM = ("igm", "energies", "momentum", error_sources.BALANCE)
+"""Functions that Newton's method does not call: where they are long, they are in loops, whose C is shorter."""
 
 OF_SECTIONS = ("tip_jacobian",)
 """Derivatives of the pose of a section, by columns where that is shorter than straight-line code."""
@@ -73,10 +73,22 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
         if not all(function.is_a("SXFunction") for function in plain):
             every += plain
         elif kind == RATE:
-            every.append(in_one(entries[0].function, parts.blocks.parts, entries[0].kernel))
+            every.append(
+                _of_owners(entries[0].function, parts.blocks.parts, entries[0].kernel, STRAIGHT_BESIDE_INTERVALS)
+            )
         else:
-            every += sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
+            shared = sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
+            every += [_unlike(model, *three) for three in zip(entries, plain, shared, strict=True)]
     return every
+
+
+def _unlike(model: Model, entry: FunctionInC, plain: ca.Function, shared: ca.Function) -> Kernel:
+    """A function of one rod of an assembly: where it shares no code with others it is written as for one rod alone."""
+    if shared is not plain or plain.n_instructions() <= STRAIGHT:
+        return shared
+    alone = _written(model, entry, STRAIGHT)
+    assert isinstance(alone, ca.Function), "an assembly has no form by columns"
+    return alone
 
 
 def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
@@ -93,7 +105,13 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     most = len(discrete.rods) * STRAIGHT_IN_SHARES
     if chooses(entry.function) or _literal(model) or scalar(entry.function, entry.kernel, most) is None:
         return dense(entry.function, entry.kernel)
-    return in_one(entry.function, owners, entry.kernel)
+    return _of_owners(entry.function, owners, entry.kernel, STRAIGHT)
+
+
+def _of_owners(function: ca.Function, owners: Sequence[int], name: str, most: int) -> ca.Function:
+    """A column whose owners' entries share code where they are alike; in loops where the others are longer than most."""
+    straight = in_one(function, owners, name, most)
+    return dense(function, name) if straight is None else straight
 
 
 def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
@@ -104,7 +122,7 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     plain = kernel(model, parameter_rate(model.path_residual, name), name, STRAIGHT_IN_SHARES)
     if parts is None or not plain.is_a("SXFunction"):
         return [plain]
-    return [in_one(parameter_rate(model.path_residual, name), parts.blocks.parts, name)]
+    return [_of_owners(parameter_rate(model.path_residual, name), parts.blocks.parts, name, STRAIGHT)]
 
 
 def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most_in_columns: int) -> list[Kernel]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 import casadi as ca
 
@@ -205,13 +206,14 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
     return result
 
 
-def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Function:
+def in_one(function: ca.Function, owners: Sequence[int], name: str, most: float = inf) -> ca.Function | None:
     """A function with one column as its result, of which entries of owners that compute alike share code.
 
     Args:
         function: the function.
         owners: for each entry of the result whose it is.
         name: of the new function.
+        most: instructions of entries that share no code up to which it is wanted; None stands for a longer one.
     """
     symbols, (result,) = scalars(function)
     entries = ca.vertsplit(ca.densify(result))
@@ -223,8 +225,12 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Functi
         called = f"{name}_of_{number}"
         pieces.append(ca.Function(called, symbols, [piece], *names_of_part(function.name_in())))
         kernels.append(ca.Function(called, symbols, [ca.cse(piece)], *names_of_part(function.name_in())))
+    shared = sharing(pieces, kernels, f"{name}_part")
+    alone = [kernel for kernel, one in zip(kernels, shared, strict=True) if one is kernel]
+    if sum(kernel.n_instructions() for kernel in alone) > most:
+        return None
     arguments = function.mx_in()
-    columns = [piece.call(arguments)[0] for piece in sharing(pieces, kernels, f"{name}_part")]
+    columns = [piece.call(arguments)[0] for piece in shared]
     order = [i for own in places for i in own]
     back = sorted(range(len(order)), key=order.__getitem__)
     whole = ca.vertcat(*columns)[back]
