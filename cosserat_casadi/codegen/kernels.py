@@ -109,7 +109,7 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
 
 
 def _of_owners(function: ca.Function, owners: Sequence[int], name: str, most: int) -> ca.Function:
-    """A column whose owners' entries share code where they are alike; in loops where the others are longer than most."""
+    """A column whose owners' entries share code where they are alike; in loops where the others are longer."""
     straight = in_one(function, owners, name, most)
     return dense(function, name) if straight is None else straight
 
