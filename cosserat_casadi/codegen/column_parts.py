@@ -99,10 +99,8 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> Parted | None:
             kernels.append(kernel)
     except UnknownOperationError:
         return None
-    rest = in_loops(with_parameters_behind_inputs(model.path_jacobian), long, name, len(kernels)) if long else None
-    if rest is None:
-        return None if long else Parted(kernels, parts)
-    return Parted([*kernels, *rest.kernels], [*parts, *rest.parts])
+    rest = in_loops(with_parameters_behind_inputs(model.path_jacobian), long, name, len(kernels))
+    return None if rest is None else Parted([*kernels, *rest.kernels], [*parts, *rest.parts])
 
 
 def _function(jacobian: ColumnedJacobian, entries: ca.SX, rods: Sequence[str]) -> tuple[ca.Function, ColumnPart | None]:

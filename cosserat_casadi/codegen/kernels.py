@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
 from cosserat_casadi.compiling.listing import UnknownOperationError
-from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel, PrintedKernel
+from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
@@ -87,8 +87,7 @@ def _unlike(model: Model, entry: FunctionInC, plain: ca.Function, shared: ca.Fun
     if shared is not plain or plain.n_instructions() <= STRAIGHT:
         return shared
     alone = _written(model, entry, STRAIGHT)
-    assert isinstance(alone, ca.Function), "an assembly has no form by columns"
-    return alone
+    return alone.printed if isinstance(alone, ColumnedFunction) else alone
 
 
 def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
@@ -157,7 +156,7 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
-        columned = _columned(on_path(model), entry.function, entry.kernel, most_in_columns)
+        columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
         if columned is not None:
             return columned
         return kernel(model, entry.function, entry.kernel)
@@ -175,20 +174,17 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     return straight
 
 
-def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> PrintedKernel | None:
-    """A Jacobian of one rod by columns; None where it has no such form, or one of more than MOST_IN_COLUMNS statements.
+def by_columns(
+    written: WrittenJacobian, function: ca.Function, name: str, most: int = MOST_IN_COLUMNS
+) -> ColumnedFunction | None:
+    """A Jacobian of one rod by columns; None where it has no such form, or one of too many statements.
 
     Args:
         written: the Jacobian.
         function: the Jacobian as it is called in C.
         name: its name in C.
+        most: statements up to which it is wanted.
     """
-    columned = _columned(written, function, name, MOST_IN_COLUMNS)
-    return None if columned is None else columned.printed
-
-
-def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: int) -> ColumnedFunction | None:
-    """A Jacobian of one rod by columns, before it is C; None where :func:`by_columns` gives none."""
     form = in_columns(written, name, most)
     return None if form is None else _within(form, dense(function, name), most)
 

@@ -113,9 +113,9 @@ def in_loops(function: ca.Function, places: Sequence[list[int]], name: str, firs
     Returns:
         the parts; None where the function is not known as a program.
     """
-    program = _program(function)
+    program = _program(function) if places else None
     if program is None:
-        return None
+        return None if places else Parted([], [])
     return _of_programs([partial_program(program, own) for own in places], name, first)
 
 

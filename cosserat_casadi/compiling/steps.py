@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
-from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -51,10 +50,6 @@ REDUCTIONS = {ca.OP_DOT: ca.dot, ca.OP_MMIN: ca.mmin, ca.OP_MMAX: ca.mmax}
 SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
-_Key: TypeAlias = tuple[int | None | tuple[int, bytes], ...]
-"""Key of a step: the function that it calls or its operation, None for a product of matrices, and its operands."""
-
-
 class UnknownInstructionError(Exception):
     """An instruction that can not be given other operands."""
 
@@ -76,7 +71,7 @@ class _Reading:
         self.function = function
         self.origins = Origins()
         self.steps: list[Step] = []
-        self._results_of: dict[_Key, list[Value]] = {}
+        self._results_of: dict[tuple[object, ...], list[Value]] = {}
         self._constants: dict[bytes, Value] = {}
         self._ordered = set[bytes]()
         self._factors_of: dict[tuple[tuple[int, int], bytes], tuple[Value, Value]] = {}
@@ -191,7 +186,8 @@ class _Reading:
         operation: int | None = None,
     ) -> list[Value]:
         """Results of a step, which is taken once for the same operands."""
-        key = (hash(function) if called else operation, *map(_key_of, operands))
+        # Neither a call nor an operation: a product of matrices.
+        key = (hash(function) if called else operation, *(operand.key for operand in operands))
         if key not in self._results_of:
             results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
             self.steps.append(Step(function, list(operands), results, instructions, called, operation))
@@ -452,11 +448,6 @@ def _with_operands(code: int, node: ca.MX, operands: Sequence[ca.MX]) -> ca.MX:
 def _taken(node: ca.MX) -> Numbers:
     """Entries that an instruction takes out of a matrix, or puts into it."""
     return np.array(node.mapping().nonzeros(), dtype=np.int64)
-
-
-def _key_of(value: Value) -> tuple[int, bytes]:
-    """Key of a matrix: equal ones have it."""
-    return value.pattern.hash(), value.numbers.tobytes()
 
 
 def _multiplications(left: Value, right: Value) -> int:

@@ -262,6 +262,10 @@ class StiffSections:
         turn = ca.vertcat(levers, alike)
         return self.stiffness @ shift, self.stiffness @ turn
 
+    def changed_by_base(self, motion: int, axis: int) -> Wrench:
+        """Change of all loads with a shift of the base along one of its axes (motion 0), or a turn about it (1)."""
+        return self.sections.changed(self.with_base[motion][:, axis])
+
 
 def by_sections(loads: Sequence[LoadedSections]) -> list[StiffSections]:
     """Loads that depend on poses, together with those on the same sections; loads at one section come last."""

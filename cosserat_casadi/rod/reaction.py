@@ -82,8 +82,7 @@ class Reaction:
         variations = []
         for axis in range(3):
             turned_back = [_turned_back(wrench, axis) for wrench in fixed]
-            changed = [stiff.sections.changed(stiff.with_base[1][:, axis]) for stiff in self._stiff_sections]
-            variations.append([*turned_back, *changed])
+            variations.append([*turned_back, *(stiff.changed_by_base(1, axis) for stiff in self._stiff_sections)])
         return self._side_by_side(variations)
 
     @cached_property
@@ -92,10 +91,8 @@ class Reaction:
         stiff_sections = self._stiff_sections
         if not stiff_sections:
             return None
-        variations = []
-        for axis in range(3):
-            variations.append([stiff.sections.changed(stiff.with_base[0][:, axis]) for stiff in stiff_sections])
-        return self._side_by_side(variations)
+        changed = [[stiff.changed_by_base(0, axis) for stiff in stiff_sections] for axis in range(3)]
+        return self._side_by_side(changed)
 
     @property
     def _stiff_sections(self) -> list[StiffSections]:

@@ -136,7 +136,7 @@ def test_a_chain_costs_the_sum_of_its_links(monkeypatch: pytest.MonkeyPatch, mos
     x = np.random.default_rng(3).normal(scale=0.3, size=model.size)
     expected = np.array(model.path_jacobian(x, model.pack(), 0.7).nonzeros())
     assert_allclose(entries_by_parts(model, parts, x, 0.7), expected, rtol=0, atol=1e-13 * abs(expected).max())
-    # The world holds the first rod, the second is carried by a rod that does not move as a whole, the last carries none.
+    # The world holds the first rod; the second is on a rod whose base stays; the last one carries none.
     assert [part.kernel for part in parts.jacobian.parts] == [0, 1, 2, 2, 3]
     of_middle = parts.jacobian.kernels[2]
     assert isinstance(of_middle, PrintedKernel) == (most == MOST_IN_COLUMNS)
