@@ -257,8 +257,7 @@ class StiffSections:
         # δφ × r at every section.
         levers = hat_blocks(*(row.T for row in ca.vertsplit(-self.sections.position)))
         alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
-        no_turn = ca.DM(3 * count, 3)
-        shift = ca.vertcat(alike, no_turn)
+        shift = ca.vertcat(alike, ca.DM(3 * count, 3))
         turn = ca.vertcat(levers, alike)
         return self.stiffness @ shift, self.stiffness @ turn
 

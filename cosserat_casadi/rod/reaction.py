@@ -49,7 +49,7 @@ class Reaction:
                 turned = self.tangent.turned(wrench, wrench.force)
                 force = force - self._resultant(turned, wrench)
         for stiff, change in self._changes:
-            forces, _ = _halves(change)
+            forces, _ = ca.vertsplit(change, 3 * stiff.sections.count)
             force = force - _summed(forces, stiff.sections)
         return force
 
@@ -70,7 +70,7 @@ class Reaction:
                 moment = moment - self._resultant(turned, wrench)
         for stiff, change in self._changes:
             # The δr × f of these are in the covector already, with the other frozen forces.
-            forces, moments = _halves(change)
+            forces, moments = ca.vertsplit(change, 3 * stiff.sections.count)
             moment = moment - _hat_row(stiff.sections.position) @ forces - _summed(moments, stiff.sections)
         return moment
 
@@ -88,10 +88,9 @@ class Reaction:
     @cached_property
     def with_shift(self) -> Variation | None:
         """Derivatives with a shift of the base, base axes, m; None where no load depends on where the rod is."""
-        stiff_sections = self._stiff_sections
-        if not stiff_sections:
+        if not self._stiff_sections:
             return None
-        changed = [[stiff.changed_by_base(0, axis) for stiff in stiff_sections] for axis in range(3)]
+        changed = [[stiff.changed_by_base(0, axis) for stiff in self._stiff_sections] for axis in range(3)]
         return self._side_by_side(changed)
 
     @property
@@ -140,13 +139,6 @@ class Reaction:
         lengths = as_matrix(shape.rod.node_lengths).T
         weighted = shape.position * ca.repmat(lengths, 3, 1)
         return _hat_row(weighted)
-
-
-def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
-    """Variations of the forces and of the moments, 3k×n each, from a variation of both, 6k×n."""
-    half = variation.shape[0] // 2
-    forces, moments = ca.vertsplit(variation, half)
-    return forces, moments
 
 
 def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
