@@ -283,7 +283,7 @@ class Tangent:
         return by_sections(self.igm.statics.pose_loads)
 
     def change(self, stiff: StiffSections) -> tuple[Matrix, Matrix]:
-        """Motion [δr; δθ] of sections, and change [δf; δc] of their loads times the weights of the sections, 6k×n each."""
+        """Motion [δr; δθ] of sections, and weighted change [δf; δc] of their loads, 6k×n each."""
         motion = self.motion(stiff.sections)
         return motion, stiff.sections.weighted(stiff.stiffness @ motion)
 
