@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.contact.rows import contact_row_library
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.row_model import RowModel
-from cosserat_casadi.sweeps.work import COMPILED_ROWS, InContact
+from cosserat_casadi.sweeps.work import COMPILED_ROWS, LibraryWithPython
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "rod_over_bar.toml"
 
@@ -57,7 +57,8 @@ def in_c(what: str, scene: Scene, cases: FloatArray, ends: tuple[list[float], li
     library = contact_row_library(build(scene), cases, estimate_errors=True)
     library.compiled()
     compiled = time.process_time() + _of_compilers() - begun
-    answer = InContact(library, RowModel(scene_text(scene), estimate_errors=True))
+    python = RowModel(scene_text(scene), estimate_errors=True)
+    answer = LibraryWithPython(library, python, in_contact=True)
     many = np.random.default_rng(1).uniform(*ends, (COMPILED_ROWS, len(ends[0])))
     begun = time.process_time()
     ended = answer.solve(many)[:, 0]

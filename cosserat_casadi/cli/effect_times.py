@@ -26,17 +26,13 @@ TURNS = 5
 MotionCost = dict[str, tuple[Count, float]]
 """Scalar operations of functions of a model, and best times of a call in CasADi's virtual machine, µs, by name."""
 
-FUNCTIONS = ("residual", "jacobian", "inverse_dynamics", "dynamics_jacobian")
-"""Functions of a model that are timed: residual, then residual with Jacobian, of statics and of a motion."""
-
-
 LABELS = {
     "residual": "residual at rest",
     "jacobian": "residual and Jacobian at rest",
     "inverse_dynamics": "inverse dynamics",
     "dynamics_jacobian": "inverse dynamics with K, C and M",
 }
-"""Labels of the functions of a model."""
+"""Labels of the functions of a model that are timed: of statics, then of a motion."""
 
 OF_DAMPING = "  of which damping"
 """Label of what damping adds to the row above."""
@@ -50,7 +46,7 @@ def motion_costs(*models: Model) -> list[MotionCost]:
     turns = [[_motion_times(model) for model in models] for _ in range(TURNS)]
     costs = []
     for model, of_model in zip(models, zip(*turns, strict=True), strict=True):
-        best = {name: min(times[name] for times in of_model) for name in FUNCTIONS}
+        best = {name: min(times[name] for times in of_model) for name in LABELS}
         costs.append({name: (count(getattr(model, name)), time) for name, time in best.items()})
     return costs
 
@@ -63,7 +59,7 @@ def _motion_times(model: Model) -> dict[str, float]:
     held = np.zeros(model.inputs.size)
     at_rest = (x, inputs)
     in_motion = (x, still, still, inputs, held, held)
-    arguments = zip(FUNCTIONS, (at_rest, at_rest, in_motion, in_motion), strict=True)
+    arguments = zip(LABELS, (at_rest, at_rest, in_motion, in_motion), strict=True)
     return {name: best_time(partial(getattr(model, name), *given)) for name, given in arguments}
 
 
@@ -102,9 +98,7 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
         whole: times of the scene; a sentence where it could not be timed.
         parts: times of the scene without each effect, by its name.
     """
-    igm = "IGM"
-    if len(rods) > 1:
-        igm = f"IGM of {escape(rods[0])} alone"
+    igm = f"IGM of {escape(rods[0])} alone" if len(rods) > 1 else "IGM"
     if isinstance(whole, str):
         console.print(f"Not timed: {escape(whole)}")
         return

@@ -39,9 +39,7 @@ def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[floa
     Raises:
         SceneError: with every fault: a name that is unknown or stands twice; a range without two finite ends.
     """
-    if not ranges:
-        return {}
-    return ends_by_column(ranges, case_layout(scene))
+    return ends_by_column(ranges, case_layout(scene)) if ranges else {}
 
 
 def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> FloatArray | None:

@@ -47,9 +47,7 @@ class RateColumn(ProgressColumn):
 
     def render(self, task: Task) -> Text:
         """The rate as text."""
-        if not task.speed:
-            return Text("")
-        return Text(f"{task.speed:,.0f}/s")
+        return Text(f"{task.speed:,.0f}/s") if task.speed else Text("")
 
 
 def progress_bar(*more: ProgressColumn) -> Progress:

@@ -48,9 +48,9 @@ def assembled(model: Model, names: Names) -> Assembled | None:
     by_inputs = _path_function(input_jacobian(model))
     return Assembled(
         blocks=partition,
-        residual=parted(residual, partition.owners, names.kernel("residual")),
+        residual=parted(residual, partition.parts, names.kernel("residual")),
         jacobian=_jacobian(model, partition, names.kernel("jacobian")),
-        input_jacobian=parted_by_rows(by_inputs, partition.owners, names.kernel("input_jacobian")),
+        input_jacobian=parted_by_rows(by_inputs, partition.parts, names.kernel("input_jacobian")),
     )
 
 
@@ -60,7 +60,7 @@ def _jacobian(model: Model, partition: Blocks, name: str) -> Parted:
     if by_columns is not None:
         return by_columns
     jacobian = with_parameters_behind_inputs(model.path_jacobian)
-    return parted(jacobian, partition.entry_owners, name)
+    return parted(jacobian, partition.entry_parts, name)
 
 
 def _path_function(function: ca.Function, *, dense: bool = False) -> ca.Function:

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.floating_frames import FloatingFrame
 
 INTERFACE = -1
 """Owner of what belongs to no rod."""
@@ -84,16 +85,29 @@ class Blocks:
     Attributes:
         owners: for each unknown the number of its rod, or INTERFACE.
         pattern: sparsity of the Jacobian.
+        parts: for each unknown the rod that its row is computed with, or INTERFACE; a moving base of a rod is of the
+            interface, and is computed with the rod, whose wrench acts on it.
     """
 
     owners: list[int]
     pattern: ca.Sparsity
+    parts: list[int]
 
     @cached_property
     def entry_owners(self) -> list[int]:
         """The rod that each entry of the Jacobian belongs to, or INTERFACE."""
         rows, columns = self.pattern.get_triplet()
         return [max(self.owners[i], self.owners[j]) for i, j in zip(rows, columns, strict=True)]
+
+    @cached_property
+    def entry_parts(self) -> list[int]:
+        """The rod that each entry of the Jacobian is computed with, or INTERFACE."""
+        rows, columns = self.pattern.get_triplet()
+        parts = []
+        for owner, i, j in zip(self.entry_owners, rows, columns, strict=True):
+            of_interface = self.parts[j] if self.parts[i] == INTERFACE else self.parts[i]
+            parts.append(of_interface if owner == INTERFACE else owner)
+        return parts
 
     @property
     def separate(self) -> bool:
@@ -161,13 +175,14 @@ def blocks(discrete: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
     literal = any(discrete_rod.discretisation.transport == "permuted" for discrete_rod in discrete.rods.values())
     if len(discrete.rods) < 2 or not discrete.frames or literal:
         return None
-    partition = Blocks(_owners(discrete), pattern)
-    return partition if partition.separate else None
-
-
-def _owners(discrete: DiscreteScene) -> list[int]:
     numbers: dict[str | None, int] = {rod: i for i, rod in enumerate(discrete.rods)}
-    owners = []
+    owners = list[int]()
     for block in discrete.unknowns.blocks:
         owners += [numbers.get(block.rod, INTERFACE)] * block.size
-    return owners
+    parts = owners.copy()
+    for frame in discrete.frames:
+        if frame.kind == "rod":
+            base = discrete.deviation(frame)
+            parts[base] = [numbers[frame.name]] * FloatingFrame.SIZE
+    partition = Blocks(owners, pattern, parts)
+    return partition if partition.separate else None

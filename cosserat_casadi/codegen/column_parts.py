@@ -10,9 +10,18 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS
 from cosserat_casadi.codegen.blocks import Blocks
-from cosserat_casadi.codegen.columns import GIVEN, ColumnedJacobian, ColumnPart, columned_jacobian, on_path
-from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
+from cosserat_casadi.codegen.columns import (
+    GIVEN,
+    SHARED_AT_MOST,
+    ColumnedJacobian,
+    ColumnPart,
+    columned_jacobian,
+    on_path,
+)
+from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
+from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, in_loops, places_by_owner
 from cosserat_casadi.codegen.streams import Stream, alike, names_of_part, same_but_for_rounding, shared
 from cosserat_casadi.compiling.listing import LANES, UnknownOperationError
 from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel, in_groups
@@ -54,8 +63,8 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> Parted | None:
         name: what the kernels are called, before their numbers.
 
     Returns:
-        the parts; None where entries of one owner depend on the columns of several rods, or where an operation has no
-        form in fours.
+        the parts, in loops where they have more than MOST_IN_COLUMNS statements; None where entries of one owner
+        depend on the columns of several rods, or where an operation has no form in fours.
     """
     jacobian = columned_jacobian(on_path(model))
     if jacobian is None:
@@ -65,52 +74,58 @@ def parted_by_columns(model: Model, blocks: Blocks, name: str) -> Parted | None:
         return None
     entries = ca.project(result, blocks.pattern).nonzeros()
     pieces = []
-    for own in places_by_owner(blocks.entry_owners):
-        piece = _piece(jacobian, ca.vertcat(*[entries[i] for i in own]), own)
-        if piece is None:
+    long = list[list[int]]()
+    for own in places_by_owner(blocks.entry_parts):
+        of_own = ca.vertcat(*[entries[i] for i in own])
+        rods = jacobian.rods_of(of_own)
+        if len(rods) > 1:
             return None
-        pieces.append(piece)
-    groups = [[pieces[i] for i in group] for group in alike(piece.key for piece in pieces)]
-    try:
-        return _shared_kernels(groups, name)
-    except UnknownOperationError:
-        return None
-
-
-def _piece(jacobian: ColumnedJacobian, entries: ca.SX, own: list[int]) -> _Piece | None:
-    """Entries of one owner; None where they depend on the columns of several rods."""
-    given, _, _ = jacobian.scalars
-    rods = jacobian.rods_of(entries)
-    if len(rods) > 1:
-        return None
-    if not rods:
-        return _Piece(Stream.settled(ca.Function("part", given, [entries], *names_of_part(ARGUMENTS[:3]))), None, own)
-    part = jacobian.part(entries, rods[0])
-    both = ca.vertcat(part.entries, part.column)
-    words = names_of_part([*ARGUMENTS[:3], "columns", "turns"])
-    return _Piece(Stream.settled(ca.Function("part", part.symbols, [both], *words)), part, own)
-
-
-def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> Parted:
-    """A kernel for each group of pieces that compute alike."""
+        function, part = _function(jacobian, of_own, rods)
+        if function.n_instructions() > SHARED_AT_MOST * MOST_IN_COLUMNS:
+            long.append(own)
+        else:
+            pieces.append(_Piece(Stream.settled(function), part, own))
     kernels = list[Kernel]()
     parts = list[Part]()
-    for number, group in enumerate(groups):
-        kernel, constants = shared([piece.stream for piece in group], f"{name}_{number}")
-        columns = [piece.column for piece in group if piece.column is not None]
-        if not columns:
+    try:
+        for group in alike(piece.key for piece in pieces):
+            members = [pieces[i] for i in group]
+            kernel, constants = _shared_kernel(members, f"{name}_{len(kernels)}")
+            if kernel.n_instructions() > MOST_IN_COLUMNS:
+                long += [piece.entries for piece in members]
+                continue
+            for piece, values in zip(members, constants, strict=True):
+                parts.append(Part(len(kernels), piece.stream.reads[:COLUMNS], values, piece.entries))
             kernels.append(kernel)
-        else:
-            turns = [column.turns for column in columns]
-            same = all(same_but_for_rounding(own, turns[0]) for own in turns)
-            form = _form(kernel, group[0].stream, columns[0], turns_are_constant=same)
-            kernels.append(columns_in_fours(form, _by_columns(form, f"{name}_{number}")))
-            if not same:
-                # Rods of different length turn by different constants.
-                constants = [[*values, *in_groups(own).tolist()] for values, own in zip(constants, turns, strict=True)]
-        for piece, values in zip(group, constants, strict=True):
-            parts.append(Part(number, piece.stream.reads[:COLUMNS], values, piece.entries))
-    return Parted(kernels, parts)
+    except UnknownOperationError:
+        return None
+    rest = in_loops(with_parameters_behind_inputs(model.path_jacobian), long, name, len(kernels))
+    return None if rest is None else Parted([*kernels, *rest.kernels], [*parts, *rest.parts])
+
+
+def _function(jacobian: ColumnedJacobian, entries: ca.SX, rods: Sequence[str]) -> tuple[ca.Function, ColumnPart | None]:
+    """Entries, and behind them a column of the rod that they depend on, if of any."""
+    if not rods:
+        given, _, _ = jacobian.scalars
+        return ca.Function("part", given, [entries], *names_of_part(ARGUMENTS[:3])), None
+    part = jacobian.part(entries, rods[0])
+    both = ca.vertcat(part.entries, part.column)
+    return ca.Function("part", part.symbols, [both], *names_of_part([*ARGUMENTS[:3], "columns", "turns"])), part
+
+
+def _shared_kernel(pieces: Sequence[_Piece], name: str) -> tuple[Kernel, list[list[float]]]:
+    """A kernel for pieces that compute alike, and the constants of each."""
+    kernel, constants = shared([piece.stream for piece in pieces], name)
+    columns = [piece.column for piece in pieces if piece.column is not None]
+    if not columns:
+        return kernel, constants
+    turns = [column.turns for column in columns]
+    same = all(same_but_for_rounding(own, turns[0]) for own in turns)
+    form = _form(kernel, pieces[0].stream, columns[0], turns_are_constant=same)
+    if not same:
+        # Rods of different length turn by different constants.
+        constants = [[*values, *in_groups(own).tolist()] for values, own in zip(constants, turns, strict=True)]
+    return columns_in_fours(form, _by_columns(form, name)), constants
 
 
 def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_constant: bool) -> ColumnForm:

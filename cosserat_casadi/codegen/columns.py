@@ -57,9 +57,9 @@ class RodColumns:
     @property
     def stride(self) -> int:
         """Columns, rounded up to whole groups of LANES."""
-        return -(-self.pattern.size2() // LANES) * LANES
+        return int(self.padded_turns.shape[1])
 
-    @property
+    @cached_property
     def padded_turns(self) -> FloatArray:
         """The turns with zeros behind the last column."""
         return _padded(self.turns)

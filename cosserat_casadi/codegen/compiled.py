@@ -20,11 +20,10 @@ from cosserat_casadi.codegen.compiled_results import (
     Sensitivity,
     judged_words,
 )
-from cosserat_casadi.codegen.input_values import ArgumentValues
+from cosserat_casadi.codegen.input_values import ArgumentValues, listed_parameters
 from cosserat_casadi.codegen.lanes import lanes_files
 from cosserat_casadi.codegen.loaded_library import room
 from cosserat_casadi.codegen.names import FUNCTIONS, Names
-from cosserat_casadi.codegen.parameter_values import listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.codegen.status import OUTCOMES

@@ -1,4 +1,4 @@
-"""Named values of an exported folder, as its manifest lists them, and its inputs as arguments in C."""
+"""Inputs and parameters of an exported folder, as its manifest lists them, and their values as arguments in C."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.plain import vector
+from cosserat_casadi.codegen.plain import pointer, vector
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.stacked import StackedLayout
+from cosserat_casadi.scene import Scene, parse_scene
 
 ArgumentValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 """Values by name, where values not named keep the scene's; or all values stacked; None for the scene's values."""
@@ -84,6 +87,88 @@ class ListedInputs(ListedValues):
         return vector(values, self.size, name)
 
 
+@dataclass(frozen=True)
+class ListedParameters(ListedValues):
+    """The parameters of an exported folder, stacked into one vector p.
+
+    Attributes:
+        scene: text of the scene that the folder was made from, which judges values that are given by name.
+    """
+
+    scene: str = ""
+
+    what = "a parameter"
+    several = "parameters"
+
+    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
+        """The stacked vector, from the argument and, for parameters that it does not name, the scene's values.
+
+        Raises:
+            SceneError: a name is unknown, a value has another shape, or the scene refuses it.
+        """
+        p = super().pack(values)
+        if values:
+            self._judge(p)
+        return p
+
+    def _judge(self, p: FloatArray) -> None:
+        """Ask the scene about values, unless it was asked about the same values last."""
+        last = p.tobytes()
+        if self._layout is None or self.__dict__.get("_accepted") == last:
+            return
+        scene, layout = self._layout
+        layout.set_in(scene, layout.unpack(p))
+        self.__dict__["_accepted"] = last
+
+    @cached_property
+    def _layout(self) -> tuple[Scene, ParameterLayout] | None:
+        """The scene and its parameters; None where the folder has no scene that can be read."""
+        try:
+            scene = parse_scene(self.scene)
+        except SceneError:
+            return None
+        return scene, parameter_layout(scene)
+
+    def stacked(self, values: ArgumentValues = None) -> FloatArray:
+        """All parameters as one vector, shape (size,).
+
+        Raises:
+            SceneError: a name is unknown, or there are too few or too many numbers.
+        """
+        if values is None:
+            return self._scene_values
+        if isinstance(values, Mapping):
+            return self.pack(values)
+        # Numbers that are not finite are the solver's to judge, as those of inputs are.
+        p = np.ascontiguousarray(values, dtype=np.float64).ravel()
+        if p.size != self.size:
+            self.split(p)
+        return p
+
+    def passed(self, values: ArgumentValues = None) -> list[Any]:
+        """The argument of functions in C; none where the scene has no parameters.
+
+        Raises:
+            SceneError: as :meth:`stacked`.
+        """
+        p = self.stacked(values)
+        return [pointer(p)] if self.size else []
+
+    def rows(self, values: ArgumentValues = None) -> FloatArray:
+        """Parameters of one row or of several, shape (rows, size).
+
+        Raises:
+            ValueError: rows have another length.
+            SceneError: a name is unknown, or its value has another size.
+        """
+        if values is None or isinstance(values, Mapping):
+            return self.pack(values)[np.newaxis]
+        rows = np.atleast_2d(np.asarray(values, dtype=np.float64))
+        if rows.ndim != 2 or rows.shape[1] != self.size:
+            raise ValueError(f"parameters must have shape (count, {self.size}), got {rows.shape}")
+        return rows
+
+
 def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ...]:
     """Inputs or parameters of a manifest.
 
@@ -102,6 +187,11 @@ def listed_values(entries: Sequence[Mapping[str, Any]]) -> tuple[ListedValue, ..
         upper = _ends(entry.get("upper"), np.inf, default.size)
         values.append(ListedValue(entry["name"], entry["unit"], default, lower, upper))
     return tuple(values)
+
+
+def listed_parameters(entries: Sequence[Mapping[str, Any]], scene: str = "") -> ListedParameters:
+    """The parameters of a manifest, with the text of the scene that judges them."""
+    return ListedParameters(listed_values(entries), scene)
 
 
 def _ends(listed: Sequence[float | None] | None, none: float, size: int) -> FloatArray:

@@ -21,7 +21,7 @@ from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
 from cosserat_casadi.compiling.listing import UnknownOperationError
-from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel, PrintedKernel
+from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.model.build import Model
@@ -33,8 +33,8 @@ PARTED = ("path_residual", "path_jacobian")
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
-SELDOM = ("igm", "energies", "momentum")
-"""Functions that no iteration calls: where they are long, they are in loops, whose C is shorter."""
+SELDOM = ("igm", "energies", "momentum", error_sources.BALANCE)
+"""Functions that Newton's method does not call: where they are long, they are in loops, whose C is shorter."""
 
 OF_SECTIONS = ("tip_jacobian",)
 """Derivatives of the pose of a section, by columns where that is shorter than straight-line code."""
@@ -73,17 +73,28 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
         if not all(function.is_a("SXFunction") for function in plain):
             every += plain
         elif kind == RATE:
-            every.append(in_one(entries[0].function, parts.blocks.owners, entries[0].kernel))
+            every.append(
+                _of_owners(entries[0].function, parts.blocks.parts, entries[0].kernel, STRAIGHT_BESIDE_INTERVALS)
+            )
         else:
-            every += sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
+            shared = sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
+            every += [_unlike(model, *three) for three in zip(entries, plain, shared, strict=True)]
     return every
+
+
+def _unlike(model: Model, entry: FunctionInC, plain: ca.Function, shared: ca.Function) -> Kernel:
+    """A function of one rod of an assembly: where it shares no code with others it is written as for one rod alone."""
+    if shared is not plain or plain.n_instructions() <= STRAIGHT:
+        return shared
+    alone = _written(model, entry, STRAIGHT)
+    return alone.printed if isinstance(alone, ColumnedFunction) else alone
 
 
 def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     """A function that judges the error of an answer of an assembly; rods that compute alike share code."""
     discrete = model.discrete
     numbers = {name: number for number, name in enumerate((*discrete.rods, *discrete.bodies))}
-    unknowns = parts.blocks.owners
+    unknowns = parts.blocks.parts
     missing = [numbers[rod] for rod in discrete.richer.missing_rods]
     watched = [numbers[owner] for owner in watched_owners(discrete)]
     owners = {
@@ -93,7 +104,13 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     most = len(discrete.rods) * STRAIGHT_IN_SHARES
     if chooses(entry.function) or _literal(model) or scalar(entry.function, entry.kernel, most) is None:
         return dense(entry.function, entry.kernel)
-    return in_one(entry.function, owners, entry.kernel)
+    return _of_owners(entry.function, owners, entry.kernel, STRAIGHT)
+
+
+def _of_owners(function: ca.Function, owners: Sequence[int], name: str, most: int) -> ca.Function:
+    """A column whose owners' entries share code where they are alike; in loops where the others are longer."""
+    straight = in_one(function, owners, name, most)
+    return dense(function, name) if straight is None else straight
 
 
 def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
@@ -104,7 +121,7 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     plain = kernel(model, parameter_rate(model.path_residual, name), name, STRAIGHT_IN_SHARES)
     if parts is None or not plain.is_a("SXFunction"):
         return [plain]
-    return [in_one(parameter_rate(model.path_residual, name), parts.blocks.owners, name)]
+    return [_of_owners(parameter_rate(model.path_residual, name), parts.blocks.parts, name, STRAIGHT)]
 
 
 def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most_in_columns: int) -> list[Kernel]:
@@ -139,7 +156,7 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     if chooses(entry.function):
         return dense(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
-        columned = _columned(on_path(model), entry.function, entry.kernel, most_in_columns)
+        columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
         if columned is not None:
             return columned
         return kernel(model, entry.function, entry.kernel)
@@ -157,20 +174,17 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     return straight
 
 
-def by_columns(written: WrittenJacobian, function: ca.Function, name: str) -> PrintedKernel | None:
-    """A Jacobian of one rod by columns; None where it has no such form, or one of more than MOST_IN_COLUMNS statements.
+def by_columns(
+    written: WrittenJacobian, function: ca.Function, name: str, most: int = MOST_IN_COLUMNS
+) -> ColumnedFunction | None:
+    """A Jacobian of one rod by columns; None where it has no such form, or one of too many statements.
 
     Args:
         written: the Jacobian.
         function: the Jacobian as it is called in C.
         name: its name in C.
+        most: statements up to which it is wanted.
     """
-    columned = _columned(written, function, name, MOST_IN_COLUMNS)
-    return None if columned is None else columned.printed
-
-
-def _columned(written: WrittenJacobian, function: ca.Function, name: str, most: int) -> ColumnedFunction | None:
-    """A Jacobian of one rod by columns, before it is C; None where :func:`by_columns` gives none."""
     form = in_columns(written, name, most)
     return None if form is None else _within(form, dense(function, name), most)
 

@@ -14,8 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled_results import CompiledStability, StabilityInfo
-from cosserat_casadi.codegen.input_values import ArgumentValues, ListedInputs, listed_values
-from cosserat_casadi.codegen.parameter_values import ListedParameters, listed_parameters
+from cosserat_casadi.codegen.input_values import (
+    ArgumentValues,
+    ListedInputs,
+    ListedParameters,
+    listed_parameters,
+    listed_values,
+)
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray

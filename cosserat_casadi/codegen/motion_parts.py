@@ -7,7 +7,7 @@ one vector each, so that parts are cut as parts of statics are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -70,14 +70,14 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
         filled = np.arange(model.size - model.discrete.unknowns.count(BlockKind.FLOW))
         rows, columns = np.meshgrid(filled, filled)
         dense = ca.Sparsity.triplet(model.size, model.size, rows.ravel().tolist(), columns.ravel().tolist())
-        partition = order = Blocks([0] * model.size, pattern + dense)
+        partition = order = Blocks([0] * model.size, pattern + dense, [0] * model.size)
         if len(filled) < model.size:
-            order = Blocks(_flows_apart(model.discrete), partition.pattern)
+            order = replace(partition, owners=_flows_apart(model.discrete))
     residual = ca.Function("motion", [state, inputs, factor], [model.inverse_dynamics.call(arguments)[0]])
     return MotionInC(
         blocks=partition,
         order=order,
-        residual=parted(residual, partition.owners, names.kernel("motion_residual")),
+        residual=parted(residual, partition.parts, names.kernel("motion_residual")),
         matrices=_matrices(partition, [state, inputs, factor], matrices, names.kernel("motion_matrices")),
         input_matrices=_input_matrices(model, partition, names.kernel("motion_input_matrices")),
     )
@@ -133,7 +133,7 @@ def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
 def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca.MX], name: str) -> Parted:
     """Entries of stiffness, damping and mass; entries of one owner stand together."""
     number = {entry: k for k, entry in enumerate(zip(*partition.pattern.get_triplet(), strict=True))}
-    owner_of = partition.entry_owners
+    owner_of = partition.entry_parts
     places = list[int]()
     owners = list[int]()
     for which, matrix in enumerate(matrices):
@@ -161,4 +161,4 @@ def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
         by_each[1] = ca.jacobian(residual, symbols[PARAMETERS])
     by_inputs = ca.Function("by_inputs", given, [ca.horzcat(*by_each)])
     matrix = by_inputs.call(arguments)[0]
-    return parted_by_rows(ca.Function("motion", [state, inputs, factor], [matrix]), partition.owners, name)
+    return parted_by_rows(ca.Function("motion", [state, inputs, factor], [matrix]), partition.parts, name)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 import casadi as ca
 
@@ -97,12 +98,35 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
             return straight
     if not programs:
         return _whole(function, f"{name}_0")
+    return _of_programs(programs, name)
+
+
+def in_loops(function: ca.Function, places: Sequence[list[int]], name: str, first: int) -> Parted | None:
+    """Some entries of a function in parts that are in loops where they are long.
+
+    Args:
+        function: map (x, inputs, factor) ↦ one matrix.
+        places: numbers of the entries of each part.
+        name: what the kernels are called, before their numbers.
+        first: the first of these numbers.
+
+    Returns:
+        the parts; None where the function is not known as a program.
+    """
+    program = _program(function) if places else None
+    if program is None:
+        return None if places else Parted([], [])
+    return _of_programs([partial_program(program, own) for own in places], name, first)
+
+
+def _of_programs(programs: Sequence[PartialProgram], name: str, first: int = 0) -> Parted:
+    """Programs as parts, with a kernel for all that compute alike."""
     kernels = list[Kernel]()
     parts = list[Part]()
-    for number, group in enumerate(groups):
+    for number, group in enumerate(alike(program.key for program in programs), first):
         one, constants_of_each = shared_program([programs[i] for i in group], f"{name}_{number}")
         # Of the steps of a short part, such as a platform's, few entries are read: it is foreseen ten times too long.
-        may_be_short = max(lengths[i] for i in group) <= STRAIGHT_IN_SHARES
+        may_be_short = max(foreseen(programs[i].steps) for i in group) <= STRAIGHT_IN_SHARES
         kernels.append(_short_or_in_loops(one) if may_be_short else function_of(one))
         for i, constants in zip(group, constants_of_each, strict=True):
             parts.append(Part(number, programs[i].reads, constants, programs[i].entries))
@@ -182,13 +206,14 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
     return result
 
 
-def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Function:
+def in_one(function: ca.Function, owners: Sequence[int], name: str, most: float = inf) -> ca.Function | None:
     """A function with one column as its result, of which entries of owners that compute alike share code.
 
     Args:
         function: the function.
         owners: for each entry of the result whose it is.
         name: of the new function.
+        most: instructions of entries that share no code up to which it is wanted; None stands for a longer one.
     """
     symbols, (result,) = scalars(function)
     entries = ca.vertsplit(ca.densify(result))
@@ -200,8 +225,12 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Functi
         called = f"{name}_of_{number}"
         pieces.append(ca.Function(called, symbols, [piece], *names_of_part(function.name_in())))
         kernels.append(ca.Function(called, symbols, [ca.cse(piece)], *names_of_part(function.name_in())))
+    shared = sharing(pieces, kernels, f"{name}_part")
+    alone = [kernel for kernel, one in zip(kernels, shared, strict=True) if one is kernel]
+    if sum(kernel.n_instructions() for kernel in alone) > most:
+        return None
     arguments = function.mx_in()
-    columns = [piece.call(arguments)[0] for piece in sharing(pieces, kernels, f"{name}_part")]
+    columns = [piece.call(arguments)[0] for piece in shared]
     order = [i for own in places for i in own]
     back = sorted(range(len(order)), key=order.__getitem__)
     whole = ca.vertcat(*columns)[back]

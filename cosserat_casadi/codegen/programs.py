@@ -48,11 +48,8 @@ class PartialProgram:
     @property
     def key(self) -> tuple[object, ...]:
         """Key that programs which compute alike share."""
-        lines = []
-        for step in self.steps:
-            operands = tuple((_layout(operand.pattern), operand.numbers.tobytes()) for operand in step.operands)
-            lines.append((_identity(step), operands))
-        return tuple(map(len, self.reads)), tuple(lines), self.outputs.tobytes()
+        lines = tuple((_identity(step), *(operand.key for operand in step.operands)) for step in self.steps)
+        return tuple(map(len, self.reads)), lines, self.outputs.tobytes()
 
 
 def foreseen(steps: Sequence[Step]) -> float:
@@ -64,11 +61,6 @@ def foreseen(steps: Sequence[Step]) -> float:
         else:
             total += step.function.nnz_in() + step.function.nnz_out()
     return total
-
-
-def _layout(pattern: ca.Sparsity) -> tuple[object, ...]:
-    """Key of a pattern: shape, columns and rows."""
-    return pattern.shape, tuple(pattern.colind()), tuple(pattern.row())
 
 
 def _identity(step: Step) -> object:

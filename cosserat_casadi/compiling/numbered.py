@@ -31,6 +31,13 @@ class Value:
     numbers: Numbers
 
     @property
+    def key(self) -> tuple[object, ...]:
+        """Key that equal matrices share."""
+        pattern = self.pattern
+        places = () if pattern.is_dense() else (*pattern.colind(), *pattern.row())
+        return pattern.shape, places, self.numbers.tobytes()
+
+    @property
     def transposed(self) -> Value:
         """The transpose."""
         if 1 in self.pattern.shape:

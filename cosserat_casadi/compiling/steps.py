@@ -71,6 +71,8 @@ class _Reading:
         self.function = function
         self.origins = Origins()
         self.steps: list[Step] = []
+        self._results_of: dict[tuple[object, ...], list[Value]] = {}
+        self._constants: dict[bytes, Value] = {}
         self._ordered = set[bytes]()
         self._factors_of: dict[tuple[tuple[int, int], bytes], tuple[Value, Value]] = {}
         self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
@@ -119,7 +121,7 @@ class _Reading:
                 numbers = arguments[info["ind"]].numbers
                 results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
             elif code == ca.OP_CONST:
-                results = [self.origins.add(node.sparsity(), node.to_DM().nonzeros())]
+                results = [self._constant(node.to_DM())]
             else:
                 operands = [values[variable] for variable in given]
                 results = _moved(code, node, operands) or self._computed(code, node, operands)
@@ -183,10 +185,23 @@ class _Reading:
         called: bool = False,
         operation: int | None = None,
     ) -> list[Value]:
-        results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
-        self.steps.append(Step(function, list(operands), results, instructions, called, operation))
-        self._ordered |= {operand.numbers.tobytes() for operand in operands}
-        return results
+        """Results of a step, which is taken once for the same operands."""
+        # Neither a call nor an operation: a product of matrices.
+        key = (hash(function) if called else operation, *(operand.key for operand in operands))
+        if key not in self._results_of:
+            results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
+            self.steps.append(Step(function, list(operands), results, instructions, called, operation))
+            self._ordered |= {operand.numbers.tobytes() for operand in operands}
+            self._results_of[key] = results
+        return self._results_of[key]
+
+    def _constant(self, matrix: ca.DM) -> Value:
+        """A constant matrix; entries of several that are equal have the same numbers."""
+        entries = matrix.nonzeros()
+        key = np.array(entries).tobytes()
+        if key not in self._constants:
+            self._constants[key] = self.origins.add(matrix.sparsity(), entries)
+        return Value(matrix.sparsity(), self._constants[key].numbers)
 
     # Entry by entry
 
@@ -320,7 +335,7 @@ class _Reading:
         before = _multiplications(outer.dense, right) + _multiplications(inner.dense, factor)
         if product.nnz() * factor.pattern.size2() > before:
             return outer, right
-        return self.origins.add(product.sparsity(), product.nonzeros()), factor
+        return self._constant(product), factor
 
     def _factors(self, value: Value) -> tuple[Value, Value] | None:
         """Factors of a matrix that is a product, or the transpose of one; None of any other."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
-FILES = resources.files("cosserat_casadi") / "codegen"
+FILES = resources.files("cosserat_casadi") / "compiling"
 """The folder of the templates, and of the files in C."""
 
 INCLUDED = re.compile(r"@\{include (\S+)\}\n")

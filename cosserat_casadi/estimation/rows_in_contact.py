@@ -81,9 +81,9 @@ class _Row:
         state = None if case is None else self._state(shared, case)
         return state if state is not None and np.all(np.isfinite(state.by_numbers)) else None
 
-    def jacobians(self, state: _State) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the residual with the numbers, and with nothing."""
-        return state.by_numbers, np.zeros((len(state.residual), 0))
+    def jacobian(self, state: _State) -> FloatArray:
+        """Derivatives of the residual with the numbers, shape (rows, k)."""
+        return state.by_numbers
 
     def _state(self, numbers: FloatArray, case: CaseInContact) -> _State:
         """The row at an equilibrium, with its derivatives while contacts stay."""

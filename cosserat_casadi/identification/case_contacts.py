@@ -161,19 +161,12 @@ class ContactEquilibria(Equilibria):
             reached.append(followed is not None)
         return PointInContact.of(cases, inputs, p), np.array(reached)
 
-    def sensitivities(
-        self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of z with shared unknowns and with the case's own while contacts stay, zeros behind them."""
-        assert isinstance(point, PointInContact)
-        shared = inputs_by_shared.shape[1]
-        own = inputs_by_own.shape[2]
-        by_all = np.zeros((*point.x.shape, shared + own))
-        p_by_all = np.hstack([p_by_shared, np.zeros((len(p_by_shared), own))])
-        for rows, case, by_own in zip(by_all, point.settled, inputs_by_own, strict=True):
-            inputs_by_all = np.hstack([inputs_by_shared, by_own])
-            rows[: len(case.z)] = case.equations.moved(case.z, inputs_by_all, p_by_all)
-        return by_all[:, :, :shared], by_all[:, :, shared:]
+    def sensitivities(self, point: Point, p_by_all: FloatArray, inputs_by_all: FloatArray) -> FloatArray:
+        """Derivatives of z with the unknowns that each case sees while contacts stay, zeros behind them."""
+        by_all = np.zeros((*point.x.shape, p_by_all.shape[1]))
+        for rows, case, inputs_by in zip(by_all, _settled(point), inputs_by_all, strict=True):
+            rows[: len(case.z)] = case.equations.moved(case.z, inputs_by, p_by_all)
+        return by_all
 
     def followed(
         self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray

@@ -192,28 +192,20 @@ class Equilibria:
         """The equilibria with inverse Jacobians that are computed at them."""
         return Point(point.x, point.inputs, point.p, self._inverses(point.x, point.inputs, point.p))
 
-    def sensitivities(
-        self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the equilibria with shared unknowns, and with unknowns of the case.
+    def sensitivities(self, point: Point, p_by_all: FloatArray, inputs_by_all: FloatArray) -> FloatArray:
+        """Derivatives of the equilibria with the unknowns that each case sees, shape (cases, size, unknowns).
 
         Args:
             point: the equilibria, with Jacobians that are computed at them.
-            p_by_shared: derivatives of the parameters with the n shared unknowns, shape (parameters, n).
-            inputs_by_shared: of the inputs, shape (inputs, n).
-            inputs_by_own: of the inputs of each case with its k unknowns, shape (cases, inputs, k).
+            p_by_all: derivatives of the parameters with these unknowns, shape (parameters, unknowns).
+            inputs_by_all: of the inputs of each case, shape (cases, inputs, unknowns).
         """
-        cases, size = point.x.shape
-        by_shared = np.zeros((cases, size, p_by_shared.shape[1]))
-        by_own = np.zeros((cases, size, inputs_by_own.shape[2]))
-        if np.any(p_by_shared):
-            by_shared += self.by_parameters(point) @ p_by_shared
-        if np.any(inputs_by_shared) or inputs_by_own.size:
-            by_inputs = self.by_inputs(point)
-            by_shared += by_inputs @ inputs_by_shared
-            by_own += by_inputs @ inputs_by_own
-        sought = self.sought[:, None, None]
-        return np.where(sought, -point.inverses @ by_shared, 0.0), np.where(sought, -point.inverses @ by_own, 0.0)
+        by_all = np.zeros((*point.x.shape, p_by_all.shape[1]))
+        if np.any(p_by_all):
+            by_all += self.by_parameters(point) @ p_by_all
+        if np.any(inputs_by_all):
+            by_all += self.by_inputs(point) @ inputs_by_all
+        return np.where(self.sought[:, None, None], -point.inverses @ by_all, 0.0)
 
     def unstable(self, point: Point) -> Flags:
         """Which cases have an unstable equilibrium, where that has a meaning, shape (cases,)."""

@@ -35,9 +35,7 @@ def given_steps(model: AnyModel) -> bool:
 
 def error_of_steps(misfit: Misfit, state: MisfitState) -> float:
     """Largest error of a residual by the length of the steps, from half of it; 0 where nothing moves."""
-    if not misfit.motions.times:
-        return 0.0
-    return HALVED * _distance_to_half(misfit, state)[0]
+    return HALVED * _distance_to_half(misfit, state)[0] if misfit.motions.times else 0.0
 
 
 def with_steps(misfit: Misfit, state: MisfitState) -> MisfitState:

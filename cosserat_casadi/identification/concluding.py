@@ -109,8 +109,7 @@ class Ending:
         """
         fit, misfit = self.fit, self.misfit
         layout = misfit.layout
-        limits = layout.shared_limits
-        at_bound = (fit.shared <= limits.lower) | (fit.shared >= limits.upper)
+        at_bound = layout.shared_limits.at_end(fit.shared)
         at_bounds = [label for label, is_there in zip(layout.shared_labels, at_bound, strict=True) if is_there]
         outcome, message = self._outcome()
         moves = bool(misfit.motions.times)

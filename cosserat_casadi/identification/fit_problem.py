@@ -194,7 +194,7 @@ class Task:
     def _best(self, misfit: Misfit, first: MisfitState) -> tuple[Fit[MisfitState], int]:
         """The best fit of all starts, and how many starts ended there."""
         arrow_fit = self._arrow_fit(misfit)
-        misfit.jacobians(first)
+        misfit.jacobian(first)
         fits = []
         for number, shared in enumerate(self._start_points(first.shared)):
             self.report("fitting" if self.starts == 1 else f"fitting, start {number + 1} of {self.starts}")
@@ -239,15 +239,13 @@ class Task:
 
     def _statistics(self, arrow: ArrowStep, fit: Fit[MisfitState], misfit: Misfit) -> Statistics:
         """Statistics of the unknowns at the optimum."""
-        n, k = arrow.sizes
-        unknowns = n + k * len(misfit.cases)
         priors = np.count_nonzero(self.layout.shared_limits.weight)
         priors += len(misfit.cases) * np.count_nonzero(self.layout.own_limits.weight)
         return statistics(
             arrow,
             self.layout.shared_labels,
             (self.layout.scales(fit.shared), self.layout.own_scales),
-            freedom=len(fit.state.residual) + int(priors) - unknowns,
+            freedom=len(fit.state.residual) + int(priors) - len(arrow.held),
             squares=self.loss.noise_squares(fit.state.residual),
             noise_from=self._noise_from,
         )

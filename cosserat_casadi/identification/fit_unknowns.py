@@ -180,27 +180,28 @@ class UnknownLayout:
                 inputs[case, entry.indices] = entry.values(found)
         return inputs
 
-    def by_shared(self, shared: FloatArray, inputs: int) -> tuple[FloatArray, FloatArray]:
-        """Derivatives with the shared numbers: of the parameters, and of the inputs, of which there are so many."""
-        n = len(self.shared_labels)
-        of_parameters = np.zeros((len(self.p), n))
-        of_inputs = np.zeros((inputs, n))
-        first = 0
-        for entry, found in parts(self.shared, shared):
-            rows = of_inputs if entry.of_input else of_parameters
-            rows[entry.indices, first : first + entry.size] = entry.derivative(found)
-            first += entry.size
-        return of_parameters, of_inputs
+    def derivatives(self, shared: FloatArray, own: FloatArray, inputs: int) -> tuple[FloatArray, FloatArray]:
+        """Derivatives with the shared numbers, then with the numbers of a case.
 
-    def by_own(self, own: FloatArray, inputs: int) -> FloatArray:
-        """Derivatives of the inputs with the numbers of each case, shape (cases, inputs, k)."""
-        derivatives = np.zeros((len(own), inputs, len(self.own_labels)))
-        for case in range(len(own)):
+        Args:
+            shared: shared numbers, shape (n,).
+            own: numbers of each case, shape (cases, k).
+            inputs: size of the inputs.
+
+        Returns:
+            of the parameters, shape (size of the parameters, n + k), and of the inputs of each case, shape
+            (cases, inputs, n + k).
+        """
+        count = len(self.shared_labels) + len(self.own_labels)
+        of_parameters = np.zeros((len(self.p), count))
+        of_inputs = np.zeros((len(own), inputs, count))
+        for case, numbers in enumerate(own):
             first = 0
-            for entry, found in parts(self.own, own[case]):
-                derivatives[case, entry.indices, first : first + entry.size] = entry.derivative(found)
+            for entry, found in parts((*self.shared, *self.own), np.concatenate([shared, numbers])):
+                rows = of_inputs[case] if entry.of_input else of_parameters
+                rows[entry.indices, first : first + entry.size] = entry.derivative(found)
                 first += entry.size
-        return derivatives
+        return of_parameters, of_inputs
 
     def identified(self, shared: FloatArray, *, of_input: bool) -> dict[str, FloatArray]:
         """Values by name of the shared parameters, or inputs, that were found, in the shape that the model takes."""
@@ -359,9 +360,7 @@ def _quaternion_derivative(vector: FloatArray) -> FloatArray:
     angle = float(np.linalg.norm(vector))
     sine = np.sinc(angle / (2 * np.pi)) / 2
     # (d sine / d angle) / angle; the quotient cancels at small angles.
-    slope = -1 / 24
-    if angle > TURN:
-        slope = (np.cos(angle / 2) / 2 - sine) / angle**2
+    slope = (np.cos(angle / 2) / 2 - sine) / angle**2 if angle > TURN else -1 / 24
     by_vector = np.empty((4, 3))
     by_vector[0] = -sine * vector / 2
     by_vector[1:] = sine * np.eye(3) + slope * np.outer(vector, vector)

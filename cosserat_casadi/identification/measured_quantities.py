@@ -343,11 +343,7 @@ def _strains(rows: Sequence[Matrix | None], count: int) -> Matrix:
 
 def _stretch(strain: Matrix, place: ca.MX) -> Matrix:
     """Length of a fibre per length of the centreline at each section, 1×k."""
-    columns = []
-    for column in ca.horzsplit(strain):
-        direction = column[3:] + ca.cross(column[:3], place)
-        columns.append(ca.norm_2(direction))
-    return ca.horzcat(*columns)
+    return ca.horzcat(*[ca.norm_2(own[3:] + ca.cross(own[:3], place)) for own in ca.horzsplit(strain)])
 
 
 def difference(model: AnyModel, record: Any, sections: int) -> ca.Function:

@@ -39,8 +39,8 @@ class MisfitState:
         residual: differences in standard deviations, case after case, shape (m,); NaN of modes that do not swing, and
             of motions that could not be computed.
         runs: motions of the cases that were measured over time, by the number of the case; None where steps failed.
-        sensitivities: derivatives of the equilibria with the shared unknowns, (cases, size, n), and with the unknowns
-            of the case, (cases, size, k); None until they are asked for.
+        sensitivities: derivatives of the equilibria with the shared unknowns, then with the unknowns of the case, shape
+            (cases, size, n + k); None until they are asked for.
     """
 
     shared: FloatArray
@@ -48,7 +48,7 @@ class MisfitState:
     point: Point
     residual: FloatArray
     runs: dict[int, Run | None] = field(default_factory=dict)
-    sensitivities: tuple[FloatArray, FloatArray] | None = None
+    sensitivities: FloatArray | None = None
 
 
 class Misfit:
@@ -108,28 +108,21 @@ class Misfit:
         p = self.layout.parameters(shared)
         predicted = near.point.x
         if near.sensitivities is not None:
-            by_shared, by_own = near.sensitivities
-            predicted = predicted + by_shared @ (shared - near.shared)
-            predicted = predicted + np.einsum("cik,ck->ci", by_own, own - near.own)
+            changes = np.hstack([np.tile(shared - near.shared, (len(own), 1)), own - near.own])
+            predicted = predicted + np.einsum("cik,ck->ci", near.sensitivities, changes)
         return self.equilibria.tracked(near.point, predicted, inputs, p, far=far)
 
-    def jacobians(self, state: MisfitState) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the residual with the shared unknowns, (m, n), and with unknowns of the row's case, (m, k)."""
+    def jacobian(self, state: MisfitState) -> FloatArray:
+        """Derivatives of the residual with the shared unknowns, then with those of the row's case, shape (m, n + k)."""
         state.point = self.equilibria.at_point(state.point)
-        inputs = state.point.inputs.shape[1]
-        p_by_shared, inputs_by_shared = self.layout.by_shared(state.shared, inputs)
-        inputs_by_own = self.layout.by_own(state.own, inputs)
-        state.sensitivities = self.equilibria.sensitivities(state.point, p_by_shared, inputs_by_shared, inputs_by_own)
-        n = len(state.shared)
-        # Shared unknowns and those of the case side by side, for each case.
-        inputs_by_all = np.concatenate(
-            [np.broadcast_to(inputs_by_shared, (len(self.cases), inputs, n)), inputs_by_own], 2
-        )
-        p_by_all = np.hstack([p_by_shared, np.zeros((len(p_by_shared), inputs_by_own.shape[2]))])
-        x_by_all = np.concatenate(state.sensitivities, axis=2)
-        whole = self._rates(state, x_by_all, inputs_by_all, p_by_all)
-        sizes = self.layout.scales(state.shared), self.layout.own_scales
-        return without_rounding(whole[:, :n], whole[:, n:], sizes)
+        p_by_all, inputs_by_all = self._given_by_all(state)
+        state.sensitivities = self.equilibria.sensitivities(state.point, p_by_all, inputs_by_all)
+        rates = self._rates(state, state.sensitivities, inputs_by_all, p_by_all)
+        return without_rounding(rates, np.concatenate([self.layout.scales(state.shared), self.layout.own_scales]))
+
+    def _given_by_all(self, state: MisfitState) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of parameters and inputs with all unknowns, as of :meth:`UnknownLayout.derivatives`."""
+        return self.layout.derivatives(state.shared, state.own, state.point.inputs.shape[1])
 
     def _rates(
         self, state: MisfitState, x_by_all: FloatArray, inputs_by_all: FloatArray, p_by_all: FloatArray
@@ -218,16 +211,13 @@ class Misfit:
         """Measured modes of one frequency, of which the mean is compared; the Jacobian has been asked for there."""
         found = []
         assert state.sensitivities is not None, "follow from the Jacobian"
-        p_by_shared, inputs_by_shared = self.layout.by_shared(state.shared, state.point.inputs.shape[1])
+        p_by_all, inputs_by_all = self._given_by_all(state)
         sizes = self.layout.scales(state.shared)
         for rows in self.measurements.values():
             if isinstance(rows, MeasuredModes):
-                by_shared = [
-                    np.vstack([of_case, inputs_by_shared, p_by_shared])
-                    for of_case in state.sensitivities[0][rows.cases]
-                ]
+                by_all = [np.vstack([state.sensitivities[i], inputs_by_all[i], p_by_all]) for i in rows.cases]
                 at_places = self._at_places(rows, state.point, state.runs)
-                found += rows.joint_modes(*at_places, np.array(by_shared), sizes)
+                found += rows.joint_modes(*at_places, np.array(by_all)[:, :, : len(sizes)], sizes)
         return found
 
     def residual_of(self, rows: MeasuredRows | MeasuredModes, state: MisfitState) -> FloatArray:
@@ -276,19 +266,14 @@ def _times(case: Case) -> FloatArray:
     return np.unique([datum.time for data in case.data.values() for datum in data])
 
 
-def without_rounding(
-    shared: FloatArray, own: FloatArray, sizes: tuple[FloatArray, FloatArray]
-) -> tuple[FloatArray, FloatArray]:
+def without_rounding(derivatives: FloatArray, sizes: FloatArray) -> FloatArray:
     """Derivatives in which unknowns that no datum sees have columns of zeros.
 
     What rounding leaves there would pass for a datum of theirs, and send them far away to meet it.
 
     Args:
-        shared: derivatives with the shared unknowns, shape (m, n).
-        own: derivatives with the unknowns of the row's case, shape (m, k).
-        sizes: sizes of the shared unknowns, shape (n,), and of the unknowns of the cases, shape (k,).
+        derivatives: with the shared unknowns, then with those of the row's case, shape (m, n + k).
+        sizes: of these unknowns, shape (n + k,).
     """
-    norms = [np.linalg.norm(columns, axis=0) * size for columns, size in zip((shared, own), sizes, strict=True)]
-    least = ROUNDING * np.concatenate(norms).max(initial=0.0)
-    of_shared, of_own = (norm > least for norm in norms)
-    return np.where(of_shared, shared, 0.0), np.where(of_own, own, 0.0)
+    norms = np.linalg.norm(derivatives, axis=0) * sizes
+    return np.where(norms > ROUNDING * norms.max(initial=0.0), derivatives, 0.0)

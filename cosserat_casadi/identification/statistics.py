@@ -102,12 +102,12 @@ def statistics(
         squares: sum of the squares of the residuals, or what stands for it under a robust loss.
         noise_from: what the noise of the data follows from.
     """
-    n, k = arrow.sizes
+    n = arrow.shared
     shared_scales, own_scales = scales
-    left, eliminations = arrow.eliminated(np.zeros(k))
-    free = ~arrow.shared_held
+    left, eliminations = arrow.eliminated(np.zeros_like(arrow.weights))
+    free = ~arrow.held[:n]
     data = left[:, :n] * shared_scales
-    prior = np.diag(np.where(free, arrow.shared_prior[0], 0.0) * shared_scales)
+    prior = np.diag(np.where(free, arrow.weights[:n], 0.0) * shared_scales)
     by_data = _directions(data[:, free])
     by_both = _directions(np.vstack([data, prior])[:, free])
     free_labels = [label for label, is_free in zip(labels, free, strict=True) if is_free]
@@ -207,12 +207,12 @@ def _own_deviations(
     arrow: ArrowStep, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
 ) -> FloatArray:
     """Standard deviations of the unknowns of each case, with what the shared ones add; NaN where not determined."""
-    n, k = arrow.sizes
+    n, k = arrow.shared, arrow.own
     deviations = np.full((len(eliminations), k), np.nan)
     for block, elimination in enumerate(eliminations):
-        held = arrow.own_held[block]
-        rows = slice(arrow.offsets[block], arrow.offsets[block + 1])
-        seen = np.any(arrow.by_own[rows] != 0.0, axis=0) | (arrow.own_prior[0] > 0.0)
+        held = arrow.of_blocks(arrow.held)[block]
+        rows = arrow.derivatives[arrow.offsets[block] : arrow.offsets[block + 1], n:]
+        seen = np.any(rows != 0.0, axis=0) | (arrow.of_blocks(arrow.weights)[block] > 0.0)
         free = seen & ~held
         deviations[block, held] = 0.0
         # Unknowns without a datum have a row of their own in the triangle, and a column that is zero elsewhere.

@@ -353,12 +353,9 @@ class _Robot:
         name = f"{rod.name}/{number}"
         put = self._element(carrier, link.frame, name, link.inertia, joints)
         self.begins[name] = lambda solution: _solved(solution.pose(link.at, rod.name))
-        if not self.weighs_rod(rod.name):
+        if self.gravity is not None and not self.gravity.acts_on_rod(rod.name):
             put.element.set("gravcomp", "1")
         x, y = link.half_widths
-        obstacles = list(enumerate(self.scene.obstacles))
-        bits = sum(1 << i for i, obstacle in obstacles if obstacle.concerns(rod.name))
-        style = {"contype": str(bits), "conaffinity": "0", "rgba": "0 0.45 0.7 1"}
         length = float(np.linalg.norm(link.ends[1] - link.ends[0]))
         if x == y:
             size = {"type": "capsule", "fromto": _numbers(link.ends.ravel()), "size": _numbers(x)}
@@ -366,14 +363,19 @@ class _Robot:
             along = quaternion_from_tangent(link.ends[1] - link.ends[0])
             place = _place(NumericPose(link.ends.mean(axis=0), along))
             size = {"type": "box", "size": _numbers([x, y, length / 2]), **place}
-        ET.SubElement(put.element, "geom", {**size, **style})
+        obstacles = self.scene.obstacles
+        self._geom(put, size, "0 0.45 0.7 1", [obstacle.concerns(rod.name) for obstacle in obstacles])
         for row in self.scene.disks:
             if row.rod == rod.name and any(abs(at - link.at) < 1e-9 for at in row.places):
                 size = _cylinder(row.radius, row.thickness)
-                met = sum(1 << i for i, obstacle in obstacles if obstacle.concerns_disks(row.name))
-                style = {"contype": str(met), "conaffinity": "0", "rgba": ".5 .5 .5 .4"}
-                ET.SubElement(put.element, "geom", {**size, **style})
+                self._geom(put, size, ".5 .5 .5 .4", [obstacle.concerns_disks(row.name) for obstacle in obstacles])
         return put
+
+    def _geom(self, carrier: _Carrier, shape: dict[str, str], colour: str, meets: Sequence[bool]) -> None:
+        """A shape on a carrier; ``meets``: which of the obstacles it does."""
+        bits = sum(1 << i for i, is_met in enumerate(meets) if is_met)
+        style = {"contype": str(bits), "conaffinity": "0", "rgba": colour}
+        ET.SubElement(carrier.element, "geom", {**shape, **style})
 
     def _element(
         self,
@@ -460,15 +462,14 @@ class _Robot:
         inertia = Inertia(mass, np.array(body.centre_of_mass), body.inertia_matrix)
         put = self._element(carrier, frame, body.name, inertia, joints, in_carrier)
         self.begins[body.name] = lambda solution: _solved(solution.body(body.name))
-        if not self.weighs_body(body.name):
+        if self.gravity is not None and not self.gravity.acts_on_body(body.name):
             put.element.set("gravcomp", "1")
-        bits = sum(1 << i for i, obstacle in enumerate(self.scene.obstacles) if obstacle.concerns_body(body.name))
         radius = body.radius or 0.02 * self.size
-        style = {"contype": str(bits), "conaffinity": "0", "rgba": "0.5 0.5 0.5 1"}
         shape = {"type": "sphere", "size": _numbers(radius)}
         if body.thickness is not None:
             shape = _cylinder(radius, body.thickness)
-        ET.SubElement(put.element, "geom", {**shape, **style})
+        meets = [obstacle.concerns_body(body.name) for obstacle in self.scene.obstacles]
+        self._geom(put, shape, "0.5 0.5 0.5 1", meets)
         self.bodies[body.name] = put
 
     def _tree_joint(
@@ -612,14 +613,6 @@ class _Robot:
         for load in fields[1:]:
             if not (load.acts_on_all and fields[0].acts_on_all):
                 self._leave_out(load.name, "MuJoCo has one field of gravity, and this is the second")
-
-    def weighs_rod(self, rod: str) -> bool:
-        """Whether the field of gravity acts on a rod."""
-        return self.gravity is None or self.gravity.acts_on_rod(rod)
-
-    def weighs_body(self, body: str) -> bool:
-        """Whether the field of gravity acts on a body."""
-        return self.gravity is None or self.gravity.acts_on_body(body)
 
     def _control(self, name: str, value: float, kind: str, **attributes: str) -> None:
         """An actuator, and its value in the keyframe."""

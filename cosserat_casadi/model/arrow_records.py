@@ -94,9 +94,7 @@ class LoadArrows:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
         start, end = member.span(load)
-        X = start + (end - start) * DRAWN_SECTIONS
-        if at is not None:
-            X = np.array([at])
+        X = start + (end - start) * DRAWN_SECTIONS if at is None else np.array([at])
         # The legend names a load once: the arrows of its first rod carry the label.
         label = load.name
         for rod, discrete_rod in self.discrete.rods.items():
@@ -140,10 +138,6 @@ class LoadArrows:
 def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray) -> tuple[Matrix, Matrix]:
     """Force and moment at sections, world axes, 3×k each."""
     position, rotation = poses
-    forces = []
-    moments = []
-    for k in range(data.shape[1]):
-        force, moment = kernel.kernel.world_wrench(position[:, k], rotation[k], parameters, data[:, k])
-        forces.append(force)
-        moments.append(moment)
-    return ca.horzcat(*forces), ca.horzcat(*moments)
+    wrench = kernel.kernel.world_wrench
+    wrenches = [wrench(position[:, k], rotation[k], parameters, data[:, k]) for k in range(data.shape[1])]
+    return ca.horzcat(*[force for force, _ in wrenches]), ca.horzcat(*[moment for _, moment in wrenches])

@@ -31,6 +31,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 import casadi as ca
 
@@ -138,20 +139,17 @@ class Assembly:
     @cached_property
     def cable_rows(self) -> list[Matrix]:
         """Residual of every cable of given length, at the load factor."""
-        rows = []
-        for cable in self.discrete.cables:
-            equation = self.system.actuators.cable_lengths[cable.tendon.name]
-            rows.append(row_at(equation.residual, equation.tension, cable.compliance, self.load_factor))
-        return rows
+        equations = self.system.actuators.cable_lengths
+        pairs = [(cable, equations[cable.tendon.name]) for cable in self.discrete.cables]
+        return [row_at(own.residual, own.tension, cable.compliance, self.load_factor) for cable, own in pairs]
 
     @cached_property
     def stop_rows(self) -> list[Matrix]:
         """Pair of every stop of a joint and its push, at the load factor."""
-        rows = []
-        for stop, (residual, _, _) in self._stop_pairs:
-            push = self.system.arguments.x[self.discrete.stop(stop)]
-            rows.append(row_at(residual, push, STOP_COMPLIANCE, self.load_factor))
-        return rows
+        return [
+            row_at(residual, self.system.arguments.x[self.discrete.stop(stop)], STOP_COMPLIANCE, self.load_factor)
+            for stop, (residual, _, _) in self._stop_pairs
+        ]
 
     @cached_property
     def _stop_pairs(self) -> list[tuple[JointStop, tuple[Matrix, Matrix, Matrix]]]:
@@ -360,11 +358,8 @@ class Assembly:
     @cached_property
     def _reactions(self) -> dict[str, Reaction]:
         """Variations of the base wrenches of rods whose bases float."""
-        reactions = {}
-        for rod in self.discrete.unloaded.floating_rods:
-            tangent = self.system.tangents[rod.name]
-            reactions[rod.name] = Reaction(tangent, self.system.dead_wrenches(rod.name))
-        return reactions
+        names = [rod.name for rod in self.discrete.unloaded.floating_rods]
+        return {name: Reaction(self.system.tangents[name], self.system.dead_wrenches(name)) for name in names}
 
     def _add_balance(self, blocks: BlockMatrix, name: FrameName) -> None:
         """Rows of a frame's balance, from the variations of the wrench on it."""
@@ -549,14 +544,10 @@ class BlockMatrix:
 
     def matrix(self) -> Matrix:
         """The whole, sparse."""
-        starts = [0, *self.ends[:-1]]
-        ranges = list(zip(starts, self.ends, strict=True))
-        rows = []
-        for top, bottom in ranges:
-            row = []
-            for left, right in ranges:
-                # Unknowns that do not meet have a block without a stored entry.
-                nothing = ca.DM(bottom - top, right - left)
-                row.append(self.entries.get((top, left), nothing))
-            rows.append(ca.horzcat(*row))
-        return ca.vertcat(*rows)
+        ranges = list(pairwise([0, *self.ends]))
+        # Unknowns that do not meet have a block without a stored entry.
+        blocks = [
+            [self.entries.get((top, left), ca.DM(bottom - top, right - left)) for left, right in ranges]
+            for top, bottom in ranges
+        ]
+        return ca.vertcat(*[ca.horzcat(*row) for row in blocks])

@@ -48,12 +48,8 @@ class BodyLoad:
         """The load at a load factor."""
         if load_factor is None:
             return self
-        stiffness = self.stiffness
-        if stiffness is not None:
-            stiffness = load_factor * stiffness
-        force = load_factor * self.force
-        moment = load_factor * self.moment
-        return replace(self, force=force, moment=moment, stiffness=stiffness)
+        stiffness = None if self.stiffness is None else load_factor * self.stiffness
+        return replace(self, force=load_factor * self.force, moment=load_factor * self.moment, stiffness=stiffness)
 
     @property
     def wrench(self) -> Matrix:
@@ -107,12 +103,7 @@ class BodyLoads:
 
     def all(self) -> list[BodyLoad]:
         """All loads on the body."""
-        body_loads = []
-        for load in self.discrete.loads:
-            body_load = self.of(load)
-            if body_load is not None:
-                body_loads.append(body_load)
-        return body_loads
+        return [own for own in map(self.of, self.discrete.loads) if own is not None]
 
     def of(self, load: scenes.LoadRecord) -> BodyLoad | None:
         """One load on the body; None where it does not act there, or is always zero."""
@@ -126,15 +117,10 @@ class BodyLoads:
         given_force, given_moment = kernel.coefficients(values)
         if given_force is None and given_moment is None:
             return None
-        force: Matrix = ca.DM.zeros(3, 1)
-        moment: Matrix = ca.DM.zeros(3, 1)
-        if given_force is not None:
-            force = point.factor * given_force
-        if given_moment is not None:
-            moment = point.factor * given_moment
+        none = ca.DM.zeros(3, 1)
+        force, moment = (none if part is None else point.factor * part for part in (given_force, given_moment))
         if kernel.follower:
-            force = self.rotation @ force
-            moment = self.rotation @ moment
+            force, moment = self.rotation @ force, self.rotation @ moment
         aligns = given_force is not None and not kernel.follower
         return BodyLoad(point.position, self._arm(point), force, moment, kernel.follower, aligns)
 

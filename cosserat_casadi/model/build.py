@@ -54,9 +54,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     @property
     def scene(self) -> scenes.Scene:
         """The scene of this model; its parameters have the values of its file, or the values that are bound."""
-        if self.parameters.size:
-            return self.discrete.nominal.scene
-        return self.discrete.scene
+        return self.discrete.nominal.scene if self.parameters.size else self.discrete.scene
 
     @property
     def parameters(self) -> ParameterLayout:
@@ -105,9 +103,7 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
     @cached_property
     def with_memory(self) -> Model:
         """The model, of which friction on a path remembers the last point: as inputs ``history``."""
-        if self.inputs.memory is not None:
-            return self
-        return Model(self.discrete.with_memory)
+        return self if self.inputs.memory is not None else Model(self.discrete.with_memory)
 
     @property
     def rubs_on_paths(self) -> bool:

@@ -154,6 +154,7 @@ def contact_pairs(
             bending = max(nominal[name].energy_unit / nominal[name].properties.length for name in pair)
             stiffness = SURFACE_STIFFNESS * bending / width**2
         thinnest = float(radii[0].min() + radii[1].min())
+        thickest = largest(entries(section_radii(rods[pair[0]].properties, LOOKED_AT)))
         itself = pair[0] == pair[1]
         spacing = SPACING * float(half_of_stretch(thinnest, width))
         name = contact.label if contact.rods is not None else f"{contact.name or 'contact'} of {pair[0]} and {pair[1]}"
@@ -162,7 +163,7 @@ def contact_pairs(
             rods=pair,
             width=width,
             stiffness=stiffness,
-            apart=FROM_ITSELF * (2 * _largest_radius(rods[pair[0]]) + width) if itself else -ANYWHERE,
+            apart=FROM_ITSELF * (2 * thickest + width) if itself else -ANYWHERE,
             sections=(_sections(name, rods[pair[0]], spacing), _sections(name, rods[pair[1]], spacing)),
             friction=contact.friction,
             slip_speed=contact.slip_speed,
@@ -194,11 +195,6 @@ def half_of_stretch(touching: Scalar, width: Scalar) -> Scalar:
     """
     half: Scalar = ((touching + width) ** 2 - touching**2) ** 0.5
     return half
-
-
-def _largest_radius(rod: DiscreteRod) -> Scalar:
-    """Radius of a rod where it is thickest, m."""
-    return largest(entries(section_radii(rod.properties, LOOKED_AT)))
 
 
 def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:

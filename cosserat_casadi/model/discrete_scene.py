@@ -304,17 +304,14 @@ class DiscreteScene:
     @cached_property
     def with_memory(self) -> DiscreteScene:
         """This scene with an input of memory for every load and pair of rods that remembers sections."""
+        loads = remembering(self.loads)
+        shapes = [(load.name, EFFECTS[load.kind].remembers(load), self.rods[load.rod].grid.size) for load in loads]
+        rubbing = [pair for pair in self.pairs if pair.friction > 0.0]
+        shapes += [(pair.name, history_size(pair, self.remembered), 1) for pair in rubbing]
         entries = list(self.layout.entries)
-        for load in remembering(self.loads):
-            numbers = EFFECTS[load.kind].remembers(load)
-            default = np.zeros((numbers, self.rods[load.rod].grid.size))
+        for name, numbers, count in shapes:
             declared = InputField("1", numbers, nonlinear=True, nodal=True)
-            entries.append(Input(load.name, HISTORY, declared, default, "none", False, np.inf))
-        for pair in self.pairs:
-            if pair.friction > 0.0:
-                numbers = history_size(pair, self.remembered)
-                declared = InputField("1", numbers, nonlinear=True, nodal=True)
-                entries.append(Input(pair.name, HISTORY, declared, np.zeros((numbers, 1)), "none", False, np.inf))
+            entries.append(Input(name, HISTORY, declared, np.zeros((numbers, count)), "none", False, np.inf))
         return replace(self, layout=InputLayout(tuple(entries)))
 
     @cached_property
@@ -323,14 +320,10 @@ class DiscreteScene:
         if not self.scene.rod_contacts:
             return ()
         pairs = [pair.widened(self.layers) for pair in contact_pairs(self.scene, self.nominal.rods, self.rods)]
-        if not self.is_richer:
+        # With sections of another scene it is there to show the errors of that one.
+        if self.given_sections is None:
             return tuple(pairs)
         return tuple(pair.finer(FINER_PAIRS) if any(map(self.draws_apart, pair.rods)) else pair for pair in pairs)
-
-    @property
-    def is_richer(self) -> bool:
-        """Whether it is there to show the errors of another scene."""
-        return self.given_sections is not None
 
     @property
     def has_layers(self) -> bool:

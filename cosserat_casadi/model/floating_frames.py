@@ -88,14 +88,12 @@ class FramePose:
     @cached_property
     def position(self) -> Matrix:
         """Position p, 3×1, m."""
-        start = ca.DM(self.frame.start.position)
-        return start + self.frame.length * self.deviation[:3]
+        return ca.DM(self.frame.start.position) + self.frame.length * self.deviation[:3]
 
     @cached_property
     def quaternion(self) -> Matrix:
         """Quaternion Q, 4×1, not zero and of any norm."""
-        start = ca.DM(self.frame.start.quaternion)
-        return start + self.deviation[3:]
+        return ca.DM(self.frame.start.quaternion) + self.deviation[3:]
 
     @cached_property
     def pose(self) -> Pose:
@@ -246,9 +244,7 @@ class UnloadedScene:
         if carrier is None:
             return own
         plane_of_carrier = self.plane(carrier)
-        if plane_of_carrier is None:
-            return None
-        if not same_plane(plane_of_carrier, own, self.records[rod].length):
+        if plane_of_carrier is None or not same_plane(plane_of_carrier, own, record.length):
             return None
         return own
 
@@ -361,15 +357,15 @@ class UnloadedScene:
         return placing
 
     @cached_property
-    def _ranks(self) -> dict[str, int]:
+    def _ranks(self) -> dict[str | None, int]:
         """How many joints of bodies lie between each body and the world or a rod that does not start on a body."""
-        ranks: dict[str, int] = {}
+        ranks: dict[str | None, int] = {}
         at_rods = [joint for joint in self.scene.joints if joint.carries is None and joint.body is not None]
         grounded = [joint.body for joint in at_rods if not self.starts_on_body(joint.rod)]
         grounded += [joint.carries.body for joint in self.scene.joints if joint.carries and joint.body is None]
         # Where no body is placed by others, rods that start on it are.
         for placed_first in (grounded, [joint.body for joint in at_rods]):
-            ranks = {name: 0 for name in placed_first if name is not None} | ranks
+            ranks = dict.fromkeys(placed_first, 0) | ranks
             for rank in range(1, len(self.scene.bodies)):
                 for joint in self.scene.joints:
                     names = [place.body for place in joint.places]

@@ -114,9 +114,7 @@ class FloatingFrameMotion:
         """B, the motion [δθ; δr] of the frame with its unknowns, with its rates, 6×7 each; world axes or others."""
         orders = []
         for order, turn in enumerate(self.quaternion.turn.orders):
-            shift: Matrix = ca.DM(3, 3)
-            if order == 0:
-                shift = self.frame.length * ca.DM.eye(3)
+            shift: Matrix = self.frame.length * ca.DM.eye(3) if order == 0 else ca.DM(3, 3)
             if axes_R_world is not None:
                 turn = axes_R_world @ turn
                 shift = axes_R_world @ shift

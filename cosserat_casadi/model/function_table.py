@@ -91,9 +91,7 @@ class Expressions:
     @property
     def arguments(self) -> Arguments:
         """Unknowns, inputs and load factor, as far as they are arguments."""
-        motion = None
-        if "v" in self.symbols:
-            motion = self._motion
+        motion = self._motion if "v" in self.symbols else None
         return Arguments(self.symbols["x"], self.symbols["inputs"], self.symbols.get("load_factor"), motion)
 
     @cached_property

@@ -39,9 +39,7 @@ class Compliance:
 
 def smoothing_at(first: float, last: float, load_factor: LoadFactor) -> Matrix:
     """Smoothing of a corner, 1×1: falls from ``first + last`` in the unloaded scene to ``last`` in the scene."""
-    if load_factor is None:
-        return ca.DM(last)
-    return last + (1 - load_factor) * first
+    return ca.DM(last) if load_factor is None else last + (1 - load_factor) * first
 
 
 def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
@@ -80,13 +78,9 @@ def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: Lo
 
 def column_at(columns: Matrix, load_factor: LoadFactor) -> Matrix:
     """Derivatives of an equation at a load factor, without the derivative of its spring."""
-    if load_factor is None:
-        return columns
-    return load_factor * columns
+    return columns if load_factor is None else load_factor * columns
 
 
 def spring(size: int, compliance: Compliance, load_factor: LoadFactor) -> Matrix | None:
     """Derivative of the springs of some equations with their own unknowns, size×size; None at the scene itself."""
-    if load_factor is None:
-        return None
-    return compliance.at(load_factor) * ca.MX.eye(size)
+    return None if load_factor is None else compliance.at(load_factor) * ca.MX.eye(size)

@@ -114,12 +114,14 @@ class InputLayout(StackedLayout[Input]):
         return self._slice_of(name, field, of_rod=True)
 
     def _slice_of(self, owner: str, field: str, *, of_rod: bool) -> slice | None:
-        for entry, span in self:
-            # A rod and a load may share a name, so that the name of the owner alone does not identify an input.
-            same_owner = entry.owner == owner and entry.of_rod == of_rod
-            if same_owner and entry.field == field:
-                return span
-        return None
+        # A rod and a load may share a name, so that the name of the owner alone does not identify an input.
+        wanted = (owner, field, of_rod)
+        return next((span for entry, span in self if (entry.owner, entry.field, entry.of_rod) == wanted), None)
+
+    def indices(self, *flags: str) -> list[int]:
+        """Indices of the inputs that are declared to be something: ``geometry``, ``nodal`` or ``nonlinear``."""
+        spans = [span for entry, span in self if any(getattr(entry.declared, flag) for flag in flags)]
+        return [index for span in spans for index in range(span.start, span.stop)]
 
     @cached_property
     def memory(self) -> slice | None:
@@ -138,17 +140,12 @@ class InputLayout(StackedLayout[Input]):
     @cached_property
     def nodal(self) -> frozenset[int]:
         """Indices of the inputs that hold numbers of nodes."""
-        spans = [span for entry, span in self if entry.declared.nodal]
-        return frozenset(index for span in spans for index in range(span.start, span.stop))
+        return frozenset(self.indices("nodal"))
 
     @cached_property
     def geometry(self) -> list[int]:
         """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
-        indices: list[int] = []
-        for entry, span in self:
-            if entry.declared.geometry:
-                indices.extend(range(span.start, span.stop))
-        return indices
+        return self.indices("geometry")
 
     @property
     def quaternions(self) -> list[int]:
@@ -180,15 +177,10 @@ def input_layout(scene: scenes.Scene) -> InputLayout:
 
 
 def _input(free: scenes.FreeInput) -> Input:
-    record = free.record
-    if isinstance(record, scenes.Rod):
-        default = _rod_value(record, free.field)
-        of_rod = True
-    else:
-        default = known(scene_value(record, free.field))
-        of_rod = False
-    upper = free.record.input_upper(free.field)
-    return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod, upper)
+    record, field = free.record, free.field
+    of_rod = isinstance(record, scenes.Rod)
+    default = _rod_value(record, field) if isinstance(record, scenes.Rod) else known(scene_value(record, field))
+    return Input(free.owner, field, free.declared, default, _axes(free), of_rod, record.input_upper(field))
 
 
 def _rod_value(rod: scenes.Rod, field: str) -> FloatArray:
@@ -206,14 +198,8 @@ def _axes(free: scenes.FreeInput) -> str:
     """Axes of an input: the axes of the record's ``frame`` where the field is declared to follow it."""
     if free.declared.components == 1:
         return "none"
-    if free.declared.axes == "section":
-        return "section"
-    if free.declared.axes != "frame":
-        return "world"
-    frame = getattr(free.record, "frame", "world")
-    if frame == "body":
-        return "section"
-    return "world"
+    follows = free.declared.axes == "frame" and getattr(free.record, "frame", "world") == "body"
+    return "section" if follows or free.declared.axes == "section" else "world"
 
 
 def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:

@@ -185,9 +185,7 @@ class RodLoads:
             assert kernel.moving is not None
             section_kernel = kernel.moving
         # A load per length of a rod whose length is free acts on that length; a load at a point does not.
-        scale: Matrix | float = 1.0
-        if at is None and self.ratio is not None:
-            scale = self.ratio
+        scale: Matrix | float = self.ratio if at is None and self.ratio is not None else 1.0
         base = self.base_of(kernel.load)
         return PoseWrench(
             at=at,
@@ -282,10 +280,7 @@ def _constant(field: Matrix) -> Numbers:
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
     layout = discrete.layout
-    indices: list[int] = []
-    for entry, span in layout:
-        if entry.declared.nonlinear:
-            indices.extend(range(span.start, span.stop))
+    indices = layout.indices("nonlinear")
     # What depends on a pose does so whatever its numbers are.
     discrete = discrete.nominal
     for load in discrete.loads:

@@ -359,9 +359,7 @@ class _Section:
 
         Q and −Q are one rotation; from the farther one the section would be turned by more than half a turn.
         """
-        world_target = target
-        if frame is not None:
-            world_target = self.unloaded.frames[frame].start.then(target)
+        world_target = target if frame is None else self.unloaded.frames[frame].start.then(target)
         quaternion = self.unloaded.section(self.rod, self.at).quaternion
         if world_target.quaternion @ quaternion >= 0:
             return target

@@ -49,11 +49,8 @@ class SceneEquations:
     @property
     def _flow_rows(self) -> list[Matrix]:
         """Rows of the flows: w, which is counted from rest; in motion theirs are none of statics."""
-        rows: list[Matrix] = []
-        for _, entries in self.system.discrete.unknowns.of_kind(BlockKind.FLOW):
-            of_rest = self.system.arguments.x[entries]
-            rows.append(of_rest if self.system.arguments.motion is None else ca.DM(*of_rest.shape))
-        return rows
+        flows = [self.system.arguments.x[own] for _, own in self.system.discrete.unknowns.of_kind(BlockKind.FLOW)]
+        return flows if self.system.arguments.motion is None else [ca.DM(*flow.shape) for flow in flows]
 
     @cached_property
     def jacobian(self) -> Matrix:

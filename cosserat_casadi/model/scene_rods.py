@@ -143,12 +143,17 @@ def _shared(field: Field, *sizes: Any) -> Field:
     return at
 
 
+def _alike(numbers: Sequence[Scalar]) -> Field:
+    """Numbers that all sections have: one row stands for all where one is an expression."""
+    row = as_vector(numbers)
+    if is_symbolic(row):
+        return lambda X: row.T
+    return lambda X: np.tile(known(row), (X.shape[0], 1))
+
+
 def _hooke(rod: scenes.Rod) -> Field:
     if rod.stiffness_matrix is not None:
-        diagonal = as_vector([row[i] for i, row in enumerate(rod.stiffness_matrix)])
-        if is_symbolic(diagonal):
-            return lambda X: diagonal.T
-        return lambda X: np.tile(known(diagonal), (X.shape[0], 1))
+        return _alike([row[i] for i, row in enumerate(rod.stiffness_matrix)])
     if rod.stiffness is not None:
         # One that is not given is not admitted, and not read.
         return _direct(rod.stiffness, np.nan)
@@ -201,17 +206,7 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
 def _of_sections(record: scenes.Section, quantity: Callable[[SectionShape], Numbers]) -> Field:
     """A quantity of the areas and second moments of the sections, as a field."""
     shape = SHAPES[record.shape]
-    vary = any(isinstance(size, tuple) for size in sizes_of(record).values())
-
-    def at(X: Numbers) -> Numbers:
-        if not vary:
-            # All sections are alike: where the quantity is an expression, one row stands for all.
-            anywhere = quantity(shape.shape(sizes_along(record, X[:1])))
-            if is_symbolic(anywhere):
-                return anywhere
-        return quantity(shape.shape(sizes_along(record, X)))
-
-    return at
+    return _shared(lambda X: quantity(shape.shape(sizes_along(record, X))), *sizes_of(record).values())
 
 
 def _linear_density(rod: scenes.Rod) -> Field | None:
@@ -227,10 +222,7 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
 def _rotary_inertia(rod: scenes.Rod) -> Field | None:
     """Moments of inertia per length (k, 3): the scene's, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
     if rod.rotary_inertia is not None:
-        given = as_vector(rod.rotary_inertia)
-        if is_symbolic(given):
-            return lambda X: given.T
-        return lambda X: np.tile(known(given), (X.shape[0], 1))
+        return _alike(rod.rotary_inertia)
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density

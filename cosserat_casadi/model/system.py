@@ -40,7 +40,7 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, rod_mass, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.relaxation import Relaxation
-from cosserat_casadi.rod.rod_motion import FrameMotion, RodMotion, StrainRates
+from cosserat_casadi.rod.rod_motion import AT_REST, FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Columns, Tangent
@@ -316,9 +316,7 @@ class System:
 
     def turned_to(self, body: str | None, vectors: Matrix) -> Matrix:
         """World vectors, 3×k, in the axes of a body; as they are where that is None, the world."""
-        if body is None:
-            return vectors
-        return self.body(body).rotation.T @ vectors
+        return vectors if body is None else self.body(body).rotation.T @ vectors
 
     def poses(self, placed: PlacedConstraint) -> ConstraintPoses:
         """The poses that a constraint reads."""
@@ -403,40 +401,33 @@ class System:
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
-        given_position, given_quaternion = written_base_pose(self.discrete.records[rod])
-        position: Matrix = as_matrix(given_position)
-        quaternion: Matrix = as_matrix(given_quaternion)
-        free_position = self._rod_input(rod, "base.position")
-        free_quaternion = self._rod_input(rod, "base.quaternion")
+        position, quaternion = map(as_matrix, written_base_pose(self.discrete.records[rod]))
+        free_position = self.discrete.layout.of_rod(rod, "base.position")
+        free_quaternion = self.discrete.layout.of_rod(rod, "base.quaternion")
         if free_position is not None:
-            position = free_position
+            position = self.arguments.inputs[free_position]
         if free_quaternion is not None:
-            norm = ca.sqrt(ca.sumsqr(free_quaternion))
-            quaternion = free_quaternion / norm
+            given = self.arguments.inputs[free_quaternion]
+            quaternion = given / ca.sqrt(ca.sumsqr(given))
         return Pose(position, quaternion)
 
     def _still_base_motion(self, rod: str) -> FrameMotion:
         """Motion of a base that no frame carries, world axes: at rest, or what the inputs make of it."""
         motion = self.arguments.motion
-        layout = self.discrete.layout
-        velocity: Matrix = ca.DM(3, 1)
-        acceleration: Matrix = ca.DM(3, 1)
-        angular_velocity: Matrix = ca.DM(3, 1)
-        angular_acceleration: Matrix = ca.DM(3, 1)
-        position = layout.of_rod(rod, "base.position")
-        if motion is not None and position is not None:
-            velocity = motion.inputs_rate[position]
-            acceleration = motion.inputs_acceleration[position]
-        quaternion = layout.of_rod(rod, "base.quaternion")
-        if motion is not None and quaternion is not None:
-            turning = QuaternionMotion(
-                self.arguments.inputs[quaternion],
-                motion.inputs_rate[quaternion],
-                motion.inputs_acceleration[quaternion],
-            )
-            angular_velocity = turning.angular_velocity
-            angular_acceleration = turning.angular_acceleration
-        return FrameMotion(velocity, angular_velocity, acceleration, angular_acceleration)
+        moved = AT_REST
+        if motion is None:
+            return moved
+        position = self.discrete.layout.of_rod(rod, "base.position")
+        if position is not None:
+            rate, acceleration = motion.inputs_rate[position], motion.inputs_acceleration[position]
+            moved = replace(moved, velocity=rate, acceleration=acceleration)
+        turned = self.discrete.layout.of_rod(rod, "base.quaternion")
+        if turned is not None:
+            given = (self.arguments.inputs, motion.inputs_rate, motion.inputs_acceleration)
+            turning = QuaternionMotion(*(values[turned] for values in given))
+            spin, spin_rate = turning.angular_velocity, turning.angular_acceleration
+            moved = replace(moved, angular_velocity=spin, angular_acceleration=spin_rate)
+        return moved
 
     def strain_rates(self, rod: str) -> StrainRates:
         """Rates of the strain coordinates of a rod in motion, and of its length where that is an input."""
@@ -454,13 +445,6 @@ class System:
         ratio_rate = motion.inputs_rate[length] / reference
         ratio_acceleration = motion.inputs_acceleration[length] / reference
         return StrainRates(velocity, acceleration, ratio_rate, ratio_acceleration)
-
-    def _rod_input(self, rod: str, field: str) -> Matrix | None:
-        """An input of a rod's own geometry; None where the scene fixes it."""
-        entries = self.discrete.layout.of_rod(rod, field)
-        if entries is None:
-            return None
-        return self.arguments.inputs[entries]
 
     def energy(self) -> Matrix:
         """Elastic energy of all rods, J."""
@@ -492,9 +476,7 @@ class System:
 
     def _inertia_wrenches(self, rod: str) -> list[Wrench]:
         """Inertia of a rod as a wrench on its sections; none at rest."""
-        if rod not in self.inertias:
-            return []
-        return [self.inertias[rod].wrench]
+        return [] if rod not in self.inertias else [self.inertias[rod].wrench]
 
     def _riding_on(self, rod: str) -> list[RidingBody]:
         """Bodies that ride on a rod."""
@@ -571,12 +553,8 @@ class System:
     @cached_property
     def _base_R_world(self) -> dict[str, Matrix]:
         """Rotations from the world into the bases of the rods, 3×3 each; sparse where they are constant."""
-        rotations = {}
-        for rod in self.discrete.rods:
-            rotation = quaternion_to_matrix(self.base(rod).quaternion)
-            # Zeros of a constant base, an upright rod's above all, cost no product.
-            rotations[rod] = sparse_known(rotation).T
-        return rotations
+        # Zeros of a constant base, an upright rod's above all, cost no product.
+        return {rod: sparse_known(quaternion_to_matrix(self.base(rod).quaternion)).T for rod in self.discrete.rods}
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:

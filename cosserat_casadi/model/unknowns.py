@@ -118,22 +118,18 @@ class Unknowns:
     @cached_property
     def step_weights(self) -> FloatArray:
         """How much each unknown counts in the length of a continuation step, shape (size,)."""
-        weights = [block.step_weight for block in self.blocks]
-        return self._repeated(weights)
+        return self._repeated([block.step_weight for block in self.blocks])
 
     @cached_property
     def units(self) -> FloatArray:
         """Energy that each equation is divided by, shape (size,), J."""
-        units = [block.unit for block in self.blocks]
-        return self._repeated(units)
+        return self._repeated([block.unit for block in self.blocks])
 
     @cached_property
     def differential(self) -> npt.NDArray[np.bool_]:
         """Whether each unknown is a coordinate that moves, shape (size,)."""
-        flags = [block.differential for block in self.blocks]
-        return self._repeated(flags) > 0.0
+        return self._repeated([block.differential for block in self.blocks]) > 0.0
 
     def _repeated(self, values: Sequence[float]) -> FloatArray:
         """One value for each block, repeated for each of its unknowns, shape (size,)."""
-        sizes = [block.size for block in self.blocks]
-        return np.repeat(np.asarray(values, dtype=float), sizes)
+        return np.repeat(np.asarray(values, dtype=float), [block.size for block in self.blocks])

@@ -62,6 +62,7 @@ class Strand:
         gauss: whether by Gauss's method, and not by Radau IIA.
         factor: error of the paths over their distance from this strand's paths; 0 of the motion itself.
         impacts: energy that its impacts took more than impacts of the motion, J.
+        by_modes: whether it tells the error of the modes; else that of the steps.
         resume: where it goes on.
     """
 
@@ -70,6 +71,7 @@ class Strand:
     gauss: bool
     factor: float
     impacts: float
+    by_modes: bool
     resume: Resume
 
 

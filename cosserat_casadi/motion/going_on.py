@@ -135,17 +135,17 @@ def go_on(
         factor = strand.factor
         if is_struck(history) or is_struck(told):
             factor = max(factor, _factor_after_impacts(first, strand, history, told))
-        elif has_jumps and strand.discretisation != first.discretisation:
+        elif has_jumps and strand.by_modes:
             modes, others = (most_modes(one.discretisation) for one in (first, strand))
             factor = max(factor, told_by_modes(modes, others, ORDER_OF_WAVES))
         left = factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
-        if strand.discretisation != first.discretisation:
+        if strand.by_modes:
             by_other_modes = max(by_other_modes, left)
         else:
             error += left
-        companions.append(Companion(told, factor, strand.impacts))
+        companions.append(Companion(told, factor, strand.impacts, strand.by_modes))
     error += by_other_modes
-    by_modes = any(strand.discretisation != first.discretisation for strand in checkpoint.strands)
+    by_modes = any(strand.by_modes for strand in checkpoint.strands)
     if given is None and not scene.accuracy.fixed and not by_modes:
         # The modes were enough so far, as their last coefficients told.
         error += lacking(history, asked.duration)

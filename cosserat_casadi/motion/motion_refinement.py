@@ -82,6 +82,9 @@ TIME_SHARE = 0.3
 SPACE_SHARE = 0.7
 """Share of the tolerance that the modes and nodes may use up."""
 
+FORESEEN_SHARE = 0.5
+"""Share of the tolerance up to which what modes are foreseen to lack leaves room for the steps, whatever tells them."""
+
 MOST_AT_FRONTS = 0.9
 """Share of the tolerance that fronts may use up, where a motion of exact steps tells the error that they make."""
 
@@ -192,6 +195,7 @@ class ResolvedMotion:
             have no more modes than on the level before the distance tells nothing.
         waves: whether sudden loads send waves along rods without damping.
         fronts: displacement over the length that the fronts of these waves lack.
+        step_tolerance: of a step, over the length, that it was computed with; nan for steps of given size.
     """
 
     simulator: Simulator
@@ -203,6 +207,7 @@ class ResolvedMotion:
     unseen: float = 0.0
     waves: bool = False
     fronts: float = 0.0
+    step_tolerance: float = float("nan")
 
 
 @dataclass
@@ -219,7 +224,8 @@ class _Search:
         tolerance: of the paths, over the length.
         ladder: modes of every strain in each element, level by level; none where the user fixes them.
         levels: the motions so far.
-        step_tolerance: of a step, over the length; nan for steps of given size.
+        step_tolerance: of a step, over the length, of levels that are not foreseen to be the last; nan for steps of
+            given size.
         time_error: error of the steps on the last level that it was told of; nan where none was.
     """
 
@@ -483,7 +489,7 @@ def _with_fixed(search: _Search) -> Motion:
             space_error = max(left * path_distance(level.paths, witness.paths(history)), level.fronts)
     companions = [timed.companion]
     if witness.start.found:
-        companions.append(Companion(history, left))
+        companions.append(Companion(history, left, by_modes=True))
     return _judged(search, level, space_error + timed.error, companions)
 
 
@@ -520,14 +526,14 @@ def _with_tolerance(search: _Search) -> Motion:
                 break
             return not_started(model, simulator.start)
         without_start = 0
-        history = _on_level(search, simulator)
+        history, step_tolerance = _on_level(search, simulator, modes)
         if history.outcome is StepOutcome.INTERRUPTED and search.levels:
             raise KeyboardInterrupt
         if not history.completed:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen)
+        level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance)
         search.levels.append(_with_waves(search, level))
         hopeless = search.hopeless
         if hopeless is not None:
@@ -553,7 +559,8 @@ def _with_tolerance(search: _Search) -> Motion:
     finest = replace(search.last, history=timed.history)
     companions = [timed.companion]
     if len(search.levels) > 1 and search.last.distance > 0.0:
-        companions.append(Companion(search.levels[-2].history, search.left_over_distance(search.order)))
+        left = search.left_over_distance(search.order)
+        companions.append(Companion(search.levels[-2].history, left, by_modes=True))
     return _judged(search, finest, search.space_error + timed.error, companions)
 
 
@@ -595,10 +602,10 @@ def _asks_for_modes(search: _Search, timed: TimedHistory) -> bool:
 
 def _make_last(search: _Search, timed: TimedHistory) -> None:
     """Put a motion of exact steps in the place of the last level's."""
-    # The first motion that tells an error is TIGHTER times as exact as those of the levels.
+    # The level counts as one of the others, TIGHTER times as coarse: steps of half its own tell their error.
     search.step_tolerance = TIGHTER * timed.tolerance
     paths = search.last.simulator.paths(timed.history)
-    search.levels[-1] = replace(search.last, history=timed.history, paths=paths)
+    search.levels[-1] = replace(search.last, history=timed.history, paths=paths, step_tolerance=search.step_tolerance)
 
 
 def _is_erratic(search: _Search) -> bool:
@@ -638,7 +645,7 @@ def _given_up(search: _Search, why: str) -> Motion:
     """
     level = search.last
     if level.waves and np.isfinite(search.step_tolerance) and not is_struck(level.history):
-        timed = level.simulator.tightened(level.history, search.step_tolerance, lambda _: np.inf)
+        timed = level.simulator.tightened(level.history, level.step_tolerance, lambda _: np.inf)
         if timed.history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         if timed.history.completed:
@@ -655,17 +662,20 @@ def _ladder(scene: Scene) -> tuple[int, ...]:
     return verified_modes(scene, (FEW_MODES,))
 
 
-def _on_level(search: _Search, simulator: Simulator) -> History:
-    """The motion on one level: the first one settles the size of given steps, or how exact the steps are to be."""
+def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[History, float]:
+    """The motion on a level of so many modes, and the tolerance of its steps, over the length; nan of given ones.
+
+    The first level settles the size of given steps, or how exact the steps are to be.
+    """
     given = search.simulation.step is not None or search.simulation.integrator == "gauss"
     if not search.levels and given:
         timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.time_error = timed.error
-        return timed.history
+        return timed.history, float("nan")
     if not search.levels:
         search.step_tolerance = _first_step_tolerance(search)
     elif len(search.levels) == TOLD_AFTER and not given:
-        told = search.last.simulator.tightened(search.last.history, search.step_tolerance, lambda _: np.inf)
+        told = search.last.simulator.tightened(search.last.history, search.last.step_tolerance, lambda _: np.inf)
         if told.history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         search.time_error = told.error
@@ -673,9 +683,25 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
         if told.error > wanted:
             search.step_tolerance /= factor_for(told.error, wanted)
     if np.isfinite(search.step_tolerance):
-        return simulator.controlled(search.step_tolerance)
+        tolerance = search.step_tolerance / (TIGHTER if _seems_last(search, modes) else 1.0)
+        return simulator.controlled(tolerance), tolerance
     # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
-    return simulator.stepped(search.last.history.statistics.largest_step)
+    return simulator.stepped(search.last.history.statistics.largest_step), float("nan")
+
+
+def _seems_last(search: _Search, modes: int) -> bool:
+    """Whether so many modes are foreseen to be enough, by what the last levels lack.
+
+    The level is then computed with the more exact steps at once, which the last level before may tell the error of.
+    """
+    if not search.levels or search.scene.has_contact or is_struck(search.last.history):
+        return False
+    duration = search.simulation.duration
+    lacks = [max(lacking(level.history, duration), level.fronts) for level in search.levels[-2:]]
+    order = UNKNOWN_ORDER
+    if len(lacks) == 2 and 0.0 < lacks[1] < lacks[0]:
+        order = max(order, np.log(lacks[0] / lacks[1]) / np.log(search.last.modes / search.levels[-2].modes))
+    return bool(lacks[-1] * (search.last.modes / modes) ** order <= FORESEEN_SHARE * search.tolerance)
 
 
 def _first_step_tolerance(search: _Search) -> float:
@@ -701,7 +727,29 @@ def _timed(search: _Search) -> TimedHistory:
     level = search.last
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
-    return level.simulator.tightened(level.history, search.step_tolerance, partial(_allowed, search))
+    allowed = partial(_allowed, search)
+    if not level.step_tolerance < search.step_tolerance:
+        return level.simulator.tightened(level.history, level.step_tolerance, allowed)
+    timed = _told_by_level_before(search)
+    if timed.error <= allowed(timed.history):
+        return timed
+    coarse = level.simulator.controlled(search.step_tolerance)
+    return level.simulator.tightened(coarse, search.step_tolerance, allowed, fine=level.history)
+
+
+def _told_by_level_before(search: _Search) -> TimedHistory:
+    """The last level's motion with the error of its steps, by the level before, whose steps are less exact.
+
+    That one's modes err too: what both make of the paths together is taken for the steps'.
+    """
+    before, level = search.levels[-2:]
+    factor = before.step_tolerance / level.step_tolerance
+    # Where its steps are no shorter ones the two motions say nothing of their error.
+    are_shorter = level.history.statistics.steps > before.history.statistics.steps
+    left = left_by(factor, level.history, before.history) if are_shorter else float("inf")
+    distance = path_distance(before.paths, level.paths)
+    told = left * distance
+    return TimedHistory(level.history, told, level.step_tolerance, Companion(before.history, left), distance)
 
 
 def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
@@ -716,7 +764,7 @@ def _timed_on_last(search: _Search, unseen: float) -> TimedHistory | None:
     level = search.last
     search.levels[-1] = replace(level, distance=0.0, unseen=unseen)
     timed = _timed(search)
-    if timed.history is level.history or not timed.history.completed:
+    if not np.isfinite(search.step_tolerance) or not timed.history.completed:
         return timed
     left = lacking(timed.history, search.simulation.duration)
     are_exact = timed.error <= max(TIME_SHARE * search.tolerance, search.tolerance - unseen)

@@ -89,6 +89,12 @@ Until steps tell the waves along a rod, motions may be nearer to each other than
 LEAST_SLOPE_OF_ALIKE = 0.2
 """Least power for two motions whose impacts are alike: neither is off by an impact that the other has elsewhere."""
 
+SLOPE_OF_THREE_ALIKE = 0.5
+"""Power for three motions whose impacts are alike and whose distances fall as AS_STEPS; else it is LEAST_SLOPE."""
+
+AS_STEPS = (0.05, 0.2)
+"""Distance over the one of motions TIGHTER times as coarse, between which it falls as errors do; 0.16 by SLOPE."""
+
 LYING = ("lie_down", LAID_DOWN)
 """Kinds of events by which a rod touches at many sections: when these touch, impacts alone do not tell."""
 
@@ -161,11 +167,13 @@ class Companion:
         history: the motion.
         factor: error of the other motion over the distance of their paths.
         impacts: energy that its impacts took more than impacts of the other motion before both went on, J.
+        by_modes: whether it tells the error of the modes; else that of the steps.
     """
 
     history: History
     factor: float
     impacts: float = 0.0
+    by_modes: bool = False
 
 
 @dataclass(frozen=True)
@@ -297,13 +305,20 @@ class Simulator:
             return self._with_halved_steps(tolerance)
         return self.tightened(self.controlled(first), first, lambda _: tolerance)
 
-    def tightened(self, coarse: History, first: float, tolerance_of_paths: Callable[[History], float]) -> TimedHistory:
+    def tightened(
+        self,
+        coarse: History,
+        first: float,
+        tolerance_of_paths: Callable[[History], float],
+        fine: History | None = None,
+    ) -> TimedHistory:
         """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
 
         Args:
             coarse: the motion to begin with.
             first: tolerance of a step, over the length, that it was computed with.
             tolerance_of_paths: what its steps may make of the paths of a motion, over the length.
+            fine: the motion with steps TIGHTER times as exact, where it is known.
         """
         timed = TimedHistory(coarse, float("nan"), first)
         factor = TIGHTER
@@ -311,7 +326,8 @@ class Simulator:
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
-            finer = self.finer(timed, factor)
+            finer = self.finer(timed, factor, fine)
+            fine = None
             if finer.history.outcome not in (StepOutcome.COMPLETED, StepOutcome.INTERRUPTED) and timed.companion:
                 # The error of the last whole motion is known.
                 break
@@ -327,10 +343,16 @@ class Simulator:
             factor = TIGHTER if is_struck(timed.history) else factor_for(timed.error, tolerance)
         return timed
 
-    def finer(self, timed: TimedHistory, factor: float) -> TimedHistory:
-        """The motion with a tolerance of a step that is smaller by a factor, or more, and its error by the distance."""
+    def finer(self, timed: TimedHistory, factor: float, fine: History | None = None) -> TimedHistory:
+        """The motion with a tolerance of a step that is smaller by a factor, or more, and its error by the distance.
+
+        Args:
+            timed: the motion that is compared with it.
+            factor: between the tolerances.
+            fine: the motion with the smaller tolerance, where it is known.
+        """
         tolerance = timed.tolerance / factor
-        fine = self.controlled(tolerance)
+        fine = fine or self.controlled(tolerance)
         steps = fine.statistics.steps
         if fine.completed and steps <= timed.history.statistics.steps and not has_shorter_steps_at_events(fine):
             # Its steps are no shorter ones, whatever the tolerance: the two motions say nothing of their error.
@@ -344,10 +366,11 @@ class Simulator:
                 break
             fine, tolerance = finer, tolerance / TIGHTER
         distance = path_distance(self.paths(timed.history), self.paths(fine))
-        left = left_by(factor, fine, timed.history)
         alike = are_struck_alike(fine, timed.history)
         earlier = timed.companion
         three_alike = alike and earlier is not None and are_struck_alike(timed.history, earlier.history)
+        fallen = distance / timed.distance if three_alike and timed.distance > 0.0 else float("nan")
+        left = left_by(factor, fine, timed.history, fallen)
         if earlier is not None and is_struck(fine) and not three_alike and distance > 0.0:
             # Which section strikes next may be decided by chance: two motions may agree that both err as others do.
             left = max(left, timed.distance / distance)
@@ -473,18 +496,22 @@ def are_struck_alike(first: History, second: History) -> bool:
     )
 
 
-def left_by(factor: float, finer: History, coarser: History | None = None) -> float:
+def left_by(factor: float, finer: History, coarser: History | None = None, fallen: float = float("nan")) -> float:
     """Error of the finer of two motions over their distance, from above, by the factor of their steps' tolerances.
 
     Args:
         factor: the larger tolerance of a step over the smaller one.
         finer: the motion with the smaller one.
         coarser: the other motion; None where its impacts count as unlike.
+        fallen: their distance over that of the coarser one from a third, TIGHTER times as coarse, where the impacts of
+            all three are alike; else nan.
     """
     slope = LEAST_SLOPE
     if is_struck(finer) or (coarser is not None and is_struck(coarser)):
         alike = coarser is not None and are_struck_alike(finer, coarser)
         slope = LEAST_SLOPE_OF_ALIKE if alike else LEAST_SLOPE_AFTER_IMPACTS
+        if alike and np.isfinite(fallen):
+            slope = SLOPE_OF_THREE_ALIKE if AS_STEPS[0] <= fallen <= AS_STEPS[1] else LEAST_SLOPE
     return (1.0 + FEW_STEPS / max(finer.statistics.steps, 1)) / float(factor**slope - 1.0)
 
 
@@ -698,8 +725,8 @@ def motion_of(
         x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
-    strands = [_strand(history, 0.0, 0.0)]
-    strands += [_strand(one.history, one.factor, one.impacts + one.history.lost - history.lost) for one in others]
+    strands = [_strand(Companion(history, 0.0))]
+    strands += [_strand(replace(one, impacts=one.impacts + one.history.lost - history.lost)) for one in others]
     spread = max((abs(strand.impacts) for strand in strands[1:]), default=float("nan"))
     return Motion(
         model=model,
@@ -745,10 +772,10 @@ def _nothing() -> Account:
     return Energies(none, none, none, none, none, none, none), None
 
 
-def _strand(history: History, factor: float, impacts: float) -> Strand:
-    """A motion as far as it has come."""
-    method = history.method.stiffly_accurate
-    return Strand(history.model.discretisation, history.settings, not method, factor, impacts, history.resume)
+def _strand(one: Companion) -> Strand:
+    """A motion as far as it has come; its impacts are counted up to there."""
+    told, stepped = one.history, (one.history.settings, not one.history.method.stiffly_accurate)
+    return Strand(told.model.discretisation, *stepped, one.factor, one.impacts, one.by_modes, told.resume)
 
 
 def _tips(history: History, time: float) -> dict[str, list[float]]:

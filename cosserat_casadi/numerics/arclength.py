@@ -104,32 +104,6 @@ class ArcPoint:
 
 
 @dataclass(frozen=True)
-class Hyperplane:
-    """A hyperplane normal·y = level that cuts the curve at the point looked for.
-
-    Attributes:
-        normal: shape (n + 1,).
-        level: the right side.
-    """
-
-    normal: FloatArray
-    level: float
-
-
-@dataclass(frozen=True)
-class CorrectedPoint:
-    """A point of the curve that Newton's method has led to.
-
-    Attributes:
-        y: unknowns and load factor, shape (n + 1,).
-        steps: steps that it took.
-    """
-
-    y: FloatArray
-    steps: int
-
-
-@dataclass(frozen=True)
 class Curve:
     """A path with the monitor that is evaluated along it.
 
@@ -178,24 +152,30 @@ class Curve:
         spectrum = self.monitor.values(y, jacobian, bordered)
         return ArcPoint(y, tangent, length, spectrum)
 
-    def correct(self, start: FloatArray, plane: Hyperplane) -> CorrectedPoint | None:
-        """Find where the curve meets a plane near a start.
+    def correct(
+        self, start: FloatArray, normal: FloatArray, level: float | None = None
+    ) -> tuple[FloatArray, int] | None:
+        """Find where the curve meets a hyperplane normal·y = level near a start.
 
         Steps of minimum norm: along a direction in which the equations are neutral nothing moves.
 
         Args:
             start: shape (n + 1,).
-            plane: where to meet it.
+            normal: of the plane, shape (n + 1,).
+            level: by default that of the plane through the start.
 
         Returns:
-            the point; None where Newton's method does not converge.
+            unknowns and load factor, shape (n + 1,), and the steps that it took; None where Newton's method does not
+            converge.
         """
         limits = self.settings
+        if level is None:
+            level = float(normal @ start)
         y = start
         norm = np.inf
         norm_before = np.inf
         for steps in range(limits.reject_above + 1):
-            off_plane = plane.normal @ y - plane.level
+            off_plane = normal @ y - level
             off_curve = self.residual(y)
             norm = relative_norm(np.append(off_curve, off_plane), y)
             if not np.isfinite(norm):
@@ -204,8 +184,8 @@ class Curve:
             # Below the tolerance a step that no longer halves the residual is at rounding.
             helps_no_more = within_tolerance and norm > STILL_HELPS * norm_before
             if norm <= limits.aim or helps_no_more:
-                return CorrectedPoint(y, steps)
-            bordered = np.vstack([self.derivative(y), plane.normal])
+                return y, steps
+            bordered = np.vstack([self.derivative(y), normal])
             if self.rows is not None:
                 off_curve = self.rows * off_curve
             step = shortest_step(bordered, np.append(off_curve, off_plane), self.singular)
@@ -215,15 +195,15 @@ class Curve:
             norm_before = norm
         if norm > limits.tolerance:
             return None
-        return CorrectedPoint(y, limits.reject_above)
+        return y, limits.reject_above
 
     def at(self, start: FloatArray, load_factor: float) -> FloatArray | None:
         """Find the unknowns at a load factor near a start, both of shape (n,); None where no step leads there."""
         across_loads = np.append(np.zeros_like(start), 1.0)
-        corrected = self.correct(np.append(start, load_factor), Hyperplane(across_loads, load_factor))
+        corrected = self.correct(np.append(start, load_factor), across_loads)
         if corrected is None:
             return None
-        return corrected.y[:-1]
+        return corrected[0][:-1]
 
     def bounded(self, current: ArcPoint, step: float) -> float:
         """A step, cut to what the settings allow at a point."""
@@ -236,21 +216,22 @@ class Curve:
     def advance(self, current: ArcPoint, step: float) -> tuple[ArcPoint, int] | None:
         """The point one step on, and the steps of its correction; None where it may lie on another branch."""
         predicted = current.y + step * current.tangent
-        corrected = self.correct(predicted, plane_through(predicted, current.tangent))
+        corrected = self.correct(predicted, current.tangent)
         if corrected is None:
             return None
-        distance = np.linalg.norm(corrected.y - predicted)
+        y, steps = corrected
+        distance = np.linalg.norm(y - predicted)
         # So far from the prediction the corrected point may lie on another branch.
         if distance > self.settings.max_distance * step:
             return None
-        point = self.point(corrected.y, current.tangent, current.length + step)
+        point = self.point(y, current.tangent, current.length + step)
         if point is None:
             return None
         cosine = point.tangent @ current.tangent
         # Round a corner events would be passed unseen.
         if cosine < self.settings.min_cosine:
             return None
-        return point, corrected.steps
+        return point, steps
 
     def round_corner(self, current: ArcPoint) -> ArcPoint | None:
         """The point just behind a corner next to a point; None where there is no corner.
@@ -261,22 +242,17 @@ class Curve:
         for number in self.pairs:
             across = derivative[number] / np.linalg.norm(derivative[number])
             predicted = current.y + BEHIND * across
-            corrected = self.correct(predicted, plane_through(predicted, across))
+            corrected = self.correct(predicted, across)
             if corrected is None:
                 continue
-            distance = float(np.linalg.norm(corrected.y - current.y))
-            point = self.point(corrected.y, across, current.length + distance)
-            after = self.derivative(corrected.y)[number]
+            y, _ = corrected
+            distance = float(np.linalg.norm(y - current.y))
+            point = self.point(y, across, current.length + distance)
+            after = self.derivative(y)[number]
             turned = abs(after @ across) < self.settings.min_cosine * np.linalg.norm(after)
             if point is not None and turned and distance < self.settings.longest:
                 return point
         return None
-
-
-def plane_through(y: FloatArray, normal: FloatArray) -> Hyperplane:
-    """The hyperplane through a point across a vector, both of shape (n + 1,)."""
-    level = normal @ y
-    return Hyperplane(normal, float(level))
 
 
 def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float = SINGULAR) -> FloatArray | None:

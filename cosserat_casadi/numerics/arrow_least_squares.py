@@ -14,10 +14,10 @@ kink (numerics/kinks.py). Where none along it lessens the sum, and both sides ri
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from enum import Enum
 from functools import cached_property
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -92,8 +92,8 @@ class BlockResiduals(Protocol[StateType]):
     def at(self, shared: FloatArray, own: FloatArray, near: StateType) -> StateType | None:
         """The state at shared unknowns, (n,), and unknowns of the blocks, (blocks, k); None where evaluation fails."""
 
-    def jacobians(self, state: StateType) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the residual with the shared unknowns, (m, n), and with the row's block's, (m, k)."""
+    def jacobian(self, state: StateType) -> FloatArray:
+        """Derivatives of each residual with the shared unknowns, then with those of its block, shape (m, n + k)."""
 
 
 @dataclass(frozen=True)
@@ -115,12 +115,17 @@ class Limits:
     weight: FloatArray
     ratios: npt.NDArray[np.bool_]
 
+    def with_blocks(self, own: Limits, blocks: int) -> Limits:
+        """Limits of shared unknowns, followed by limits of the unknowns of each block."""
+        pairs = zip(astuple(self), astuple(own), strict=True)
+        return Limits(*(np.concatenate([of_shared, np.tile(of_own, blocks)]) for of_shared, of_own in pairs))
+
     def clipped(self, values: FloatArray) -> FloatArray:
         """Values brought into their range."""
         return np.clip(values, self.lower, self.upper)
 
     def within_step(self, values: FloatArray) -> Limits:
-        """Bounds and priors, narrowed to one step from these values, shape (n,) or (blocks, n)."""
+        """Bounds and priors, narrowed to one step from these values."""
         lower = np.where(self.ratios, values / MOST_RATIO, -np.inf)
         upper = np.where(self.ratios, values * MOST_RATIO, np.inf)
         return replace(self, lower=np.maximum(lower, self.lower), upper=np.minimum(upper, self.upper))
@@ -176,181 +181,160 @@ class Fit(Generic[StateType]):
 class ArrowStep:
     """A weighted least-squares problem, linear in the changes of the unknowns.
 
+    All N = n + blocks · k unknowns stand in one row: shared unknowns, then those of one block after the other.
+
     Attributes:
         residual: shape (m,).
-        by_shared: shape (m, n).
-        by_own: shape (m, k).
-        offsets: shape (blocks + 1,).
-        shared_prior: weights of the priors of the shared unknowns and their residuals, each of shape (n,).
-        own_prior: weights of the priors of the unknowns of the blocks, shape (k,), and residuals, shape (blocks, k).
-        shared_held: shared unknowns that must not change, shape (n,).
-        own_held: own unknowns that must not change, shape (blocks, k).
+        derivatives: of each row with the shared unknowns, then with those of its block, shape (m, n + k).
+        offsets: where the rows of each block begin, and at the end their number, shape (blocks + 1,).
+        shared: number n of shared unknowns.
+        weights: of the priors, shape (N,).
+        prior_residual: residuals of the priors, shape (N,).
+        held: unknowns that must not change, shape (N,).
     """
 
     residual: FloatArray
-    by_shared: FloatArray
-    by_own: FloatArray
+    derivatives: FloatArray
     offsets: npt.NDArray[np.int64]
-    shared_prior: tuple[FloatArray, FloatArray]
-    own_prior: tuple[FloatArray, FloatArray]
-    shared_held: npt.NDArray[np.bool_]
-    own_held: npt.NDArray[np.bool_]
+    shared: int
+    weights: FloatArray
+    prior_residual: FloatArray
+    held: npt.NDArray[np.bool_]
 
     @property
-    def sizes(self) -> tuple[int, int]:
-        """Number of shared unknowns, and number of unknowns of each block."""
-        return self.by_shared.shape[1], self.by_own.shape[1]
+    def own(self) -> int:
+        """Number k of unknowns of each block."""
+        return int(self.derivatives.shape[1]) - self.shared
+
+    def of_blocks(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Values of the unknowns of each block, shape (blocks, k), from values of all unknowns, shape (N,)."""
+        return values[self.shared :].reshape(len(self.offsets) - 1, self.own)
+
+    @property
+    def column_sizes(self) -> FloatArray:
+        """Norms of the columns with their priors, of unknowns of blocks the mean over all blocks, shape (N,)."""
+        squares = np.sum(self.derivatives**2, axis=0)
+        blocks = len(self.offsets) - 1
+        of_blocks = np.tile(squares[self.shared :] / blocks, blocks)
+        return np.asarray(np.sqrt(np.concatenate([squares[: self.shared], of_blocks]) + self.weights**2))
 
     @cached_property
     def _triangles(self) -> list[FloatArray]:
         """Triangle of each block, of [its unknowns, shared unknowns, residual], which replaces its rows."""
-        n, k = self.sizes
-        by_shared = np.where(self.shared_held, 0.0, self.by_shared)
+        n, k = self.shared, self.own
+        by_shared = np.where(self.held[:n], 0.0, self.derivatives[:, :n])
+        rows = np.hstack([self.derivatives[:, n:], by_shared, self.residual[:, None]])
         if not k:
-            return [_triangle(np.hstack([by_shared, self.residual[:, None]]))]
+            return [_triangle(rows)]
         triangles = []
-        weights, prior_residuals = self.own_prior
-        for block, held in enumerate(self.own_held):
-            rows = slice(self.offsets[block], self.offsets[block + 1])
-            own = np.where(held, 0.0, self.by_own[rows])
-            data = np.hstack([own, by_shared[rows], self.residual[rows, None]])
+        priors = zip(self.of_blocks(self.weights), self.of_blocks(self.prior_residual), strict=True)
+        for block, (weights, prior_residual) in enumerate(priors):
+            data = rows[self.offsets[block] : self.offsets[block + 1]]
+            held = self.of_blocks(self.held)[block]
+            data[:, :k][:, held] = 0.0
             prior = np.zeros((k, k + n + 1))
             prior[:, :k] = np.diag(np.where(held, 0.0, weights))
-            prior[:, -1] = prior_residuals[block]
+            prior[:, -1] = prior_residual
             triangles.append(_triangle(np.vstack([data, prior])))
         return triangles
 
-    def eliminated(self, own_damping: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
+    def eliminated(self, damping: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
         """The remaining rows of [shared, residual], and for each block the rows from which its unknowns follow.
 
         Args:
-            own_damping: least rows of the unknowns of the blocks, shape (k,); zero for none.
+            damping: rows that are added to the unknowns, of which those of the blocks count here, shape (N,).
         """
-        n, k = self.sizes
+        n, k = self.shared, self.own
         if not k:
             return np.vstack(self._triangles), []
         left = []
         eliminations = []
-        for triangle in self._triangles:
+        for triangle, of_block in zip(self._triangles, self.of_blocks(damping), strict=True):
             # What no row sees, or a bound holds, would take a row of the others with it: it gets one of its own.
             unseen = ~np.any(triangle[:, :k], axis=0)
-            damping = np.zeros((k, k + n + 1))
-            damping[:, :k] = np.diag(np.where(unseen, 1.0, own_damping))
-            whole = _triangle(np.vstack([triangle, damping]))
+            added = np.zeros((k, k + n + 1))
+            added[:, :k] = np.diag(np.where(unseen, 1.0, of_block))
+            whole = _triangle(np.vstack([triangle, added]))
             eliminations.append(whole[:k])
             left.append(whole[k:, k:])
         return np.vstack(left), eliminations
 
-    def step(self, shared_damping: FloatArray, own_damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The change of shared unknowns, (n,), and of the blocks' unknowns, (blocks, k), with the least damped sum.
+    def step(self, damping: FloatArray) -> FloatArray:
+        """The change of the unknowns with the least damped sum, shape (N,).
 
         Args:
-            shared_damping: rows that are added to the shared unknowns, shape (n,), positive.
-            own_damping: rows that are added to the unknowns of each block, shape (k,), positive.
+            damping: rows that are added to the unknowns, shape (N,), positive.
         """
-        n, k = self.sizes
-        left, eliminations = self.eliminated(own_damping)
-        weights, prior_residuals = self.shared_prior
-        free_weights = np.where(self.shared_held, 0.0, weights)
-        rows = np.vstack([left[:, :n], np.diag(free_weights), np.diag(shared_damping)])
-        right = np.concatenate([left[:, n], prior_residuals, np.zeros(n)])
+        n, k = self.shared, self.own
+        left, eliminations = self.eliminated(damping)
+        free_weights = np.where(self.held, 0.0, self.weights)[:n]
+        rows = np.vstack([left[:, :n], np.diag(free_weights), np.diag(damping[:n])])
+        right = np.concatenate([left[:, n], self.prior_residual[:n], np.zeros(n)])
         # Unknowns differ by many orders of magnitude: unscaled, the small columns would pass for rounding.
         sizes = np.linalg.norm(rows, axis=0)
-        shared = -np.linalg.lstsq(rows / sizes, right, rcond=None)[0] / sizes
-        own = np.zeros(self.own_held.shape)
-        for block, elimination in enumerate(eliminations):
-            known = elimination[:, k : k + n] @ shared + elimination[:, -1]
-            own[block] = -np.linalg.solve(elimination[:, :k], known)
-        return shared, own
+        changes = [-np.linalg.lstsq(rows / sizes, right, rcond=None)[0] / sizes]
+        for elimination in eliminations:
+            known = elimination[:, k : k + n] @ changes[0] + elimination[:, -1]
+            changes.append(-np.linalg.solve(elimination[:, :k], known))
+        return np.concatenate(changes)
 
-    def gradient(self, shared: FloatArray, own: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gradient of half the sum of squares, where the unknowns have changed.
+    def gradient(self, changes: FloatArray) -> FloatArray:
+        """Gradient of half the sum of squares where the unknowns have changed by these amounts, shape (N,)."""
+        by_row = (self.residual + self._change(changes))[:, None] * self.derivatives
+        gradient = self.weights * (self.prior_residual + self.weights * changes)
+        gradient[: self.shared] += by_row[:, : self.shared].sum(axis=0)
+        if self.own:
+            gradient[self.shared :] += np.add.reduceat(by_row[:, self.shared :], self.offsets[:-1], axis=0).ravel()
+        return gradient
 
-        Args:
-            shared: changes of the shared unknowns, shape (n,).
-            own: changes of the unknowns of the blocks, shape (blocks, k).
-
-        Returns:
-            with the shared unknowns, shape (n,), and with the unknowns of the blocks, shape (blocks, k).
-        """
-        residual = self.residual + self._change(shared, own)
-        shared_weights, shared_residual = self.shared_prior
-        own_weights, own_residual = self.own_prior
-        by_shared = self.by_shared.T @ residual + shared_weights * (shared_residual + shared_weights * shared)
-        by_own = np.zeros_like(own)
-        if own.size:
-            by_own = np.add.reduceat(residual[:, None] * self.by_own, self.offsets[:-1], axis=0)
-        return by_shared, by_own + own_weights * (own_residual + own_weights * own)
-
-    def with_changes(
-        self,
-        shared: FloatArray,
-        own: FloatArray,
-        shared_held: npt.NDArray[np.bool_],
-        own_held: npt.NDArray[np.bool_],
-    ) -> ArrowStep:
-        """The problem after some unknowns have changed by these amounts, and are held there.
+    def with_changes(self, changes: FloatArray, held: npt.NDArray[np.bool_]) -> ArrowStep:
+        """The problem after some unknowns have changed, and are held there.
 
         Args:
-            shared: changes of the shared unknowns, shape (n,); zero for free unknowns.
-            own: changes of the unknowns of the blocks, shape (blocks, k); zero for free unknowns.
-            shared_held: shared unknowns that are held, shape (n,).
-            own_held: own unknowns that are held, shape (blocks, k).
+            changes: of the unknowns, shape (N,); zero for free unknowns.
+            held: unknowns that are held, shape (N,).
         """
         return replace(
             self,
-            residual=self.residual + self._change(shared, own),
-            shared_prior=(self.shared_prior[0], self.shared_prior[1] + self.shared_prior[0] * shared),
-            own_prior=(self.own_prior[0], self.own_prior[1] + self.own_prior[0] * own),
-            shared_held=shared_held,
-            own_held=own_held,
+            residual=self.residual + self._change(changes),
+            prior_residual=self.prior_residual + self.weights * changes,
+            held=held,
         )
 
-    def along_kinks(self, other: ArrowStep, changes: Pair, scales: Pair, blocks: npt.NDArray[np.bool_]) -> ArrowStep:
+    def along_kinks(
+        self, other: ArrowStep, changes: FloatArray, scales: FloatArray, blocks: npt.NDArray[np.bool_]
+    ) -> ArrowStep:
         """The problem with a row for each kink that parts it from another one, which keeps steps on the kink.
 
         Args:
             other: the problem on the other side of the kinks.
-            changes: changes of the unknowns, from here to there.
-            scales: sizes of the derivatives by the unknowns, shapes (n,) and (k,).
+            changes: changes of the unknowns, from here to there, shape (N,).
+            scales: sizes of the derivatives by the unknowns, shape (N,).
             blocks: whether a block has a kink in between, shape (blocks,).
         """
-        n, k = self.sizes
         rows = []
+        sizes = scales[: self.derivatives.shape[1]]
         for block, is_kinked in enumerate(blocks):
             span = slice(self.offsets[block], self.offsets[block + 1])
-            here, there = (
-                np.hstack([own.residual[span, None], own.by_shared[span], own.by_own[span]]) for own in (self, other)
-            )
-            rows.append(here)
+            here, there = (np.column_stack([side.residual[span], side.derivatives[span]]) for side in (self, other))
             if is_kinked:
-                change = np.concatenate([changes[0], changes[1][block, :k]])
-                rows[-1] = np.vstack([here, kink_row(here, there, change, np.concatenate(scales))])
+                change = np.concatenate([changes[: self.shared], self.of_blocks(changes)[block]])
+                here = np.vstack([here, kink_row(here, there, change, sizes)])
+            rows.append(here)
         whole = np.vstack(rows)
         offsets = np.cumsum([0, *map(len, rows)])
-        by_shared, by_own = np.split(whole[:, 1:], [n], axis=1)
-        return replace(self, residual=whole[:, 0], by_shared=by_shared, by_own=by_own, offsets=offsets)
+        return replace(self, residual=whole[:, 0], derivatives=whole[:, 1:], offsets=offsets)
 
-    def decrease(self, shared: FloatArray, own: FloatArray) -> float:
+    def decrease(self, changes: FloatArray) -> float:
         """How much half the sum of squares falls, by the linear model, where the unknowns change."""
-        falls = _decrease(self.residual, self._change(shared, own))
-        falls += _decrease(self.shared_prior[1], self.shared_prior[0] * shared)
-        return falls + _decrease(self.own_prior[1].ravel(), (self.own_prior[0] * own).ravel())
+        of_data = _decrease(self.residual, self._change(changes))
+        return of_data + _decrease(self.prior_residual, self.weights * changes)
 
-    def _change(self, shared: FloatArray, own: FloatArray) -> FloatArray:
+    def _change(self, changes: FloatArray) -> FloatArray:
         """Change of the residual by the linear model, shape (m,)."""
-        return np.asarray(self.by_shared @ shared + np.sum(self.by_own * self._spread(own), axis=1))
-
-    def _spread(self, own: FloatArray) -> FloatArray:
-        """Own unknowns of each row's block, shape (m, k)."""
-        return np.repeat(own, np.diff(self.offsets), axis=0)
-
-
-def _without(held: Held, which: int, place: tuple[np.signedinteger, ...]) -> Held:
-    """Held unknowns, less one."""
-    fewer = (held[0].copy(), held[1].copy())
-    fewer[which][place] = False
-    return fewer
+        n = self.shared
+        of_rows = np.repeat(self.of_blocks(changes), np.diff(self.offsets), axis=0)
+        return np.asarray(self.derivatives[:, :n] @ changes[:n] + np.sum(self.derivatives[:, n:] * of_rows, axis=1))
 
 
 def _decrease(residual: FloatArray, change: FloatArray) -> float:
@@ -367,13 +351,6 @@ def _triangle(rows: FloatArray) -> FloatArray:
     return triangle
 
 
-Held = tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]
-"""Whether shared unknowns are held, shape (n,), and whether unknowns of the blocks are."""
-
-Pair = tuple[FloatArray, FloatArray]
-"""A number for each shared unknown, shape (n,), and for each unknown of the blocks, shape (blocks, k)."""
-
-
 @dataclass
 class BoundedStep:
     """The step within bounds that lessens a damped linear least-squares problem most.
@@ -385,90 +362,70 @@ class BoundedStep:
 
     Attributes:
         arrow: the problem in the changes of the unknowns.
-        values: the unknowns now.
-        boxes: limits after the step.
-        damping: rows that are added to the unknowns.
+        values: the unknowns now, shape (N,).
+        box: limits after the step.
+        damping: rows that are added to the unknowns, shape (N,).
     """
 
     arrow: ArrowStep
-    values: Pair
-    boxes: tuple[Limits, Limits]
-    damping: Pair
+    values: FloatArray
+    box: Limits
+    damping: FloatArray
 
-    def run(self) -> Pair:
-        """The unknowns after the step."""
+    def run(self) -> FloatArray:
+        """The unknowns after the step, shape (N,)."""
         present = self.values
-        held = (self.arrow.shared_held, self.arrow.own_held)
+        held = self.arrow.held
         for _ in range(MOST_SETS):
             wanted = self._free_step(present, held)
-            clipped = (self.boxes[0].clipped(wanted[0]), self.boxes[1].clipped(wanted[1]))
-            cut = (clipped[0] != wanted[0], clipped[1] != wanted[1])
-            if not np.any(cut[0]) and not np.any(cut[1]):
+            clipped = self.box.clipped(wanted)
+            cut = clipped != wanted
+            if not np.any(cut):
                 present = wanted
                 pulled = self._pulled_back(present, held)
                 if pulled is None:
                     break
-                held = _without(held, *pulled)
+                held = held & (np.arange(len(held)) != pulled)
                 continue
             if self._sum(clipped) < self._sum(present):
                 present = clipped
             else:
                 # Only as far as the first end on the way, up to which the sum falls.
                 present, cut = self._to_first_end(present, wanted)
-            held = (held[0] | cut[0], held[1] | cut[1])
+            held = held | cut
         return present
 
-    def _free_step(self, present: Pair, held: Held) -> Pair:
+    def _free_step(self, present: FloatArray, held: npt.NDArray[np.bool_]) -> FloatArray:
         """Unknowns where the sum is least if some of them stay where they are, whatever the bounds of the rest."""
-        changes = self._changes(present)
-        given = (np.where(held[0], changes[0], 0.0), np.where(held[1], changes[1], 0.0))
-        steps = self.arrow.with_changes(*given, *held).step(*self.damping)
-        return (
-            np.where(held[0], present[0], self.values[0] + steps[0]),
-            np.where(held[1], present[1], self.values[1] + steps[1]),
-        )
+        given = np.where(held, present - self.values, 0.0)
+        step = self.arrow.with_changes(given, held).step(self.damping)
+        return np.where(held, present, self.values + step)
 
-    def _pulled_back(self, present: Pair, held: Held) -> tuple[int, tuple[np.signedinteger, ...]] | None:
+    def _pulled_back(self, present: FloatArray, held: npt.NDArray[np.bool_]) -> int | None:
         """Place of the held unknown that the sum pulls back from its end most; None where the sum pulls none back."""
-        changes = self._changes(present)
-        gradients = self.arrow.gradient(*changes)
-        strongest = 0.0
-        place = None
-        for which in range(2):
-            damping = self.damping[which]
-            gradient = gradients[which] + damping**2 * changes[which]
-            back = held[which] & ~self.boxes[which].held(present[which], gradient)
-            pull = np.where(back, np.abs(gradient) / damping, 0.0)
-            if pull.size and pull.max() > strongest:
-                strongest = float(pull.max())
-                place = (which, np.unravel_index(int(np.argmax(pull)), pull.shape))
-        return place
+        changes = present - self.values
+        gradient = self.arrow.gradient(changes) + self.damping**2 * changes
+        back = held & ~self.box.held(present, gradient)
+        pull = np.where(back, np.abs(gradient) / self.damping, 0.0)
+        strongest = int(np.argmax(pull))
+        return strongest if pull[strongest] > 0.0 else None
 
-    def _to_first_end(self, present: Pair, wanted: Pair) -> tuple[Pair, Held]:
+    def _to_first_end(self, present: FloatArray, wanted: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
         """Unknowns on the way to wanted ones where the first unknown meets its end, and which unknowns meet theirs."""
-        shares = []
-        for box, start, end in zip(self.boxes, present, wanted, strict=True):
-            ends = np.where(end > start, box.upper, box.lower)
-            beyond = (end > box.upper) | (end < box.lower)
-            share = np.full(start.shape, np.inf)
-            np.divide(ends - start, end - start, out=share, where=beyond)
-            shares.append(share)
-        first = min(float(share.min(initial=np.inf)) for share in shares)
-        met = (shares[0] <= first, shares[1] <= first)
-        reached = tuple(
-            box.clipped(np.where(at_end, end, start + first * (end - start)))
-            for box, start, end, at_end in zip(self.boxes, present, wanted, met, strict=True)
-        )
-        return (reached[0], reached[1]), met
+        ends = np.where(wanted > present, self.box.upper, self.box.lower)
+        beyond = (wanted > self.box.upper) | (wanted < self.box.lower)
+        shares = np.full(present.shape, np.inf)
+        np.divide(ends - present, wanted - present, out=shares, where=beyond)
+        first = float(shares.min(initial=np.inf))
+        met = shares <= first
+        reached = np.where(met, wanted, present + first * (wanted - present))
+        return self.box.clipped(reached), met
 
-    def _sum(self, values: Pair) -> float:
+    def _sum(self, values: FloatArray) -> float:
         """Change of half the damped sum of squares."""
-        changes = self._changes(values)
-        damped = sum(np.sum((rows * change) ** 2) for rows, change in zip(self.damping, changes, strict=True))
-        return float(damped) / 2 - self.arrow.decrease(*changes)
-
-    def _changes(self, values: Pair) -> Pair:
-        return values[0] - self.values[0], values[1] - self.values[1]
+        changes = values - self.values
+        damped = self.damping * changes
+        return float(damped @ damped) / 2 - self.arrow.decrease(changes)
 
 
 @dataclass
@@ -476,38 +433,33 @@ class _Search(Generic[StateType]):
     """State of the search, which changes from one step to the next.
 
     Attributes:
-        shared: shape (n,).
-        own: unknowns of the blocks, shape (blocks, k).
+        values: the unknowns, shape (N,).
         state: what the problem knows there.
         cost: half the sum of all that residuals and priors cost.
+        sizes: largest norms of the columns so far, shape (N,).
         damping: relative to the squares of the columns.
         growth: factor on the damping where the next step fails.
         along: damping of steps along kinks.
         beyond: the state on the other side of a kink that steps from here have met; None where they met none.
-        shared_scale: largest norms of the columns so far, shape (n,).
-        own_scale: largest norms of the columns of the blocks' unknowns so far, shape (k,).
     """
 
-    shared: FloatArray
-    own: FloatArray
+    values: FloatArray
     state: StateType
     cost: float
-    shared_scale: FloatArray
-    own_scale: FloatArray
+    sizes: FloatArray
     damping: float = FIRST_DAMPING
     growth: float = 2.0
     along: float = FIRST_DAMPING
     beyond: StateType | None = None
 
     @property
-    def scales(self) -> Pair:
-        """Scales of the unknowns; what no datum sees has the scale 1."""
-        shared = np.where(self.shared_scale > 0, self.shared_scale, 1.0)
-        return shared, np.where(self.own_scale > 0, self.own_scale, 1.0)
+    def scales(self) -> FloatArray:
+        """Scales of the unknowns, shape (N,); what no datum sees has the scale 1."""
+        return np.where(self.sizes > 0, self.sizes, 1.0)
 
-    def take(self, shared: FloatArray, own: FloatArray, state: StateType, cost: float) -> None:
+    def take(self, values: FloatArray, state: StateType, cost: float) -> None:
         """Go on from another state."""
-        self.shared, self.own, self.state, self.cost = shared, own, state, cost
+        self.values, self.state, self.cost = values, state, cost
         self.growth = 2.0
 
 
@@ -544,74 +496,70 @@ class ArrowFit(Generic[StateType]):
             state: what the problem knows there.
             progress: told the number of steps and the present cost.
         """
-        n, k = len(shared), own.shape[1]
-        search = _Search(shared, own, state, self._cost(shared, own, state), np.zeros(n), np.zeros(k))
+        values = np.concatenate([shared, own.ravel()])
+        search = _Search(values, state, self._cost(values, state), np.zeros(len(values)))
         outcome = FitOutcome.MAX_ITERATIONS
         tried = 0
-        arrow = self.linear(search.shared, search.own, search.state)
-        self._rescale(search, arrow)
+        arrow = self._linearised(search)
         while tried < MOST_ITERATIONS:
             if progress is not None:
                 progress(tried, search.cost)
             tried += 1
             ended = self._try_step(search, arrow)
             if ended is None:
-                arrow = self.linear(search.shared, search.own, search.state)
-                self._rescale(search, arrow)
+                arrow = self._linearised(search)
             elif isinstance(ended, FitOutcome):
                 outcome = ended
                 break
-        return Fit(search.shared, search.own, search.state, search.cost, tried, outcome, search.beyond)
+        return Fit(*self._parted(search.values), search.state, search.cost, tried, outcome, search.beyond)
 
     def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> ArrowStep:
         """The problem in the changes of the unknowns, its rows weighted by the loss."""
-        by_shared, by_own = self.problem.jacobians(state)
         roots = np.sqrt(self.loss.weights(state.residual))
-        residual = roots * state.residual
-        by_shared = roots[:, None] * by_shared
-        by_own = roots[:, None] * by_own
-        shared_prior = (self.shared.weight, self.shared.residual(shared))
-        own_prior = (self.own.weight, self.own.residual(own))
+        values = np.concatenate([shared, own.ravel()])
         free = ArrowStep(
-            residual,
-            by_shared,
-            by_own,
-            self.problem.offsets,
-            shared_prior,
-            own_prior,
-            np.zeros(shared.shape, dtype=bool),
-            np.zeros(own.shape, dtype=bool),
+            residual=roots * state.residual,
+            derivatives=roots[:, None] * self.problem.jacobian(state),
+            offsets=self.problem.offsets,
+            shared=len(shared),
+            weights=self._limits.weight,
+            prior_residual=self._limits.residual(values),
+            held=np.zeros(values.shape, dtype=bool),
         )
-        shared_gradient, own_gradient = free.gradient(np.zeros_like(shared), np.zeros_like(own))
-        shared_held = self.shared.held(shared, shared_gradient)
-        own_held = self.own.held(own, own_gradient)
-        return replace(free, shared_held=shared_held, own_held=own_held)
+        return replace(free, held=self._limits.held(values, free.gradient(np.zeros_like(values))))
 
-    def _cost(self, shared: FloatArray, own: FloatArray, state: StateType) -> float:
-        priors = np.concatenate([self.shared.residual(shared), self.own.residual(own).ravel()])
+    @cached_property
+    def _limits(self) -> Limits:
+        """Limits of all unknowns, each entry of shape (N,)."""
+        return self.shared.with_blocks(self.own, len(self.problem.offsets) - 1)
+
+    def _parted(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Shared unknowns, shape (n,), and unknowns of the blocks, shape (blocks, k)."""
+        n = len(self.shared.lower)
+        return values[:n], values[n:].reshape(len(self.problem.offsets) - 1, len(self.own.lower))
+
+    def _cost(self, values: FloatArray, state: StateType) -> float:
+        priors = self._limits.residual(values)
         return self.loss.cost(state.residual) + float(priors @ priors) / 2
 
-    def _rescale(self, search: _Search[StateType], arrow: ArrowStep) -> None:
-        """Let the scales of the unknowns grow with the columns; what no datum sees has the scale 1."""
-        shared = np.sqrt(np.sum(arrow.by_shared**2, axis=0) + arrow.shared_prior[0] ** 2)
-        search.shared_scale = np.maximum(search.shared_scale, shared)
-        if search.own.size:
-            blocks = len(search.own)
-            own = np.sqrt(np.sum(arrow.by_own**2, axis=0) / blocks + arrow.own_prior[0] ** 2)
-            search.own_scale = np.maximum(search.own_scale, own)
+    def _linearised(self, search: _Search[StateType]) -> ArrowStep:
+        """The problem in the changes of the unknowns; the scales of the search grow with its columns."""
+        arrow = self.linear(*self._parted(search.values), search.state)
+        search.sizes = np.maximum(search.sizes, arrow.column_sizes)
+        return arrow
 
     def _try_step(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome | bool | None:
         """Try a step; None where it was taken, an outcome where the search ends, False where it failed."""
-        shared, own = self._stepped(search, arrow, search.damping)
-        predicted = arrow.decrease(shared - search.shared, own - search.own)
+        values = self._stepped(search, arrow, search.damping)
+        predicted = arrow.decrease(values - search.values)
         if predicted <= self._least_decrease(search):
             return self._ended(search, arrow)
-        state = self.problem.at(shared, own, search.state)
+        state = self.problem.at(*self._parted(values), search.state)
         if state is not None and np.all(np.isfinite(state.residual)):
-            cost = self._cost(shared, own, state)
+            cost = self._cost(values, state)
             gain = (search.cost - cost) / predicted
             if gain > SUFFICIENT:
-                search.take(shared, own, state, cost)
+                search.take(values, state, cost)
                 # A kink that was met before is left behind.
                 search.beyond = None
                 search.damping *= max(0.1, 1 - (2 * gain - 1) ** 3)
@@ -619,7 +567,7 @@ class ArrowFit(Generic[StateType]):
                 return None
             if self.kinked is not None:
                 blocks = self.kinked(search.state, state)
-                ended = self._try_along(search, arrow, (shared, own), state, blocks) if np.any(blocks) else False
+                ended = self._try_along(search, arrow, values, state, blocks) if np.any(blocks) else False
                 if ended is not False:
                     return ended
         elif search.damping < BACK_OFF * LARGEST_DAMPING:
@@ -631,7 +579,7 @@ class ArrowFit(Generic[StateType]):
         self,
         search: _Search[StateType],
         arrow: ArrowStep,
-        there: Pair,
+        there: FloatArray,
         beyond: StateType,
         blocks: npt.NDArray[np.bool_],
     ) -> FitOutcome | bool | None:
@@ -640,48 +588,41 @@ class ArrowFit(Generic[StateType]):
         Args:
             search: the search, on this side.
             arrow: the linear problem on this side.
-            there: unknowns on the other side.
+            there: unknowns on the other side, shape (N,).
             beyond: the state on the other side.
             blocks: which blocks have a kink in between, shape (blocks,).
         """
         search.beyond = beyond
-        other = self.linear(*there, beyond)
-        changes = (there[0] - search.shared, there[1] - search.own)
+        other = self.linear(*self._parted(there), beyond)
+        changes = there - search.values
         kinked = arrow.along_kinks(other, changes, search.scales, blocks)
-        shared, own = self._stepped(search, kinked, HARDLY_DAMPED)
-        if arrow.decrease(shared - search.shared, own - search.own) <= max(ROUNDING, self._least_decrease(search)):
-            back = (shared - there[0], own - there[1])
-            parted = self._cost(*there, beyond) - other.decrease(*back) - search.cost
-            rises = -sum(float(np.sum(part * change)) for part, change in zip(other.gradient(*back), back, strict=True))
+        values = self._stepped(search, kinked, HARDLY_DAMPED)
+        if arrow.decrease(values - search.values) <= max(ROUNDING, self._least_decrease(search)):
+            back = values - there
+            parted = self._cost(there, beyond) - other.decrease(back) - search.cost
+            rises = -float(other.gradient(back) @ back)
             allowed = MEETING * (1.0 + search.cost)
-            if arrow.decrease(*changes) > allowed:
+            if arrow.decrease(changes) > allowed:
                 # From afar the linear models would meet where no kink is: come nearer, in fewer tries.
                 search.damping *= BACK_OFF
                 return False
             return FitOutcome.AT_KINK if abs(parted) <= allowed and rises >= 0.0 else False
-        shared, own = self._stepped(search, kinked, search.along)
-        predicted = arrow.decrease(shared - search.shared, own - search.own)
-        state = self.problem.at(shared, own, search.state)
-        cost = np.inf if state is None else self._cost(shared, own, state)
+        values = self._stepped(search, kinked, search.along)
+        predicted = arrow.decrease(values - search.values)
+        state = self.problem.at(*self._parted(values), search.state)
+        cost = np.inf if state is None else self._cost(values, state)
         # What is not finite is no decrease.
         if state is None or not search.cost - cost > SUFFICIENT * predicted:
             search.along *= BACK_OFF
             return False
-        search.take(shared, own, state, cost)
+        search.take(values, state, cost)
         search.along = max(search.along / BACK_OFF, 1e-15)
         return None
 
-    def _stepped(self, search: _Search[StateType], arrow: ArrowStep, damping: float) -> tuple[FloatArray, FloatArray]:
-        """Shared unknowns, (n,), and the blocks' unknowns, (blocks, k), after the step with the least damped sum."""
-        shared_scale, own_scale = search.scales
-        root = np.sqrt(damping)
-        step = BoundedStep(
-            arrow,
-            (search.shared, search.own),
-            (self.shared.within_step(search.shared), self.own.within_step(search.own)),
-            (root * shared_scale, root * own_scale),
-        )
-        return step.run()
+    def _stepped(self, search: _Search[StateType], arrow: ArrowStep, damping: float) -> FloatArray:
+        """The unknowns after the step with the least damped sum, shape (N,)."""
+        box = self._limits.within_step(search.values)
+        return BoundedStep(arrow, search.values, box, np.sqrt(damping) * search.scales).run()
 
     def _least_decrease(self, search: _Search[StateType]) -> float:
         """Predicted decrease below which there is nothing left to gain."""
@@ -697,7 +638,7 @@ class ArrowFit(Generic[StateType]):
 
     def _ended(self, search: _Search[StateType], arrow: ArrowStep) -> FitOutcome:
         """How a search ends whose steps bring nothing: by what a step within the bounds would bring."""
-        shared, own = self._stepped(search, arrow, HARDLY_DAMPED)
-        left = arrow.decrease(shared - search.shared, own - search.own)
+        values = self._stepped(search, arrow, HARDLY_DAMPED)
+        left = arrow.decrease(values - search.values)
         bound = max(ROUNDING, self._least_decrease(search))
         return FitOutcome.CONVERGED if left <= bound else FitOutcome.STALLED

@@ -82,9 +82,7 @@ class UpdatedJacobian:
             the change, shape (n,); None where it is not finite.
         """
         steps = self.steps
-        following_step = None
-        if steps:
-            following_step = self.step(residual)
+        following_step = self.step(residual) if steps else None
         if following_step is not None:
             steps = [*steps, following_step]
         change = self._apply_inverse(rate, steps)
@@ -127,9 +125,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
             return sparse_step
         # A sparse QR factorisation gives no shortest step.
         jacobian = dense(jacobian)
-    if not np.all(np.isfinite(jacobian)):
-        return None
-    if not np.all(np.isfinite(residual)):
+    if not np.all(np.isfinite(jacobian)) or not np.all(np.isfinite(residual)):
         return None
     step = _regular_step(jacobian, residual)
     return shortest_step(jacobian, residual) if step is None else _finite_or_none(step)

@@ -71,6 +71,10 @@ class Path:
             return length_of(change)
         return length_of(self.step_weights * change)
 
+    def admitted(self, before: PathPoint, after: PathPoint) -> bool:
+        """Whether a step, or a correction at one t, may lead from a point to another."""
+        return self.admits is None or self.admits(before, after)
+
     def at(self, t: float) -> Equations:
         """The equations at one point of the path."""
         return Equations(
@@ -106,9 +110,7 @@ class ContinuationSettings:
 
         What would not be accepted is given up at once: Newton may neither shorten a step nor take more Jacobians.
         """
-        inexact = self.inexact
-        if target == 1.0:
-            inexact = 0.0
+        inexact = 0.0 if target == 1.0 else self.inexact
         return replace(self.newton, inexact=inexact, jacobians=self.reject_above, damping=False)
 
 
@@ -164,17 +166,11 @@ def follow(
     limits = settings or ContinuationSettings()
     current = _first_point(path, limits)
     start = current.correction
-    if start.outcome is Outcome.CONVERGED and not _admitted(path, path.start, start.x, 0.0):
+    if start.outcome is Outcome.CONVERGED and not path.admitted((path.start, 0.0), (start.x, 0.0)):
         # Parameters change at once: there is no way that could be halved.
         start = replace(start, x=path.start, outcome=Outcome.LOAD_STALLED)
     if start.outcome is not Outcome.CONVERGED:
-        return ContinuationResult(
-            x=start.x,
-            outcome=start.outcome,
-            residual_norm=start.residual_norm,
-            iterations=start.iterations,
-            reached=0.0,
-        )
+        return _ended(start, start.iterations, 0.0)
 
     previous: _Point | None = None
     iterations = start.iterations
@@ -208,21 +204,17 @@ def follow(
 
         trial = newton(path.at(target), current.x + predicted, limits.correction(target))
         iterations += trial.iterations
-        accepted = _corrector_accepted(path, trial, current.x, predicted)
-        if not accepted or not (path.admits is None or path.admits((current.x, current.t), (trial.x, target))):
+        # On the path, and not on some other.
+        accepted = trial.outcome is Outcome.CONVERGED and not trial.damped
+        accepted = accepted and _is_small(path, trial.x - current.x - predicted, predicted)
+        if not accepted or not path.admitted((current.x, current.t), (trial.x, target)):
             step /= 2
             continue
 
         if progress is not None:
             progress(target)
         if target == 1.0:
-            return ContinuationResult(
-                x=trial.x,
-                outcome=Outcome.CONVERGED,
-                residual_norm=trial.residual_norm,
-                iterations=iterations,
-                reached=1.0,
-            )
+            return _ended(trial, iterations, 1.0)
         previous = current
         current = _point(path, trial, target)
         renewed = False
@@ -279,16 +271,9 @@ def _stays(path: Path, current: _Point, exact: NewtonResult) -> bool:
         current: the point, corrected inexactly.
         exact: Newton's method from there, at the same t.
     """
-    if exact.outcome is not Outcome.CONVERGED:
+    if exact.outcome is not Outcome.CONVERGED or not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
         return False
-    if not _is_small(path, exact.x - current.x, np.zeros_like(exact.x)):
-        return False
-    return _admitted(path, current.x, exact.x, current.t)
-
-
-def _admitted(path: Path, before: FloatArray, after: FloatArray, t: float) -> bool:
-    """Whether a correction at one t may lead from unknowns to others."""
-    return path.admits is None or path.admits((before, t), (after, t))
+    return path.admitted((current.x, current.t), (exact.x, current.t))
 
 
 def _target(current: _Point, step: float) -> float:
@@ -336,21 +321,9 @@ def _predictor_plausible(path: Path, current: _Point, predicted: FloatArray, tar
     return _is_small(path, foreseen, predicted)
 
 
-def _corrector_accepted(path: Path, trial: NewtonResult, x: FloatArray, predicted: FloatArray) -> bool:
-    """Whether a corrected point lies on the path and not on some other."""
-    if trial.outcome is not Outcome.CONVERGED:
-        return False
-    if trial.damped:
-        return False
-    correction = trial.x - x - predicted
-    return _is_small(path, correction, predicted)
-
-
 def _is_small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool:
     # The floor lets short steps converge to a path that bends; the share keeps long ones off other branches.
-    longest = CORRECTION_FLOOR + CORRECTION_SHARE * path.length(predicted)
-    length = path.length(correction)
-    return length <= longest
+    return path.length(correction) <= CORRECTION_FLOOR + CORRECTION_SHARE * path.length(predicted)
 
 
 def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
@@ -359,10 +332,9 @@ def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations:
     if not _stays(path, last, end):
         # What Newton's method leads to is not the end of this path.
         end = replace(last.correction, iterations=end.iterations)
-    return ContinuationResult(
-        x=end.x,
-        outcome=Outcome.LOAD_STALLED,
-        residual_norm=end.residual_norm,
-        iterations=iterations + end.iterations,
-        reached=last.t,
-    )
+    return _ended(replace(end, outcome=Outcome.LOAD_STALLED), iterations + end.iterations, last.t)
+
+
+def _ended(last: NewtonResult, iterations: int, reached: float) -> ContinuationResult:
+    """The end of a continuation at its last correction."""
+    return ContinuationResult(last.x, last.outcome, last.residual_norm, iterations, reached)

@@ -61,10 +61,7 @@ class Energy:
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Energy at x + step less that at x."""
-        rates = []
-        for share in WORK_NODES:
-            gradient = self.gradient(x + share * step)
-            rates.append(gradient @ step)
+        rates = [self.gradient(x + share * step) @ step for share in WORK_NODES]
         return float(WORK_WEIGHTS @ rates)
 
 
@@ -180,9 +177,7 @@ def _quadratic_model(energy: Energy, x: FloatArray, tolerance: float) -> _Quadra
     """
     gradient = energy.gradient(x)
     hessian = energy.hessian(x)
-    if not np.all(np.isfinite(gradient)):
-        return None
-    if not np.all(np.isfinite(hessian)):
+    if not np.all(np.isfinite(gradient)) or not np.all(np.isfinite(hessian)):
         return None
     curvatures, axes = np.linalg.eigh((hessian + hessian.T) / 2)
     if curvatures.size and curvatures[0] < 0.0:
@@ -242,9 +237,7 @@ def ball_minimum(curvatures: FloatArray, slopes: FloatArray, radius: float, side
     at_smallest = -slopes / (curvatures + smallest)
     if length_of(at_smallest) < radius:
         # The hard case: no slope along the lowest curvature, the boundary is reached along it.
-        rest = 0.0
-        if lowest < -rounding:
-            rest = side * np.sqrt(radius**2 - length_of(at_smallest) ** 2)
+        rest = side * np.sqrt(radius**2 - length_of(at_smallest) ** 2) if lowest < -rounding else 0.0
         at_smallest[0] += rest
         return np.asarray(at_smallest)
 

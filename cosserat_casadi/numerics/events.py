@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import SINGULAR, ArcPoint, Curve, Hyperplane, Monitor
+from cosserat_casadi.numerics.arclength import SINGULAR, ArcPoint, Curve, Monitor
 
 LOCATED = 1e-14
 """Arclength to which an event is located."""
@@ -71,11 +72,10 @@ class Arc:
         # A parabola through both ends predicts; the plane across the tangent keeps s what it is.
         curving = self.end.y - origin - self.step * tangent
         predicted = origin + s * tangent + (s / self.step) ** 2 * curving
-        plane = Hyperplane(tangent, float(tangent @ origin) + s)
-        corrected = self.curve.correct(predicted, plane)
+        corrected = self.curve.correct(predicted, tangent, float(tangent @ origin) + s)
         if corrected is None:
             return None
-        return self.curve.point(corrected.y, tangent, self.start.length + s)
+        return self.curve.point(corrected[0], tangent, self.start.length + s)
 
     def zero(self, value: Callable[[ArcPoint], float]) -> ArcPoint | None:
         """Where a value that changes sign along the piece vanishes; None where it cannot be computed."""
@@ -95,9 +95,7 @@ class Arc:
 
 
 def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], last: tuple[float, float]) -> float:
-    """Find a zero of a function between two arguments by the Illinois method.
-
-    M. Dowell, P. Jarratt, *A modified regula falsi method for computing the root of an equation*, BIT 11 (1971).
+    """Find a zero of a function between two arguments by Brent's method.
 
     Args:
         value: the function.
@@ -107,35 +105,21 @@ def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], 
     Returns:
         the argument last evaluated, within LOCATED of the zero; not a number where the function is not.
     """
-    a, value_a = first
-    b, value_b = last
-    if value_a == 0.0:
-        return a
-    if value_b == 0.0:
-        return b
-    latest = b
-    for _ in range(EVALUATIONS):
-        c = b - value_b * (b - a) / (value_b - value_a)
-        # Rounding may put the secant's zero on an end or beyond.
-        if not min(a, b) < c < max(a, b):
-            c = (a + b) / 2
-        value_c = value(c)
-        if np.isnan(value_c):
-            return value_c
-        located = abs(c - latest) <= LOCATED or abs(b - a) <= LOCATED
-        if value_c == 0.0 or located:
-            return c
-        sign_changes = (value_c > 0.0) != (value_b > 0.0)
-        if sign_changes:
-            a = b
-            value_a = value_b
-        else:
-            # The same end a second time: half its value makes the next secant cross to the other side.
-            value_a /= 2
-        b = c
-        value_b = value_c
-        latest = c
-    return latest
+    # Imported here, because a solve meets no event and needs none of SciPy.
+    from scipy.optimize import brentq
+
+    known = dict((first, last))
+
+    def value_at(s: float) -> float:
+        return known[s] if s in known else value(s)
+
+    try:
+        # One that is not located after so many evaluations is as near as it comes.
+        zero, _ = brentq(value_at, first[0], last[0], (), LOCATED, maxiter=EVALUATIONS, full_output=True, disp=False)
+    except ValueError:
+        # A value was not a number.
+        return float("nan")
+    return float(zero)
 
 
 def events_between(arc: Arc) -> list[Event] | None:
@@ -185,27 +169,20 @@ def _monitor_zeros(arc: Arc) -> list[ArcPoint] | None:
     """Where numbers of the monitor change sign, each for itself; None where one cannot be computed."""
     # What is zero at both ends belongs to a symmetry.
     neutral = min(_count_neutral(arc.start.spectrum), _count_neutral(arc.end.spectrum))
-    negative_at_start = _count_negative(_without_neutral(arc.start.spectrum, neutral))
-    negative_at_end = _count_negative(_without_neutral(arc.end.spectrum, neutral))
-    fewer = min(negative_at_start, negative_at_end)
-    more = max(negative_at_start, negative_at_end)
+    spectra = [_without_neutral(point, neutral) for point in (arc.start, arc.end)]
+    fewer, more = sorted(int(np.sum(spectrum < 0.0)) for spectrum in spectra)
     zeros = []
-    for k in range(fewer, more):
-        point = arc.zero(_monitored(k, neutral))
+    for number in range(fewer, more):
+        point = arc.zero(partial(_monitored, number, neutral))
         if point is None:
             return None
         zeros.append(point)
     return zeros
 
 
-def _monitored(k: int, neutral: int) -> Callable[[ArcPoint], float]:
-    """Number k of the monitor, neutral ones left out, as a function of the point."""
-
-    def value(point: ArcPoint) -> float:
-        spectrum = _without_neutral(point.spectrum, neutral)
-        return float(spectrum[k])
-
-    return value
+def _monitored(number: int, neutral: int, point: ArcPoint) -> float:
+    """A number of the monitor at a point, counted without neutral ones."""
+    return float(_without_neutral(point, neutral)[number])
 
 
 def _bifurcations(zeros: list[ArcPoint]) -> list[Event]:
@@ -231,14 +208,7 @@ def _count_neutral(spectrum: FloatArray) -> int:
     return int(np.sum(zero))
 
 
-def _without_neutral(spectrum: FloatArray, neutral: int) -> FloatArray:
-    """The spectrum without the numbers that a symmetry keeps at zero all along the piece, still ascending."""
-    sizes = np.abs(spectrum)
-    by_size = np.argsort(sizes, kind="stable")
-    kept = by_size[neutral:]
-    return spectrum[np.sort(kept)]
-
-
-def _count_negative(spectrum: FloatArray) -> int:
-    negative = spectrum < 0.0
-    return int(np.sum(negative))
+def _without_neutral(point: ArcPoint, neutral: int) -> FloatArray:
+    """The spectrum of a point without the numbers that a symmetry keeps at zero all along the piece, ascending."""
+    by_size = np.argsort(np.abs(point.spectrum), kind="stable")
+    return point.spectrum[np.sort(by_size[neutral:])]

@@ -8,9 +8,6 @@ solution for one size predicts the solution for the next, until the prescribed s
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.stage_newton import StageSolution
 from cosserat_casadi.numerics.step_run import StepRun
@@ -28,45 +25,37 @@ def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
     if not isinstance(solution, StepOutcome):
         return solution
     wanted = run.size
-    longest = _grown(run, wanted)
+    share, longest = _grown(run, wanted)
     run.size = wanted
-    if longest is not None and longest.share == 1.0:
-        return longest.solution
+    if longest is not None and share == 1.0:
+        return longest
     if longest is not None and solution is StepOutcome.SINGULAR:
         # The matrices are so at the given size alone.
         return StepOutcome.NOT_SOLVED
     return solution
 
 
-@dataclass(frozen=True)
-class Longest:
-    """The longest step that was solved."""
+def _grown(run: StepRun, wanted: float) -> tuple[float, StageSolution | None]:
+    """The step with a Jacobian at each stage, of a size that grows to the given one.
 
-    share: float
-    solution: StageSolution
-
-
-def _grown(run: StepRun, wanted: float) -> Longest | None:
-    """The step with a Jacobian at each stage, of a size that grows to the given one; None where none is solved."""
-    longest = None
+    Returns:
+        the largest share of the size that was solved, and the solution; 0 and None where none is solved.
+    """
+    longest = 0.0
+    solution = None
     growth = 1.0
-    while longest is None or longest.share < 1.0:
-        if growth < LEAST_GROWTH:
-            break
-        share = min(1.0, growth if longest is None else longest.share + growth)
+    while longest < 1.0 and growth >= LEAST_GROWTH:
+        share = min(1.0, longest + growth)
         run.size = share * wanted
-        solution = run.solve_coupled(_first_iterate(run, share, longest))
         if solution is None:
+            guess = run.guess()
+        else:
+            # The stages of the longer step are at these times of the shorter one.
+            guess = run.method.values_at(run.method.nodes * (share / longest)) @ solution.unknowns
+        longer = run.solve_coupled(guess)
+        if longer is None:
             growth /= 2.0
         else:
-            longest = Longest(share, solution)
+            longest, solution = share, longer
             growth *= LONGER
-    return longest
-
-
-def _first_iterate(run: StepRun, share: float, longest: Longest | None) -> FloatArray:
-    """Unknowns of the stages as the shorter step, or the step before, has them at their times, shape (s, n)."""
-    if longest is None:
-        return run.guess()
-    shares = run.method.nodes * (share / longest.share)
-    return run.method.values_at(shares) @ longest.solution.unknowns
+    return longest, solution

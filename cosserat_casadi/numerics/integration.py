@@ -102,9 +102,7 @@ class Integration:
     @property
     def end(self) -> Instant:
         """The last instant that was reached."""
-        if not self.steps:
-            return self.start
-        return self.steps[-1].end
+        return self.steps[-1].end if self.steps else self.start
 
 
 def stalled_at(start: Instant) -> Integration:

@@ -251,9 +251,7 @@ def _line_search(
     """Halve a step until the residual falls; None where there is no step or none lowers it."""
     if step is None:
         return None
-    shortest = SHORTEST_STEP
-    if full_step_only:
-        shortest = 1.0
+    shortest = 1.0 if full_step_only else SHORTEST_STEP
     # Halving, not interpolating: a residual that overflows gives nothing to interpolate.
     length = 1.0
     while length >= shortest:

@@ -127,9 +127,7 @@ class StepRun:
     @property
     def now(self) -> Instant:
         """The last instant reached."""
-        if not self.steps:
-            return self.start
-        return self.steps[-1].end
+        return self.steps[-1].end if self.steps else self.start
 
     def result(self, outcome: StepOutcome) -> Integration:
         """The end of the integration."""

@@ -155,9 +155,7 @@ def _equal_steps(run: StepRun, size: float, after_step: AfterStep | None) -> Ste
         run.before = replace(run.before, begun=run.start.time)
         return _equal_steps(run, size, after_step)
     for number in range(taken + 1, count + 1):
-        end = begin + number * run.size
-        if number == count:
-            end = run.stop
+        end = run.stop if number == count else begin + number * run.size
         solution = solve_given_step(run)
         if isinstance(solution, StepOutcome):
             return solution
@@ -273,9 +271,7 @@ def _try_step(run: StepRun, control: StepControl, end: float) -> StepOutcome | N
     """Try a step of the run's size and choose the next one; None where it is taken, else why the motion may end."""
     solution = run.solve()
     if isinstance(solution, StepOutcome):
-        shrinkage = FAILED_SHRINKAGE
-        if solution is StepOutcome.SINGULAR:
-            shrinkage = SINGULAR_SHRINKAGE
+        shrinkage = SINGULAR_SHRINKAGE if solution is StepOutcome.SINGULAR else FAILED_SHRINKAGE
         control.refuse(run.size, shrinkage)
         if solution is StepOutcome.NOT_SOLVED:
             return StepOutcome.STEP_TOO_SMALL

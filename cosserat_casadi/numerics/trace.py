@@ -14,7 +14,7 @@ from enum import Enum
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import ArcPoint, Curve, plane_through
+from cosserat_casadi.numerics.arclength import ArcPoint, Curve
 from cosserat_casadi.numerics.events import Arc, Event, events_between
 from cosserat_casadi.numerics.neutral import direction_in
 from cosserat_casadi.numerics.progress import Progress
@@ -111,9 +111,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None, gu
     largest = 0.0
     for _ in range(curve.settings.steps):
         # A path is left once: on the branch it goes straight on.
-        leave_at = 0
-        if traced.branch is None:
-            leave_at = branch
+        leave_at = branch if traced.branch is None else 0
         step = extend(curve, traced, step, leave_at, guard)
         reached = min(traced.points[-1].load_factor, 1.0)
         largest = max(largest, reached)
@@ -170,10 +168,7 @@ def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard
     departure = _departure(traced, passed, abs(leave_at))
     if departure is not None:
         # What lies beyond the bifurcation on this curve is none of the branch's.
-        side = 1
-        if leave_at < 0:
-            side = -1
-        _leave(curve, traced, passed[: departure + 1], side)
+        _leave(curve, traced, passed[: departure + 1], 1 if leave_at > 0 else -1)
         return limits.first
     traced.points.append(end)
     traced.events += passed
@@ -282,13 +277,13 @@ def switch(curve: Curve, bifurcation: ArcPoint, multiplicity: int, side: int = 1
     direction = side * crossing_direction(derivative, bifurcation.tangent, multiplicity)
     for distance in DISTANCES:
         guess = bifurcation.y + distance * direction
-        corrected = curve.correct(guess, plane_through(guess, direction))
+        corrected = curve.correct(guess, direction)
         # A correction as long as the distance may lead back to the curve.
-        if corrected is None or np.linalg.norm(corrected.y - guess) > distance:
+        if corrected is None or np.linalg.norm(corrected[0] - guess) > distance:
             continue
+        y, _ = corrected
         # The chord, not the null vector: where the factor turns the branch has left the null vector already.
-        chord = corrected.y - bifurcation.y
-        point = curve.point(corrected.y, chord, bifurcation.length + distance)
+        point = curve.point(y, y - bifurcation.y, bifurcation.length + distance)
         if point is not None:
             return point
     return None

@@ -17,7 +17,7 @@ from cosserat_casadi.equilibrium.contact.contact_alternatives import instead_of_
 from cosserat_casadi.equilibrium.contact.contact_state import TIP, ContactState, Touch, load_sections
 from cosserat_casadi.equilibrium.contact.shape_projection import projected
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import ArcPoint, Hyperplane, plane_through
+from cosserat_casadi.numerics.arclength import ArcPoint
 from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.paths.contact_curve import Arrangement
 from cosserat_casadi.paths.margins import OPEN, OVER_JOINT, Key, Watch, margins, violated
@@ -203,27 +203,27 @@ def _split(change: Transition, sections: Mapping[str, Sequence[float]]) -> Trans
     return replace(change, state=change.state.split(sections), opens=opens)
 
 
-def _plane(arrangement: Arrangement, change: Transition, load_factor: float) -> Hyperplane:
-    """Where the next arrangement is met: at a load factor, or at an opening."""
+def _plane(arrangement: Arrangement, change: Transition, load_factor: float) -> tuple[FloatArray, float]:
+    """Plane in which the next arrangement is met, its normal and its level: at a load factor, or at an opening."""
     size = len(arrangement.scale)
     normal = np.zeros(size + 1)
     if not change.opens:
         normal[-1] = 1.0
-        return Hyperplane(normal, load_factor)
+        return normal, load_factor
     first = size - len(change.state.places)
     for touch, number, factor in change.opens:
         earlier = change.state.touches[: _number(change.state, touch)]
         before = sum(len(other.moving) for other in earlier)
         normal[first + before + number] = factor
-    return Hyperplane(normal, change.level)
+    return normal, change.level
 
 
-def _met(arrangement: Arrangement, guess: FloatArray, plane: Hyperplane) -> ArcPoint | None:
+def _met(arrangement: Arrangement, guess: FloatArray, plane: tuple[FloatArray, float]) -> ArcPoint | None:
     """The point of an arrangement in a plane; its tangent leads to either side."""
-    corrected = arrangement.curve.correct(guess, plane)
+    corrected = arrangement.curve.correct(guess, *plane)
     if corrected is None:
         return None
-    return arrangement.curve.point(corrected.y, plane.normal, 0.0)
+    return arrangement.curve.point(corrected[0], plane[0], 0.0)
 
 
 def _value(arrangement: Arrangement, point: ArcPoint, key: Key) -> float:
@@ -233,10 +233,10 @@ def _value(arrangement: Arrangement, point: ArcPoint, key: Key) -> float:
 def _beside(arrangement: Arrangement, point: ArcPoint, step: float) -> ArcPoint | None:
     """The point a short way along the tangent, or against it."""
     predicted = point.y + step * point.tangent
-    corrected = arrangement.curve.correct(predicted, plane_through(predicted, point.tangent))
+    corrected = arrangement.curve.correct(predicted, point.tangent)
     if corrected is None:
         return None
-    return arrangement.curve.point(corrected.y, np.sign(step) * point.tangent, point.length + abs(step))
+    return arrangement.curve.point(corrected[0], np.sign(step) * point.tangent, point.length + abs(step))
 
 
 def _turned(arrangement: Arrangement, point: ArcPoint, grows: Key) -> ArcPoint | None:

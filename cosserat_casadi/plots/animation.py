@@ -235,9 +235,7 @@ def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationF
     rows = np.arange(intervals * finer + 1) / finer
     states = [motion.at(float(time)) for time in np.interp(rows, np.arange(len(times)), times)]
     shown_seconds = (times[-1] - times[0]) / speed
-    colour = PLAIN_TEXT
-    if not motion.converged:
-        colour = FAILURE
+    colour = PLAIN_TEXT if motion.converged else FAILURE
     return AnimationFrames(
         model=motion.model,
         x=np.array([state.x for state in states]),
@@ -253,9 +251,7 @@ def motion_frames(motion: Motion, times: FloatArray, speed: float) -> AnimationF
 def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
     """The time of each frame, with as many digits as tell it from the next, and the speed where it is not real."""
     interval = times[-1] / max(1, len(times) - 1)
-    digits = 1
-    if interval > 0:
-        digits = max(1, int(np.ceil(-np.log10(interval))))
+    digits = max(1, int(np.ceil(-np.log10(interval)))) if interval > 0 else 1
     remark = ""
     if speed != 1.0:
         remark += f", at {speed:g} of its speed"
@@ -348,10 +344,8 @@ class _Film:
     def _draw(self, shapes: MovingShapes) -> list[_Moving]:
         """Draw all that moves; returns it."""
         canvas = self._canvas
-        lines = []
-        for path in shapes.followed.values():
-            trail = canvas.line(path[:1], color="0.55", linewidth=1.2)
-            lines.append(_Moving(trail, path))
+        followed = shapes.followed.values()
+        lines = [_Moving(canvas.line(path[:1], color="0.55", linewidth=1.2), path) for path in followed]
         for name, outlines in shapes.outlines.items():
             body = canvas.line(outlines[0], linewidth=2.0, label=name, **shapes.outline_style(name))
             lines.append(_Moving(body, outlines))
@@ -373,14 +367,11 @@ class _Film:
             poses = poses_of(frames.model.body[obstacle.body], frames.x, frames.inputs)
             world_R_body = rotations(poses.quaternion)
             first = SolvedPoses(poses.position[0], world_R_body[0], poses.quaternion[0])
-            label: str | None = obstacle.name
             for outline in surface_lines(self._canvas, obstacle, shapes.points, first):
                 in_body = in_axes_of(first, outline)
                 moved = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, in_body)
-                line = self._canvas.line(moved[0], color=OBSTACLES, linewidth=1.2, label=label)
+                line = self._canvas.line(moved[0], color=OBSTACLES, linewidth=1.2, label=obstacle.name)
                 lines.append(_Moving(line, moved))
-                # The legend names an obstacle once.
-                label = None
         return lines
 
     def _draw_section_axes(self, frames: AnimationFrames, shapes: MovingShapes) -> list[_Moving]:

@@ -40,9 +40,7 @@ MOST_LINE_ARROWS = 24
 
 def lies_in_plane(arrow: Arrow, normal: int) -> bool:
     """Whether the plane across a world axis shows it: a force lies in the plane, a moment stands across it."""
-    outside = arrow.vector[[normal]]
-    if arrow.sort == "moment":
-        outside = np.delete(arrow.vector, normal)
+    outside = np.delete(arrow.vector, normal) if arrow.sort == "moment" else arrow.vector[[normal]]
     largest_outside = np.abs(outside).max()
     largest = np.abs(arrow.vector).max()
     return bool(largest_outside <= FLAT * largest)

@@ -67,6 +67,7 @@ class Canvas:
         size: largest extent of the scene, m, which arrows and section axes are scaled with.
         view_axes: the axes that the plane is counted in, a row each, shape (3, 3).
         small: whether it is one of many panels, with small letters and few ticks.
+        named: words of its legend.
     """
 
     axes: Any
@@ -74,6 +75,7 @@ class Canvas:
     size: float
     view_axes: FloatArray = field(default_factory=lambda: WORLD)
     small: bool = False
+    named: set[str | None] = field(default_factory=set)
 
     @property
     def columns(self) -> tuple[int, ...]:
@@ -81,9 +83,14 @@ class Canvas:
         return self.plane or SPACE
 
     def line(self, points: FloatArray, **style: Any) -> Any:
-        """Draw a line through points, shape (k, 3); it is returned, and may be moved."""
+        """Draw a line through points, shape (k, 3); it is returned, and may be moved.
+
+        The legend names each ``label`` once.
+        """
+        label = style.pop("label", None)
         coordinates = self.projected(points)
-        (drawn,) = self.axes.plot(*coordinates.T, **style)
+        (drawn,) = self.axes.plot(*coordinates.T, label=None if label in self.named else label, **style)
+        self.named.add(label)
         return drawn
 
     def move(self, line: Any, points: FloatArray) -> None:

@@ -5,14 +5,13 @@ matplotlib is an extra and is imported inside functions only.
 
 from __future__ import annotations
 
-from math import ceil
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.plots.colours import CATEGORIES
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import add_title, panel_grid
 
 MOST_PANELS = 12
 """Unknowns that have a panel: the first."""
@@ -27,12 +26,9 @@ SECOND = {"linestyle": "", "marker": "o", "markerfacecolor": "none", "color": CA
 def plot_estimate(found: Estimate) -> Any:
     """Figure of an estimate; rows that were not found are gaps, open markers second-best values."""
     shown = min(MOST_PANELS, len(found.labels))
-    columns = min(COLUMNS, shown)
-    lines = ceil(shown / columns)
-    figure = figure_class()(figsize=(4.4 * columns, 1.0 + 2.6 * lines), layout="constrained")
-    panels = figure.subplots(lines, columns, sharex=True, squeeze=False).ravel()
+    figure, panels = panel_grid(shown, COLUMNS, (4.4, 2.6), (0.0, 1.0), sharex=True)
     rows = np.arange(1, len(found.cases) + 1)
-    for k, panel in enumerate(panels[:shown]):
+    for k, panel in enumerate(panels):
         half = (found.intervals[:, k, 1] - found.intervals[:, k, 0]) / 2
         panel.axhline(0.0, color="0.8", linewidth=0.8)
         panel.errorbar(rows, found.values[:, k], half, fmt=".", color=CATEGORIES[0], elinewidth=1.0, capsize=2.0)
@@ -43,9 +39,7 @@ def plot_estimate(found: Estimate) -> Any:
         panel.grid(alpha=0.3)
     if found.doubtful.any():
         panels[0].legend(fontsize=8)
-    for panel in panels[shown:]:
-        panel.set_visible(False)
-    for panel in panels[max(0, shown - columns) : shown]:
+    for panel in panels[-COLUMNS:]:
         panel.set_xlabel("case")
         panel.tick_params(labelbottom=True)
     add_title(figure, found.model.scene.title)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import textwrap
 from collections.abc import Callable
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +65,28 @@ def check_plot_path(path: str | Path, others: tuple[str, ...] = ()) -> None:
         remedy = f"use one of {', '.join(FORMATS + others)}"
         raise SceneError(Problem("--plot", f"{path} has no suffix of a figure that can be drawn", remedy))
     figure_class()
+
+
+def panel_grid(
+    count: int, columns: int, panel: tuple[float, float], margin: tuple[float, float] = (0.0, 0.0), **shared: bool
+) -> tuple[Any, list[Any]]:
+    """A figure with panels in rows.
+
+    Args:
+        count: number of panels.
+        columns: most in a row.
+        panel: width and height of one, inches.
+        margin: room beside and above all of them, inches.
+        shared: axes that they share, as ``subplots`` takes them.
+    """
+    columns = max(1, min(columns, count))
+    rows = max(1, ceil(count / columns))
+    size = (margin[0] + panel[0] * columns, margin[1] + panel[1] * rows)
+    figure = figure_class()(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False, **shared).ravel().tolist()
+    for unused in panels[count:]:
+        unused.set_visible(False)
+    return figure, panels[:count]
 
 
 def save_figure(draw: Callable[[], Any], path: str | Path) -> None:

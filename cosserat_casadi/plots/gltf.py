@@ -84,9 +84,7 @@ def glb(film: Film) -> bytes:
     document.json["scenes"][0]["name"] = film.title
     channels: list[dict[str, Any]] = []
     samplers: list[dict[str, Any]] = []
-    times = None
-    if len(film.times) > 1:
-        times = document.accessor(film.times, FLOAT, bounds=True)
+    times = document.accessor(film.times, FLOAT, bounds=True) if len(film.times) > 1 else None
     for part in film.parts:
         mesh = document.add("meshes", {"name": part.name, "primitives": [_primitive(document, part, times)]})
         node: dict[str, Any] = {"name": part.name, "mesh": mesh}

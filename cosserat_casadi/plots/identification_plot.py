@@ -12,7 +12,7 @@ import numpy as np
 
 from cosserat_casadi.identification import Identification, Row
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import add_title, panel_grid
 
 MOST_PANELS = 4
 """Most measured quantities that have a panel each."""
@@ -33,18 +33,13 @@ def plot_identification(found: Identification) -> Any:
     """The matplotlib.figure.Figure of an identification."""
     numbers = sorted({row.measurement for row in found.rows})[:MOST_PANELS]
     pairs = _pairs(found)
-    columns = max(2, min(3, len(numbers) + 1 + len(pairs)))
-    panels = len(numbers) + 1 + len(pairs)
-    lines = -(-panels // columns)
-    figure = figure_class()(figsize=(4.6 * columns, 3.9 * lines), layout="constrained")
-    axes = iter(figure.subplots(lines, columns, squeeze=False).ravel())
+    figure, panels = panel_grid(len(numbers) + 1 + len(pairs), 3, (4.6, 3.9))
+    axes = iter(panels)
     for number in numbers:
         _draw_measurement(next(axes), found, number)
     _draw_residuals(next(axes), found)
     for first, second in pairs:
         _draw_ellipse(next(axes), found, first, second)
-    for unused in axes:
-        unused.set_axis_off()
     add_title(figure, found.model.scene.title)
     return figure
 

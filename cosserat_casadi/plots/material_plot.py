@@ -5,8 +5,6 @@ matplotlib is an extra and is imported inside functions only.
 
 from __future__ import annotations
 
-from math import ceil
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +16,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.plots.colours import CATEGORIES, PLAIN_TEXT
-from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.figure import add_title, panel_grid
 from cosserat_casadi.rod.material_functions import section_margins, stress_beyond_hooke
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -66,15 +64,6 @@ class StressCurve(NamedTuple):
     inside: npt.NDArray[np.bool_]
 
 
-def save_material_plot(scene: scenes.Scene, file: str | Path) -> None:
-    """Draw the materials of a scene into a file, whole or not at all.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`, or all rods are linear.
-    """
-    save_figure(lambda: plot_materials(scene), file)
-
-
 def plot_materials(scene: scenes.Scene) -> Any:
     """Figure of the materials of a scene: a panel for each strain of each rod that is not linear.
 
@@ -87,16 +76,10 @@ def plot_materials(scene: scenes.Scene) -> Any:
             Problem("--plot", "draws materials that are not linear, and the scene has none", "leave it out")
         )
     # Four panels make a square.
-    columns = 2 if len(curves) == 4 else min(COLUMNS, len(curves))
-    rows = ceil(len(curves) / columns)
-    figure = figure_class()(figsize=(1.0 + 3.6 * columns, 0.8 + 3.0 * rows), layout="constrained")
-    panels = figure.subplots(rows, columns, squeeze=False).ravel()
-    for panel, (rod, curve) in zip(panels, curves, strict=False):
-        _draw(panel, rod, curve)
-    for panel in panels[len(curves) :]:
-        panel.set_visible(False)
+    figure, panels = panel_grid(len(curves), 2 if len(curves) == 4 else COLUMNS, (3.6, 3.0), (1.0, 0.8))
     labels: dict[str, Any] = {}
-    for panel in panels[: len(curves)]:
+    for panel, (rod, curve) in zip(panels, curves, strict=True):
+        _draw(panel, rod, curve)
         lines, words = panel.get_legend_handles_labels()
         labels |= dict(zip(words, lines, strict=True))
     panels[0].legend(labels.values(), labels, fontsize=8, frameon=False, loc="upper left")

@@ -164,9 +164,7 @@ class _ModeLines:
     @property
     def view(self) -> View:
         """The plane that holds all points, or space, where arms show how sections turn."""
-        if self.arms:
-            return None, WORLD
-        return view_of(self.points, STILL * self.size)
+        return (None, WORLD) if self.arms else view_of(self.points, STILL * self.size)
 
 
 def _mode_lines(modes: Modes) -> list[_ModeLines]:

@@ -154,14 +154,10 @@ def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: 
 
 def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
     """Mark where obstacles without a width are touched in the shapes that are drawn."""
-    label: str | None = "contact"
     for row in rows:
         for contact in motion.contacts[row] if motion.contacts else ():
-            canvas.markers(
-                _touching_point(motion, contact, row), marker="o", markersize=5, color="black", zorder=9, label=label
-            )
-            # The legend names contacts once.
-            label = None
+            point = _touching_point(motion, contact, row)
+            canvas.markers(point, marker="o", markersize=5, color="black", zorder=9, label="contact")
 
 
 def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
@@ -198,8 +194,6 @@ def _faded(colour: str, share: float) -> tuple[float, float, float]:
 
 def _draw_paths(figure: Any, canvas: Canvas, shapes: MovingShapes) -> None:
     """Draw the paths of tips and bodies, coloured by time, with their ends marked."""
-    start_label: str | None = "start of a path"
-    end_label: str | None = "its end"
     style = {
         "cmap": _time_colours(),
         "linewidths": 2.2,
@@ -211,12 +205,8 @@ def _draw_paths(figure: Any, canvas: Canvas, shapes: MovingShapes) -> None:
         if len(path) > 1:
             drawn = canvas.shaded_line(path, shapes.times, **style)
         start_style = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "0.1"}
-        end_style = {"marker": "D", "markersize": 6, "color": "0.1"}
-        canvas.markers(path[:1], zorder=5, label=start_label, **start_style)
-        canvas.markers(path[-1:], zorder=5, label=end_label, **end_style)
-        # The legend names the marks once.
-        start_label = None
-        end_label = None
+        canvas.markers(path[:1], zorder=5, label="start of a path", **start_style)
+        canvas.markers(path[-1:], zorder=5, label="its end", marker="D", markersize=6, color="0.1")
     if drawn is not None:
         figure.colorbar(drawn, ax=canvas.axes, label="time, s", location="left", shrink=0.6, pad=0.04)
 

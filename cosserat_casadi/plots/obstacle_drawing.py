@@ -152,7 +152,6 @@ def _cut(
 
 def _mark_contacts(canvas: Canvas, solution: Solution) -> None:
     """Mark points of contact, and draw stretches that lie on an obstacle once more."""
-    label: str | None = "contact"
     for contact in solution.contacts:
         if contact.of_body and contact.width is not None:
             continue
@@ -160,6 +159,4 @@ def _mark_contacts(canvas: Canvas, solution: Solution) -> None:
         points = touching_points(solution, contact, 41)
         if is_stretch:
             canvas.line(points, color="black", linewidth=1.6, zorder=8)
-        canvas.markers(points[[0, -1]], marker="o", markersize=5, color="black", zorder=9, label=label)
-        # The legend names contacts once.
-        label = None
+        canvas.markers(points[[0, -1]], marker="o", markersize=5, color="black", zorder=9, label="contact")

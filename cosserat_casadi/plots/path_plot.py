@@ -140,9 +140,7 @@ class _Section:
     @property
     def words(self) -> str:
         """Name of the section for axes and legend."""
-        if self.X == 1.0:
-            return "the tip"
-        return f"the section at X = {self.X:.3g}"
+        return "the tip" if self.X == 1.0 else f"the section at X = {self.X:.3g}"
 
     def displacement(self, positions: FloatArray) -> FloatArray:
         """Displacement from the unloaded rod over the length, of the shape of the positions."""

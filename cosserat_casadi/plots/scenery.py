@@ -54,17 +54,10 @@ TARGET_STYLE: dict[str, Any] = {
 def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
     """Draw rods, unloaded dashed and deformed thick, with their bases and section axes."""
     several = len(shapes.deformed) > 1
-    unloaded_label: str | None = "unloaded"
     unloaded = solution.model.discrete.unloaded
     for index, (name, deformed) in enumerate(shapes.deformed.items()):
-        unloaded_style = {"color": "0.55", "linestyle": "--", "linewidth": 1.2}
-        canvas.line(shapes.unloaded[name], label=unloaded_label, **unloaded_style)
-        # The legend names the unloaded rods once.
-        unloaded_label = None
-        label = "deformed"
-        if several:
-            label = name
-        canvas.line(deformed, linewidth=3.5, label=label, **rod_style(index))
+        canvas.line(shapes.unloaded[name], label="unloaded", color="0.55", linestyle="--", linewidth=1.2)
+        canvas.line(deformed, linewidth=3.5, label=name if several else "deformed", **rod_style(index))
         canvas.markers(deformed[:1], **base_style(unloaded, name))
         _draw_section_axes(canvas, solution, name, AXES_SECTIONS // len(shapes.deformed))
 
@@ -221,11 +214,9 @@ def _order_around_mean(points: FloatArray) -> Indices:
 def draw_disks(canvas: Canvas, solution: Solution) -> None:
     """Draw the rims of disks; the legend names a row once."""
     for index, row in enumerate(solution.model.scene.disks):
-        label: str | None = row.name or "disks"
         for at in row.places:
             rim = in_world(solution.pose(at, row.rod), disk_rim(row))
-            canvas.line(rim, color=disk_colour(index), linewidth=1.6, label=label)
-            label = None
+            canvas.line(rim, color=disk_colour(index), linewidth=1.6, label=row.name or "disks")
 
 
 def disk_rim(row: Disks | Body) -> FloatArray:

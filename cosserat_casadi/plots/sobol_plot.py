@@ -5,13 +5,12 @@ matplotlib is an extra and is imported inside functions only.
 
 from __future__ import annotations
 
-from math import ceil
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi.plots.colours import CATEGORIES
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import add_title, panel_grid
 from cosserat_casadi.sweeps.sobol import Estimates, SobolIndices
 
 COLUMNS = 3
@@ -29,15 +28,10 @@ def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:
         title: of the scene.
     """
     shown = {name: found for name, found in indices.results.items() if np.all(np.isfinite(found.first))}
-    columns = max(1, min(COLUMNS, len(shown)))
-    rows = max(1, ceil(len(shown) / COLUMNS))
-    size = (1.6 + 3.4 * columns, 1.2 + rows * (0.8 + 0.45 * len(indices.factors)))
-    figure = figure_class()(figsize=size, layout="constrained")
-    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
-    for panel, (name, found) in zip(panels, shown.items(), strict=False):
+    size = (3.4, 0.8 + 0.45 * len(indices.factors))
+    figure, panels = panel_grid(len(shown), COLUMNS, size, (1.6, 1.2), sharex=True, sharey=True)
+    for panel, (name, found) in zip(panels, shown.items(), strict=True):
         _draw(panel, name, found, indices.factors)
-    for panel in panels[len(shown) :]:
-        panel.set_visible(False)
     if shown:
         panels[0].legend(fontsize=8, frameon=False, loc="upper right")
     add_title(figure, title)

@@ -54,9 +54,7 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     coloured_by = colour or (varying or [OUTCOME])[0]
     rows = _thinned(sweep.converged)
     points = sweep.positions(sweep.posed[-1])[rows]
-    shades = None
-    if coloured_by != OUTCOME:
-        shades = sweep[coloured_by][rows]
+    shades = None if coloured_by == OUTCOME else sweep[coloured_by][rows]
     show_inputs = not sweep.converged.all() and len(varying) > 1
 
     plane = _plane(points)
@@ -86,9 +84,7 @@ def _figure(views: Views, show_inputs: bool) -> tuple[Any, Any]:
     """A figure and its grid of panels, one column wider where inputs are shown."""
     rows = max(row for row, _ in views) + 1
     columns = max(column for _, column in views) + 1 + show_inputs
-    size = (6.4 * columns, 5.4)
-    if rows > 1:
-        size = (5.4 * columns, 9.0)
+    size = (5.4 * columns, 9.0) if rows > 1 else (6.4 * columns, 5.4)
     figure = figure_class()(figsize=size, layout="constrained")
     return figure, figure.add_gridspec(rows, columns)
 

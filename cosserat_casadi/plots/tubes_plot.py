@@ -93,14 +93,13 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
     reaches = solution.robot.translations(solution.inputs)
     colour = rod_colour(number)
     stroke = STROKES[solution.stable]
-    label: str | None = f"{number + 1}: {VERDICTS[solution.stable]}, {solution.energy:.4g} J"
+    label = f"{number + 1}: {VERDICTS[solution.stable]}, {solution.energy:.4g} J"
     ends = sorted({0.0, *(float(reach) for reach in reaches)})
     for start, end in pairwise(ends):
         tubes = int(np.sum(reaches >= end))
         width = WIDEST * tubes / len(reaches)
         line = _centre_line(solution, start, end)
         canvas.line(line, color=colour, linestyle=stroke, linewidth=width, label=label)
-        label = None
 
 
 def _draw_nested(canvas: Canvas, solution: TubeSolution) -> dict[int, Any]:

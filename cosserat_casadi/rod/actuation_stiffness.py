@@ -36,11 +36,8 @@ def _section_stiffness(igm: InverseGeometricModel, motions: SectionMotions) -> l
             nodes = tuple(conjugate.wrench_nodes)
             own = effort / igm.rod.energy_unit * operator
             operators[nodes] = operators[nodes] + own if nodes in operators else own
-    parts = []
-    for nodes, operator in operators.items():
-        moved = motions.motion_of(list(nodes))
-        parts.append(moved.T @ (operator @ moved))
-    return parts
+    moved = {nodes: motions.motion_of(list(nodes)) for nodes in operators}
+    return [moved[nodes].T @ (operator @ moved[nodes]) for nodes, operator in operators.items()]
 
 
 def _curvature_stiffness(igm: InverseGeometricModel) -> Matrix | None:

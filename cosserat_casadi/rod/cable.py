@@ -206,10 +206,8 @@ class RoutedCable(Cable):
 
     def _work_of(self, levers: dict[int, Row]) -> Matrix:
         """Σ ℓ w lever ∂ξ/∂q over the nodes, n×1, m, of levers of the admitted strains, 1×k each."""
-        parts: list[Matrix] = []
-        for c, lever in levers.items():
-            weighted = ca.DM(self._phi(c) * self._node_lengths[:, None])
-            parts.append(ca.DM(weighted.shape[1], 1) if lever is None else weighted.T @ lever.T)
+        weighted = {c: ca.DM(self._phi(c) * self._node_lengths[:, None]).T for c in levers}
+        parts = [ca.DM(weighted[c].shape[0], 1) if row is None else weighted[c] @ row.T for c, row in levers.items()]
         return ca.vertcat(*parts)
 
     def _phi(self, c: int) -> FloatArray:
@@ -236,9 +234,7 @@ class RoutedCable(Cable):
 
 def _constant(row: Numbers) -> Row:
     """A row of numbers or expressions; None where all are zero."""
-    if is_zero(row):
-        return None
-    return as_matrix(row).T
+    return None if is_zero(row) else as_matrix(row).T
 
 
 def added(*rows: Row) -> Row:
@@ -255,6 +251,4 @@ def product(a: Row, b: Row) -> Row:
 
 def negative(row: Row) -> Row:
     """A field of the other sign."""
-    if row is None:
-        return None
-    return -row
+    return None if row is None else -row

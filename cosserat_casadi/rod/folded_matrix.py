@@ -31,18 +31,15 @@ class FoldedMatrix:
 
     def __matmul__(self, columns: Matrix) -> Matrix:
         """Product with columns, n×m."""
-        folded_product = self.half @ columns
-        return self.fold.T @ folded_product
+        return self.fold.T @ (self.half @ columns)
 
     def __mul__(self, factor: float) -> FoldedMatrix:
         """The matrix times a number."""
-        scaled = self.half * factor
-        return FoldedMatrix(self.fold, scaled)
+        return FoldedMatrix(self.fold, self.half * factor)
 
     def __truediv__(self, divisor: float) -> FoldedMatrix:
         """The matrix divided by a number."""
-        scaled = self.half / divisor
-        return FoldedMatrix(self.fold, scaled)
+        return FoldedMatrix(self.fold, self.half / divisor)
 
     @property
     def T(self) -> FoldedTranspose:
@@ -56,8 +53,7 @@ class FoldedMatrix:
 
     def first_columns(self, count: int) -> FoldedMatrix:
         """The matrix of the first columns."""
-        first = self.half[:, :count]
-        return FoldedMatrix(self.fold, first)
+        return FoldedMatrix(self.fold, self.half[:, :count])
 
 
 @dataclass(frozen=True)
@@ -72,8 +68,7 @@ class FoldedTranspose:
 
     def __matmul__(self, columns: Matrix) -> Matrix:
         """Product with columns, k×m."""
-        sums_and_differences = self.matrix.fold @ columns
-        return self.matrix.half.T @ sums_and_differences
+        return self.matrix.half.T @ (self.matrix.fold @ columns)
 
 
 def folded(matrix: FloatArray, mirror: Indices, signs: FloatArray, parities: FloatArray) -> FoldedMatrix:

@@ -85,11 +85,7 @@ class InverseGeometricModel:
     @cached_property
     def efforts(self) -> tuple[tuple[Matrix, Conjugate], ...]:
         """Every effort of an actuator with the quantity that it works on, at this shape."""
-        efforts = []
-        for actuation in self.actuation:
-            conjugate = actuation.quantity.on(self.shape)
-            efforts.append((actuation.effort, conjugate))
-        return tuple(efforts)
+        return tuple([(actuation.effort, actuation.quantity.on(self.shape)) for actuation in self.actuation])
 
     @cached_property
     def energy_beyond_hooke(self) -> Conjugate | None:
@@ -158,9 +154,7 @@ class InverseGeometricModel:
 
     def _elastic(self, value: Matrix) -> Matrix:
         """A value in proportion to the stiffness: a longer rod is softer."""
-        if self.shape.ratio is None:
-            return value
-        return value / self.shape.ratio
+        return value if self.shape.ratio is None else value / self.shape.ratio
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
@@ -182,8 +176,5 @@ class InverseGeometricModel:
         wrench = self.statics.internal_wrench()
         rod = self.rod
         factor = rod.length / rod.energy_unit * rod.grid.weights
-        parts = []
-        for c in rod.admitted:
-            weighted = rod.at_nodes[c] * factor[:, None]
-            parts.append(ca.DM(weighted).T @ wrench[c, :].T)
+        parts = [ca.DM(rod.at_nodes[c] * factor[:, None]).T @ wrench[c, :].T for c in rod.admitted]
         return -ca.vertcat(*parts)

@@ -41,12 +41,8 @@ def motion_matrices(tangent: MotionTangent, loads: Sequence[LoadedSections]) -> 
         total = replace(total, damping=total.damping + mass_damping * total.mass)
     for load in loads:
         if load.load.kernel.rates:
-            added = MotionLoad(tangent, load).matrices
-            total = MotionMatrices(
-                stiffness=total.stiffness + added.stiffness / tangent.unit,
-                damping=total.damping + added.damping / tangent.unit,
-                mass=total.mass + added.mass / tangent.unit,
-            )
+            pairs = zip(total.orders, MotionLoad(tangent, load).matrices.orders, strict=True)
+            total = MotionMatrices(*(before + added / tangent.unit for before, added in pairs))
     return total
 
 

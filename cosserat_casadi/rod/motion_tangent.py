@@ -71,12 +71,7 @@ class MotionTangent:
         The forces are minus the virtual work of the inertia: the rows of the residual, and minus the moment about the
         base and the force on it.
         """
-        matrices = self._matrices
-        return MotionMatrices(
-            stiffness=self._ordered(matrices.stiffness),
-            damping=self._ordered(matrices.damping),
-            mass=self._ordered(matrices.mass),
-        )
+        return MotionMatrices(*map(self._ordered, self._matrices.orders))
 
     @cached_property
     def rotation(self) -> Jet:
@@ -137,34 +132,30 @@ class MotionTangent:
         A floating base adds a row to each component, and its shift as columns.
         """
         rod = self.tangent.rod
-        fields: dict[str, list[Matrix]] = {"mass": [], "damping": [], "stiffness": []}
+        # By z, by ż and by z̈.
+        fields: tuple[list[Matrix], ...] = ([], [], [])
         for component in rod.linear:
             axis = component - 3
             stretch = ca.DM(rod.length * rod.at_nodes[component])
-            orders = {
-                "mass": self.motion.shape.directors[axis],
-                "damping": 2 * self.motion.director_rate(axis),
-                "stiffness": self.motion.director_acceleration(axis),
-            }
-            for word, director in orders.items():
+            rate, acceleration = self.motion.director_rate(axis), self.motion.director_acceleration(axis)
+            orders = (acceleration, 2 * rate, self.motion.shape.directors[axis])
+            for columns, director in zip(fields, orders, strict=True):
                 rows = [self._with_shift_row(ca.diag(row) @ stretch) for row in ca.vertsplit(director)]
-                fields[word].append(ca.vertcat(*rows))
+                columns.append(ca.vertcat(*rows))
         if self.floating:
             nodes = rod.grid.size
             shift_rows = [(nodes + 1) * component + nodes for component in range(3)]
             by_shift = ca.DM(ca.Sparsity.triplet(3 * (nodes + 1), 3, shift_rows, [0, 1, 2]), 1.0)
-            fields["mass"].append(by_shift)
-            fields["damping"].append(ca.DM(*by_shift.shape))
-            fields["stiffness"].append(ca.DM(*by_shift.shape))
-        if not fields["mass"]:
+            none = ca.DM(*by_shift.shape)
+            for columns, order in zip(fields, (none, none, by_shift), strict=True):
+                columns.append(order)
+        if not fields[0]:
             return None
-        return MotionMatrices(**{word: ca.horzcat(*columns) for word, columns in fields.items()})
+        return MotionMatrices(*(ca.horzcat(*columns) for columns in fields))
 
     def _with_shift_row(self, rows: Matrix) -> Matrix:
         """One component at the nodes, with a row of zeros for the shift of a floating base."""
-        if not self.floating:
-            return rows
-        return ca.vertcat(rows, ca.DM(1, rows.shape[1]))
+        return ca.vertcat(rows, ca.DM(1, rows.shape[1])) if self.floating else rows
 
     @cached_property
     def _gram(self) -> Numbers:
@@ -273,7 +264,9 @@ class MotionTangent:
     def _matrices(self) -> MotionMatrices:
         """The matrices, turning rows and columns first."""
         rows = 3 * len(self._nodes)
-        turned = self._left_of_turning.T
+        ratio = self.motion.shape.ratio
+        # A longer rod has more mass.
+        turned = (self.rotation.value if ratio is None else ratio * self.rotation.value).T
         every = ca.diagcat(*[turned] * ORDERS) @ self._wrenches
         count = turned.shape[0]
         stiffness, damping, mass = (every[k * count : (k + 1) * count, :] for k in range(ORDERS))
@@ -281,46 +274,26 @@ class MotionTangent:
         others = self._stretch
         if others is None:
             return MotionMatrices(stiffness, damping, mass)
-        of_turning = [self._others_on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
+        on_turning, on_others = self._rows_of(others, self._nodes), self._rows_of(others, None)
+        of_turning = [on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
         columns = [others.stiffness, others.damping, others.mass]
         by_others = [turned @ (self._levers @ self._pulled(self._nodes, None, field)) for field in columns[:2]]
         by_others.append(of_turning[2].T)
-        of_others = [self._others_on_others @ field for field in columns]
+        of_others = [on_others @ field for field in columns]
         blocks = zip((stiffness, damping, mass), by_others, of_turning, of_others, strict=True)
         return MotionMatrices(*(ca.blockcat([[one, two], [three, four]]) for one, two, three, four in blocks))
 
-    @cached_property
-    def _left_of_turning(self) -> Matrix:
-        """Rotations Θ times the ratio of the lengths: a longer rod has more mass."""
-        if self.motion.shape.ratio is None:
-            return self.rotation.value
-        return self.motion.shape.ratio * self.rotation.value
-
-    @cached_property
-    def _others_on_turning(self) -> Matrix:
-        """Rows of the linear strains and the shift, as they pull at accelerations of the nodes that turn."""
-        assert self._stretch is not None, "asked for with other columns"
-        pulled = self._pulled(self._nodes, None, self._stretch.mass)
-        return (self._mass * self.inertia.ratio) * pulled.T
-
-    @cached_property
-    def _others_on_others(self) -> Matrix:
-        """Rows of the linear strains and the shift, as they pull at accelerations of all nodes."""
-        assert self._stretch is not None, "asked for with other columns"
-        pulled = self._pulled(None, None, self._stretch.mass)
-        return (self._mass * self.inertia.ratio) * pulled.T
+    def _rows_of(self, others: MotionMatrices, nodes: list[int] | None) -> Matrix:
+        """Rows of the linear strains and the shift, as they pull at accelerations of some nodes, or of all."""
+        return (self._mass * self.inertia.ratio) * self._pulled(nodes, None, others.mass).T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
         """A matrix in the order of the coordinates: turns of the base follow all strains."""
-        if not self.floating:
-            return matrix
-        return matrix[self._order, self._order]
+        return matrix[self._order, self._order] if self.floating else matrix
 
     def _ordered_columns(self, matrix: Matrix) -> Matrix:
         """A matrix whose columns are in the order of the coordinates."""
-        if not self.floating:
-            return matrix
-        return matrix[:, self._order]
+        return matrix[:, self._order] if self.floating else matrix
 
     @cached_property
     def _order(self) -> list[int]:
@@ -405,6 +378,5 @@ def _outer(left: Matrix, right: Matrix, weights: Numbers) -> Matrix:
     rows: list[Sequence[Matrix]] = []
     for left_row in ca.vertsplit(left):
         weighted = left_row.T * columns
-        blocks = [ca.diag(weighted * right_row.T) for right_row in ca.vertsplit(right)]
-        rows.append(blocks)
+        rows.append([ca.diag(weighted * right_row.T) for right_row in ca.vertsplit(right)])
     return ca.blockcat(rows)

@@ -7,7 +7,8 @@ kernel, and the residual −Σ (δrᵀ f + δθᵀ c) by −Σ [δr; δθ]ᵀ [�
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -130,25 +131,6 @@ class LoadedSections:
         operator = block_diagonal(blocks, function.sparsity_out(0))
         return self.load.scale * operator
 
-    @property
-    def is_cheaper_at_nodes(self) -> bool:
-        """Whether the stiffness of sections between nodes takes far fewer products when it is brought to the nodes."""
-        if self.load.sections is None:
-            return False
-        rod, count = self.shape.rod, self.count
-        of_element = rod.grid.size // rod.grid.elements
-        at_sections = 3 * count * rod.size * (of_element + rod.size)
-        at_nodes = 9 * count * of_element**2 + 3 * rod.grid.size * rod.size * (3 * of_element + rod.size)
-        return at_nodes < FAR_FEWER * at_sections
-
-    @cached_property
-    def stiffness_of_nodes(self) -> Matrix:
-        """Operator from δr of the nodes to the weighted δf of sections between them, brought to the nodes, 3M×3M."""
-        assert self.load.sections is not None, "they lie between nodes"
-        of_positions = self.stiffness[: 3 * self.count, : 3 * self.count]
-        to_sections = ca.kron(ca.DM.eye(3), self.load.sections.placed.interpolation)
-        return to_sections.T @ (self.weighted(of_positions) @ to_sections)
-
     @cached_property
     def with_rates(self) -> dict[str, Matrix]:
         """Operators from the variation of each rate of the sections, 3k×1, to [δf; δc], 6k×3k."""
@@ -160,25 +142,11 @@ class LoadedSections:
 
     def weighted(self, variation: Matrix) -> Matrix:
         """Rows of stacked fields, 3k×n or 6k×n, each times the weight of its section."""
+        if self.load.at is not None:
+            return variation
         components = variation.shape[0] // self.count
         weights = ca.repmat(as_matrix(self.weights), components, 1)
         return ca.diag(weights) @ variation
-
-    @cached_property
-    def with_base(self) -> tuple[Matrix, Matrix]:
-        """[δf; δc] with a shift (m) and with a turn (rad) of the base, base axes, 6k×3 each.
-
-        Moving the base moves every section, δr = δp + δφ × r and δθ = δφ. That f and c, fixed in the world, turn
-        back in the axes of the base is left to the frozen wrench.
-        """
-        count = self.count
-        # δφ × r at every section.
-        levers = hat_blocks(*(row.T for row in ca.vertsplit(-self.position)))
-        alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
-        no_turn = ca.DM(3 * count, 3)
-        shift = ca.vertcat(alike, no_turn)
-        turn = ca.vertcat(levers, alike)
-        return self.stiffness @ shift, self.stiffness @ turn
 
     def changed(self, variation: Matrix) -> Wrench:
         """A wrench on the same sections whose forces and moments are a variation of this load's, 6k×1."""
@@ -223,9 +191,7 @@ class LoadedSections:
         return [self.at_sections(self.load.motion.undamped(rate)) for rate in self.load.kernel.rates]
 
     def _scaled(self, part: Matrix) -> Matrix | None:
-        if not part.nnz():
-            return None
-        return self.load.scale * part
+        return self.load.scale * part if part.nnz() else None
 
     def _mapped(self, function: ca.Function) -> list[Matrix]:
         """Results of a function of the kernel at all sections, side by side."""
@@ -237,3 +203,73 @@ class LoadedSections:
         given = [self.position, rotations, *repeated, as_matrix(self.load.data), *self._rates]
         results = function.map(count).call(given)
         return list(results)
+
+
+@dataclass(frozen=True)
+class StiffSections:
+    """Sections of a rod with all loads on them that depend on their poses.
+
+    Attributes:
+        loads: the loads, on the same sections.
+    """
+
+    loads: Sequence[LoadedSections]
+
+    @property
+    def sections(self) -> LoadedSections:
+        """The sections with one of their loads."""
+        return self.loads[0]
+
+    @cached_property
+    def stiffness(self) -> Matrix:
+        """Operator from [δr; δθ] to [δf; δc] of all sections and loads, 6k×6k."""
+        return sum((load.stiffness for load in self.loads[1:]), self.loads[0].stiffness)
+
+    @property
+    def is_cheaper_at_nodes(self) -> bool:
+        """Whether the stiffness of sections between nodes takes far fewer products when it is brought to the nodes."""
+        sections = self.sections
+        if sections.load.sections is None:
+            return False
+        rod, count = sections.shape.rod, sections.count
+        of_element = rod.grid.size // rod.grid.elements
+        at_sections = 3 * count * rod.size * (of_element + rod.size)
+        at_nodes = 9 * count * of_element**2 + 3 * rod.grid.size * rod.size * (3 * of_element + rod.size)
+        return at_nodes < FAR_FEWER * at_sections
+
+    @cached_property
+    def stiffness_of_nodes(self) -> Matrix:
+        """Operator from δr of the nodes to the weighted δf of sections between them, brought to the nodes, 3M×3M."""
+        sections = self.sections
+        assert sections.load.sections is not None, "they lie between nodes"
+        of_positions = self.stiffness[: 3 * sections.count, : 3 * sections.count]
+        to_sections = ca.kron(ca.DM.eye(3), sections.load.sections.placed.interpolation)
+        return to_sections.T @ (sections.weighted(of_positions) @ to_sections)
+
+    @cached_property
+    def with_base(self) -> tuple[Matrix, Matrix]:
+        """[δf; δc] with a shift (m) and with a turn (rad) of the base, base axes, 6k×3 each.
+
+        Moving the base moves every section, δr = δp + δφ × r and δθ = δφ. That f and c, fixed in the world, turn
+        back in the axes of the base is left to the frozen wrench.
+        """
+        count = self.sections.count
+        # δφ × r at every section.
+        levers = hat_blocks(*(row.T for row in ca.vertsplit(-self.sections.position)))
+        alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
+        shift = ca.vertcat(alike, ca.DM(3 * count, 3))
+        turn = ca.vertcat(levers, alike)
+        return self.stiffness @ shift, self.stiffness @ turn
+
+    def changed_by_base(self, motion: int, axis: int) -> Wrench:
+        """Change of all loads with a shift of the base along one of its axes (motion 0), or a turn about it (1)."""
+        return self.sections.changed(self.with_base[motion][:, axis])
+
+
+def by_sections(loads: Sequence[LoadedSections]) -> list[StiffSections]:
+    """Loads that depend on poses, together with those on the same sections; loads at one section come last."""
+    groups: dict[Hashable, list[LoadedSections]] = defaultdict(list)
+    for load in sorted(loads, key=lambda load: load.load.at is not None):
+        places = tuple(load.nodes) if load.load.sections is None else id(load.load.sections)
+        groups[load.load.at is not None, places].append(load)
+    return [StiffSections(group) for group in groups.values()]

@@ -19,7 +19,7 @@ from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.pose_load import LoadedSections, StiffSections
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import Wrench, WrenchAt
@@ -48,9 +48,9 @@ class Reaction:
             if wrench.force is not None:
                 turned = self.tangent.turned(wrench, wrench.force)
                 force = force - self._resultant(turned, wrench)
-        for load in self._statics.pose_loads:
-            forces, _ = _halves(self.tangent.wrench_variation(load))
-            force = force - _summed(forces, load)
+        for stiff, change in self._changes:
+            forces, _ = ca.vertsplit(change, 3 * stiff.sections.count)
+            force = force - _summed(forces, stiff.sections)
         return force
 
     @cached_property
@@ -68,31 +68,39 @@ class Reaction:
             if wrench.moment is not None:
                 turned = self.tangent.turned(wrench, wrench.moment)
                 moment = moment - self._resultant(turned, wrench)
-        for load in self._statics.pose_loads:
+        for stiff, change in self._changes:
             # The δr × f of these are in the covector already, with the other frozen forces.
-            forces, moments = _halves(self.tangent.wrench_variation(load))
-            moment = moment - _hat_row(load.position) @ forces - _summed(moments, load)
+            forces, moments = ca.vertsplit(change, 3 * stiff.sections.count)
+            moment = moment - _hat_row(stiff.sections.position) @ forces - _summed(moments, stiff.sections)
         return moment
 
     @cached_property
     def with_turn(self) -> Variation:
         """Derivatives with a turn of the base, base axes, rad."""
         # Pose-dependent wrenches turn back as dead ones do, and change with the motion of their sections besides.
-        loads = self._statics.pose_loads
-        fixed = [*self.dead, *(load.frozen for load in loads)]
+        fixed = [*self.dead, *(load.frozen for load in self._statics.pose_loads)]
         variations = []
         for axis in range(3):
             turned_back = [_turned_back(wrench, axis) for wrench in fixed]
-            variations.append([*turned_back, *(load.changed(load.with_base[1][:, axis]) for load in loads)])
+            variations.append([*turned_back, *(stiff.changed_by_base(1, axis) for stiff in self._stiff_sections)])
         return self._side_by_side(variations)
 
     @cached_property
     def with_shift(self) -> Variation | None:
         """Derivatives with a shift of the base, base axes, m; None where no load depends on where the rod is."""
-        loads = self._statics.pose_loads
-        if not loads:
+        if not self._stiff_sections:
             return None
-        return self._side_by_side([[load.changed(load.with_base[0][:, axis]) for load in loads] for axis in range(3)])
+        changed = [[stiff.changed_by_base(0, axis) for stiff in self._stiff_sections] for axis in range(3)]
+        return self._side_by_side(changed)
+
+    @property
+    def _stiff_sections(self) -> list[StiffSections]:
+        return self.tangent.stiff_sections
+
+    @cached_property
+    def _changes(self) -> list[tuple[StiffSections, Matrix]]:
+        """Sections with loads that depend on their poses, and the change [δf; δc] of these loads, 6k×n each."""
+        return [(stiff, self.tangent.change(stiff)[1]) for stiff in self._stiff_sections]
 
     @property
     def _statics(self) -> Statics:
@@ -133,13 +141,6 @@ class Reaction:
         return _hat_row(weighted)
 
 
-def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
-    """Variations of the forces and of the moments, 3k×n each, from a variation of both, 6k×n."""
-    half = variation.shape[0] // 2
-    forces, moments = ca.vertsplit(variation, half)
-    return forces, moments
-
-
 def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
     """Sum over the sections of a load, 3×n, of variations that hold their weights, 3k×n."""
     over_sections = ca.DM.ones(1, load.count)
@@ -154,12 +155,8 @@ def _hat_row(field: Matrix) -> Matrix:
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
     """Change of a wrench of fixed direction, as the base sees it, while the base turns about one of its axes."""
-    force = wrench.force
-    if force is not None:
-        force = _cross_with_axis(force, axis)
-    moment = wrench.moment
-    if moment is not None:
-        moment = _cross_with_axis(moment, axis)
+    parts = (wrench.force, wrench.moment)
+    force, moment = (None if part is None else _cross_with_axis(part, axis) for part in parts)
     return replace(wrench, force=force, moment=moment)
 
 

@@ -40,17 +40,12 @@ class FrameMotion:
     angular_acceleration: Matrix
 
     def __post_init__(self) -> None:
-        for name in ("velocity", "angular_velocity", "acceleration", "angular_acceleration"):
-            check_shape(name, getattr(self, name), 3, 1)
+        for rate in RATES:
+            check_shape(rate, getattr(self, rate), 3, 1)
 
     def in_axes(self, axes_R_world: Matrix) -> FrameMotion:
         """This motion with coordinates in other axes, which a rotation, 3×3, leads to."""
-        return FrameMotion(
-            velocity=axes_R_world @ self.velocity,
-            angular_velocity=axes_R_world @ self.angular_velocity,
-            acceleration=axes_R_world @ self.acceleration,
-            angular_acceleration=axes_R_world @ self.angular_acceleration,
-        )
+        return FrameMotion(*(axes_R_world @ getattr(self, rate) for rate in RATES))
 
     def at(self, arm: Matrix) -> FrameMotion:
         """Motion of a point that is fixed to the frame, 3×1 from its origin, in the same axes."""

@@ -114,11 +114,7 @@ class SectionKernel:
 
     def _in_base(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
         base_rotation = symbols[3]
-        results = []
-        for vector in self.world_wrench(*self._in_world(symbols)):
-            in_base = base_rotation.T @ vector
-            results.append(ca.sparsify(in_base))
-        return results
+        return [ca.sparsify(base_rotation.T @ vector) for vector in self.world_wrench(*self._in_world(symbols))]
 
 
 def rotation_rates(rotation: Matrix) -> list[Matrix]:

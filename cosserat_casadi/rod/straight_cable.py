@@ -126,9 +126,7 @@ class StraightCable(Cable):
     @cached_property
     def pull(self) -> Matrix:
         """Generalised force of a unit of tension at the base, n×1, m."""
-        if self.conservative:
-            return self.gradient
-        return self._work_of(self._results[2].T)
+        return self.gradient if self.conservative else self._work_of(self._results[2].T)
 
     def curvature(self, a: int, b: int) -> None:
         """Return None: strains between two holes act together, not node by node."""

@@ -58,9 +58,7 @@ Ratio: TypeAlias = Matrix | None
 
 def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
     """A density per length of the rod as a density per reference length; unchanged where the length is fixed."""
-    if ratio is None:
-        return value
-    return value * ratio
+    return value if ratio is None else value * ratio
 
 
 @dataclass(frozen=True)
@@ -297,11 +295,6 @@ class DiscreteRod:
         return (self.node_matrices[component] @ q[self.columns[component]]).T
 
     @cached_property
-    def magnus_order(self) -> int:
-        """Order of the rotation integrator; a rod that turns about one axis needs no commutator."""
-        return int(self.discretisation.transport.removeprefix("magnus"))
-
-    @cached_property
     def taylor_matrices(self) -> list[dict[int, FloatArray]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
         X, element, *_ = self._taylor_samples
@@ -406,7 +399,7 @@ class DiscreteRod:
         """Taylor coefficients read per interval: one where all turns share an axis."""
         if len(self.properties.turning_axes) < 2:
             return 1
-        return magnus.coefficient_count(self.magnus_order)
+        return magnus.coefficient_count(int(self.discretisation.transport.removeprefix("magnus")))
 
     def _taylor(self, samples: FloatArray) -> list[FloatArray]:
         """Taylor coefficients over every interval of ℓ h times a field, from its samples at the Gauss points."""

@@ -26,7 +26,6 @@ quantity that they work on. Only what a scene's loads need is formed.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,7 +48,7 @@ from cosserat_casadi.rod.actuation_stiffness import actuation_stiffness
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.pose_load import LoadedSections, StiffSections, by_sections
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
@@ -146,9 +145,7 @@ class Tangent:
     @cached_property
     def _turns(self) -> Matrix:
         """Derivative of the stacked turns with respect to the coordinates of the columns."""
-        if self.turns is not None:
-            return self.turns
-        return self.turn_matrix.unfolded
+        return self.turns if self.turns is not None else self.turn_matrix.unfolded
 
     @cached_property
     def interval_operators(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -187,11 +184,8 @@ class Tangent:
         """Variations at the nodes, 3M×k, from variations of the sections beyond the base, which has none; stacked."""
         # Both nodes at a break turn with their one section; the base does not turn.
         section_of_node = np.asarray(self.rod.grid.section_of_node).tolist()
-        parts = []
-        for part in ca.vertsplit(sections, self.intervals):
-            with_base = _with_base(part)
-            parts.append(with_base[section_of_node, :])
-        return ca.vertcat(*parts)
+        parts = ca.vertsplit(sections, self.intervals)
+        return ca.vertcat(*[_with_base(part)[section_of_node, :] for part in parts])
 
     @cached_property
     def tangent(self) -> Matrix:
@@ -283,10 +277,15 @@ class Tangent:
             turned = ca.vertcat(*[component[nodes, :] for component in ca.vertsplit(turned, grid.size)])
         return ca.vertcat(*moved, self._with_linear_columns(turned))
 
-    def wrench_variation(self, load: LoadedSections) -> Matrix:
-        """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""
-        variation = load.stiffness @ self.motion(load)
-        return load.weighted(variation)
+    @cached_property
+    def stiff_sections(self) -> list[StiffSections]:
+        """Sections of the rod with their loads that depend on poses."""
+        return by_sections(self.igm.statics.pose_loads)
+
+    def change(self, stiff: StiffSections) -> tuple[Matrix, Matrix]:
+        """Motion [δr; δθ] of sections, and weighted change [δf; δc] of their loads, 6k×n each."""
+        motion = self.motion(stiff.sections)
+        return motion, stiff.sections.weighted(stiff.stiffness @ motion)
 
     def turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
         """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n, base frame."""
@@ -347,12 +346,10 @@ class Tangent:
     @property
     def _have_potential(self) -> bool:
         """Whether all wrenches have a potential once wrenches that depend on poses are taken as dead ones."""
-        for wrench in self.igm.pulled.wrenches:
-            if wrench.follower and wrench.force is not None:
-                return False
-            if wrench.moment is not None and not self._about_one_axis:
-                return False
-        return True
+        wrenches = self.igm.pulled.wrenches
+        follows = any(wrench.follower and wrench.force is not None for wrench in wrenches)
+        turns = any(wrench.moment is not None for wrench in wrenches)
+        return not follows and (self._about_one_axis or not turns)
 
     @property
     def _potential_lacks_at_points(self) -> bool:
@@ -456,19 +453,13 @@ class Tangent:
     def _pose_stiffness(self) -> Matrix | None:
         """Stiffness of loads that depend on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
         parts = []
-        at_sections: dict[int, list[LoadedSections]] = defaultdict(list)
-        for load in self.igm.pulled.pose_loads:
-            if load.is_cheaper_at_nodes:
+        for stiff in self.stiff_sections:
+            if stiff.is_cheaper_at_nodes:
                 moved = self.displacement_of_nodes
-                parts.append(moved.T @ (load.stiffness_of_nodes @ moved))
-            elif load.load.at is None:
-                parts.append(self.motion(load).T @ self.wrench_variation(load))
+                parts.append(moved.T @ (stiff.stiffness_of_nodes @ moved))
             else:
-                at_sections[load.nodes[0]].append(load)
-        for node, loads in at_sections.items():
-            # Loads on one section share its motion.
-            motion = ca.vertcat(self.position(node), self.rotation_of(node))
-            parts.append(motion.T @ (sum((load.stiffness for load in loads[1:]), loads[0].stiffness) @ motion))
+                motion, change = self.change(stiff)
+                parts.append(motion.T @ change)
         total = summed(parts)
         return None if total is None else total / -self.rod.energy_unit
 

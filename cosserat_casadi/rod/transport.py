@@ -15,7 +15,7 @@ import casadi as ca
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.block_operators import unstack
-from cosserat_casadi.maths.numbers import as_matrix, column, each_times
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
@@ -294,13 +294,5 @@ def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
 
 def _curvature(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     """K at the nodes, per reference length, 3×M, 1/m."""
-    intrinsic = rod.properties.intrinsic_curvature(rod.grid.nodes)
-    rows = []
-    for axis in range(3):
-        own = each_times(column(intrinsic, axis), rod.node_rates)
-        row = per_reference_length(as_matrix(own).T, ratio)
-        if axis in rod.columns:
-            varying = ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]
-            row = row + varying.T
-        rows.append(row)
-    return ca.vertcat(*rows)
+    rows = rod.strain_rows(q, range(3), ratio)
+    return ca.vertcat(*[ca.DM.zeros(1, rod.grid.size) if row is None else row for row in rows])

@@ -5,14 +5,23 @@ A kind is a record here and a class in `actuators/` that gives the quantity its 
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJsonSchema
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, one_of, shown
+from cosserat_casadi.scene.faults import (
+    Fault,
+    SceneTables,
+    Table,
+    not_ascending,
+    numbers_of,
+    one_of,
+    refused_keys,
+    shown,
+    table_of,
+)
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import force_or_moment
 from cosserat_casadi.scene.records import Entry, Record, refusal
@@ -69,9 +78,7 @@ def _faults_of_holes(given: Table) -> Iterator[Fault]:
         yield Fault(("routing",), problem, "give [[disks]] with its rod, or holes")
     places = numbers_of(given.get("holes"))
     ends = numbers_of(given.get("span", [0.0, 1.0]))
-    for i, (before, at) in enumerate(itertools.pairwise(places), 1):
-        if not at > before:
-            yield Fault(("holes", i), f"must be > {shown(before)}, the hole before it, got {shown(at)}")
+    yield from not_ascending(places, ("holes",), "hole")
     if len(ends) == 2:
         for i, at in enumerate(places):
             if not ends[0] <= at <= ends[1]:
@@ -179,9 +186,10 @@ offset = [1.5e-3, 0.0]
         # Only an unknown tension can be held at zero from below.
         if given.get("slack") is True and "length" not in given:
             yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
-        for key in ("axial_stiffness", "winch_stiffness", "pretension"):
-            if key in given and "length" not in given:
-                yield Fault((key,), "is for a tendon of given length", "leave it out: a given tension is what it is")
+        if "length" not in given:
+            of_length = ("axial_stiffness", "winch_stiffness", "pretension")
+            remedy = "leave it out: a given tension is what it is"
+            yield from refused_keys(given, of_length, "is for a tendon of given length", remedy)
         elastic = "axial_stiffness" in given or "winch_stiffness" in given
         if "pretension" in given and not elastic:
             remedy = "give axial_stiffness or winch_stiffness: the tension of a rigid cable follows from its length"
@@ -192,8 +200,7 @@ offset = [1.5e-3, 0.0]
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """A course between holes needs the rotations of their sections."""
-        accuracy = scene.get("accuracy")
-        if "holes" in given and isinstance(accuracy, Mapping) and accuracy.get("rotation") == "permuted":
+        if "holes" in given and table_of(scene.get("accuracy")).get("rotation") == "permuted":
             problem = "does not go with accuracy.rotation = 'permuted'"
             yield Fault(("holes",), problem, "use a product of exponentials, or a continuous course")
 
@@ -291,9 +298,7 @@ def _faults_of_knots(given: Table) -> Iterator[Fault]:
     if len(knots) < 2:
         yield Fault(("knots",), f"must be at least 2 abscissae, got {len(knots)}", "leave them out for one value")
         return
-    for i, (before, at) in enumerate(itertools.pairwise(knots), 1):
-        if not at > before:
-            yield Fault(("knots", i), f"must be > {shown(before)}, the knot before it, got {shown(at)}")
+    yield from not_ascending(knots, ("knots",), "knot")
     if len(span) == 2 and not (knots[0] <= span[0] and span[1] <= knots[-1]):
         problem = f"must reach over its span, {span[0]:g} to {span[1]:g}, got {knots[0]:g} to {knots[-1]:g}"
         yield Fault(("knots",), problem)
@@ -362,9 +367,8 @@ profile = { base = 1.0, tip = 0.2 }
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """An unloaded curvature is a moment where the stiffness is one number for each strain."""
-        _, rod = scene.named("rods").get(str(given.get("rod")), (0, {}))
-        material = rod.get("material")
-        law = material.get("law", "linear") if isinstance(material, Mapping) else "linear"
+        rod = scene.table_named("rods", given.get("rod"))
+        law = table_of(rod.get("material")).get("law", "linear")
         if "curvature" in given and (law != "linear" or "stiffness_matrix" in rod):
             yield Fault(
                 ("curvature",), "is for a rod with one stiffness for each strain", "give the moment that it has"

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Mapping
 
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown, table_of
 
 TIP = 1.0
 """Abscissa of a tip, where a joint is unless it says otherwise."""
@@ -35,9 +35,9 @@ def _carriers(scene: SceneTables) -> dict[str, str]:
     """Name of the rod that carries each rod which starts on another rod, by the name of the carried one."""
     carriers = {}
     for name, (_, rod) in scene.named("rods").items():
-        base = rod.get("base")
-        if isinstance(base, Mapping) and isinstance(base.get("rod"), str):
-            carriers[name] = base["rod"]
+        carrier = table_of(rod.get("base")).get("rod")
+        if isinstance(carrier, str):
+            carriers[name] = carrier
     return carriers
 
 
@@ -71,8 +71,7 @@ def rods_that_spin(scene: SceneTables) -> Iterator[Fault]:
 
 def _turns_about_its_axis(scene: SceneTables, name: str, rod: Table) -> bool:
     """Whether nothing but balls and pins, which are on its axis, holds a rod."""
-    base = rod.get("base")
-    floats = isinstance(base, Mapping) and base.get("free") is True
+    floats = table_of(rod.get("base")).get("free") is True
     for key, kinds in (("supports", SUPPORTS), ("joints", JOINTS)):
         for _, holder in scene.tables(key):
             if holder.get("rod") != name:
@@ -105,8 +104,7 @@ def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:
 
 def links_of(joint: Table) -> tuple[str | None, str | None]:
     """The bodies at the two ends of a joint; None for a rod or the world."""
-    carried = joint.get("carries")
-    bodies = (joint.get("body"), carried.get("body") if isinstance(carried, Mapping) else None)
+    bodies = (joint.get("body"), table_of(joint.get("carries")).get("body"))
     # A faulty name may be what no set can hold.
     first, second = (body if isinstance(body, str) else None for body in bodies)
     return first, second

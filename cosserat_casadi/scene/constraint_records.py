@@ -6,17 +6,27 @@ A kind of support or joint is a record here and a class in `constraints/` that s
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
+from cosserat_casadi.scene.faults import (
+    Fault,
+    SceneTables,
+    Table,
+    below,
+    listing,
+    numbers_of,
+    refused_keys,
+    shown,
+    table_of,
+)
 from cosserat_casadi.scene.input_fields import InputField
-from cosserat_casadi.scene.joint_ends import end_faults
-from cosserat_casadi.scene.orientations import ORIENTATION_KEYS, Oriented
+from cosserat_casadi.scene.joint_ends import PLACE, end_faults
+from cosserat_casadi.scene.orientations import Oriented
 from cosserat_casadi.scene.reach_rules import named_rod, out_of_reach
 from cosserat_casadi.scene.records import Entry, refusal, sound
 from cosserat_casadi.scene.values import (
@@ -248,18 +258,6 @@ carries = { body = "platform", position = [0, 0, 0.1] }     # instead of rod
     )
 
 
-class JointPlace(NamedTuple):
-    """Where a joint is in a body.
-
-    Attributes:
-        body: name of the body.
-        position: of the joint in the body, m.
-    """
-
-    body: str
-    position: Triple
-
-
 class JointRecord(Oriented, Entry):
     """A joint of a section of a rod with a body or the world, or of the base of a rod with what its base names.
 
@@ -300,40 +298,33 @@ class JointRecord(Oriented, Entry):
         """Require two ends of the joint, and a place in the world; refuse a place or an orientation of a base."""
         yield from super().conflicts(given)
         if "between" in given:
-            for fault in end_faults(given["between"]):
-                yield fault.below(("between",))
+            yield from below(("between",), end_faults(given["between"]))
             return
         if "carries" in given:
-            for key in ("rod", "at"):
-                if key in given:
-                    yield Fault((key,), "stands beside carries", "a joint holds a section of a rod, or a body")
+            remedy = "a joint holds a section of a rod, or a body"
+            yield from refused_keys(given, ("rod", "at"), "stands beside carries", remedy)
         elif "rod" not in given:
             yield Fault(("rod",), "missing", "name the rod, the two ends as between = …, or the body that it carries")
         if "body" in given:
             return
         if given.get("at") == 0:
-            for key in ("position", *ORIENTATION_KEYS):
-                if key in given:
-                    problem = "stands in a joint at X = 0 without body"
-                    yield Fault((key,), problem, "give it to the base of the rod, which says where the joint is")
+            remedy = "give it to the base of the rod, which says where the joint is"
+            yield from refused_keys(given, PLACE, "stands in a joint at X = 0 without body", remedy)
         elif "position" not in given and ("carries" not in given or sound(CarriedBody, given["carries"]) is not None):
             yield Fault(("position",), "missing", "name a body, or say where in the world the joint is, m")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """A base that a joint holds is not free, and starts at the section that carries it; bodies are there."""
-        carried = given.get("carries")
-        if isinstance(carried, Mapping) and isinstance(carried.get("body"), str):
-            bodies = scene.named("bodies")
-            if carried["body"] not in bodies:
-                problem = f"no body is named {shown(carried['body'])}"
-                yield Fault(("carries", "body"), problem, listing(bodies, "bodies"))
-            elif carried["body"] == given.get("body"):
-                yield Fault(("carries", "body"), "a body cannot carry itself", "name another body, or leave body out")
-        name = given.get("rod")
-        _, rod = scene.named("rods").get(name if isinstance(name, str) else "", (0, {}))
-        base = rod.get("base")
-        if given.get("at") != 0 or not isinstance(base, Mapping):
+        carried = table_of(given.get("carries")).get("body")
+        bodies = scene.named("bodies")
+        if isinstance(carried, str) and carried not in bodies:
+            problem = f"no body is named {shown(carried)}"
+            yield Fault(("carries", "body"), problem, listing(bodies, "bodies"))
+        elif isinstance(carried, str) and carried == given.get("body"):
+            yield Fault(("carries", "body"), "a body cannot carry itself", "name another body, or leave body out")
+        base = table_of(scene.table_named("rods", given.get("rod")).get("base"))
+        if given.get("at") != 0:
             return
         if base.get("free") is True:
             yield Fault(("at",), "holds a base that is free", "leave base.free out: the joint says what is free")
@@ -361,12 +352,10 @@ class JointRecord(Oriented, Entry):
         return self.body is None and self.holds_base
 
     @property
-    def places(self) -> tuple[JointPlace, ...]:
-        """The bodies at its ends, with its places in them."""
-        places = () if self.body is None else (JointPlace(self.body, self.position),)
-        if self.carries is None:
-            return places
-        return (*places, JointPlace(self.carries.body, self.carries.position))
+    def places(self) -> tuple[JointRecord | CarriedBody, ...]:
+        """The records that say where it is in the bodies at its ends: itself, and the body that it carries."""
+        ends = (None if self.body is None else self, self.carries)
+        return tuple(end for end in ends if end is not None)
 
     @property
     def has_coordinate(self) -> bool:
@@ -460,16 +449,18 @@ class AxisJoint(JointRecord):
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A drive says where the coordinate is: nothing else acts on it. Inputs have a name. Stops leave a range."""
         yield from super().conflicts(given)
-        for key in (cls.effort_key, "stiffness", "rest", "damping", "friction", *STOP_KEYS):
-            if cls.coordinate_key in given and key in given:
-                yield Fault((key,), f"stands beside {cls.coordinate_key}", "which is prescribed: leave one of them out")
+        if cls.coordinate_key in given:
+            acting = (cls.effort_key, "stiffness", "rest", "damping", "friction", *STOP_KEYS)
+            remedy = "which is prescribed: leave one of them out"
+            yield from refused_keys(given, acting, f"stands beside {cls.coordinate_key}", remedy)
         if "rest" in given and "stiffness" not in given:
             yield Fault(("stiffness",), "missing", "rest is where a spring is unloaded")
         if "slip_rate" in given and "friction" not in given:
             yield Fault(("slip_rate",), "is of friction, and the joint has none", "give it friction")
-        for key in ("restitution", "stop_stiffness"):
-            if key in given and not any(stop in given for stop in STOP_KEYS):
-                yield Fault((key,), "is of a stop, and the joint has none", "give lower_stop, upper_stop or both")
+        if not any(stop in given for stop in STOP_KEYS):
+            remedy = "give lower_stop, upper_stop or both"
+            of_stops = ("restitution", "stop_stiffness")
+            yield from refused_keys(given, of_stops, "is of a stop, and the joint has none", remedy)
         if "restitution" in given and "stop_stiffness" in given:
             problem = "stands beside stop_stiffness, and an elastic stop gives back what it took"
             yield Fault(("restitution",), problem, "leave one of them out")

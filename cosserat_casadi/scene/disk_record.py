@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, Table, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, Table, list_of, not_ascending, numbers_of
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.values import ABOVE_BASE, Name, NotEmpty, NotNegative, Number, Positive, Whole, above_base
 
@@ -34,8 +33,7 @@ def lead_through_disks(tables: dict[str, Any]) -> None:
 
 def tables_of(tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
     """The tables of a list, which may be faulty."""
-    listed = tables.get(key)
-    return [table for table in listed if isinstance(table, dict)] if isinstance(listed, list) else []
+    return [table for table in list_of(tables.get(key)) if isinstance(table, dict)]
 
 
 Section = Annotated[Number, above_base("at its base a rod does not move: leave that disk out"), ABOVE_BASE]
@@ -76,9 +74,7 @@ thickness = 0.002
         places = numbers_of(given.get("at"))
         if len(places) > MOST_DISKS:
             yield Fault(("at",), f"must have at most {MOST_DISKS} entries, got {len(places)}")
-        for i, (before, at) in enumerate(itertools.pairwise(places), 1):
-            if not at > before:
-                yield Fault(("at", i), f"must be > {shown(before)}, the place before it, got {shown(at)}")
+        yield from not_ascending(places, ("at",), "place")
 
     @property
     def places(self) -> tuple[float, ...]:

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from cosserat_casadi.scene.disk_record import Disks, tables_of
-from cosserat_casadi.scene.faults import Table
+from cosserat_casadi.scene.faults import Table, list_of
 from cosserat_casadi.scene.joint_ends import add_unlisted_body
 from cosserat_casadi.scene.obstacle_records import OBSTACLES
 from cosserat_casadi.scene.records import sound
@@ -25,7 +25,8 @@ def seat_disks(tables: dict[str, Any]) -> None:
     """
     if not all(isinstance(tables.get(key, []), list) for key in ("bodies", "joints")):
         return
-    free = [name for entry in _listed(tables, "parameters") for name in (entry if isinstance(entry, list) else [entry])]
+    listed = list_of(tables.get("parameters"))
+    free = [name for entry in listed for name in (entry if isinstance(entry, list) else [entry])]
     rows: dict[str, Disks] = {}
     seated: dict[str, list[str]] = {}
     for row in tables_of(tables, "disks"):
@@ -41,7 +42,7 @@ def seat_disks(tables: dict[str, Any]) -> None:
         if stood_alone:
             seated[name] = _seated(tables, record)
     for obstacle in tables_of(tables, "obstacles"):
-        for name in list(_listed(obstacle, "disks")) if touches_disks(obstacle) else []:
+        for name in list(list_of(obstacle.get("disks"))) if touches_disks(obstacle) else []:
             is_row = isinstance(name, str) and name in rows
             if not is_row or not isinstance(obstacle.get("bodies", []), list):
                 continue
@@ -81,22 +82,16 @@ def _unseat(tables: dict[str, Any], row: str) -> bool:
     if not names:
         return False
     planes = [obstacle for obstacle in tables_of(tables, "obstacles") if touches_disks(obstacle)]
-    touching = [obstacle for obstacle in planes if {*names} <= {*_listed(obstacle, "bodies")}]
+    touching = [obstacle for obstacle in planes if {*names} <= {*list_of(obstacle.get("bodies"))}]
     for obstacle in touching:
         others = [name for name in obstacle["bodies"] if name not in names]
         obstacle["bodies"] = others
         if not others:
             del obstacle["bodies"]
-        obstacle["disks"] = [*_listed(obstacle, "disks"), row]
+        obstacle["disks"] = [*list_of(obstacle.get("disks")), row]
     tables["bodies"] = [body for body in tables["bodies"] if body not in bodies]
     tables["joints"] = [joint for joint in tables["joints"] if joint.get("body") not in names or set(joint) != SEAT]
     return not touching
-
-
-def _listed(table: dict[str, Any], key: str) -> list[Any]:
-    """The list of a key, which may be faulty or missing."""
-    listed = table.get(key)
-    return listed if isinstance(listed, list) else []
 
 
 def touches_disks(obstacle: Table) -> bool:

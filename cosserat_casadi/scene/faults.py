@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -73,11 +74,6 @@ class Fault(NamedTuple):
     problem: str
     remedy: str = ""
 
-    def below(self, path: Path) -> Fault:
-        """This fault, its path counted from where ``path`` starts."""
-        full_path = (*path, *self.path)
-        return self._replace(path=full_path)
-
 
 class SceneTables:
     """The tables of a scene as the file gives them: any value may be missing or faulty."""
@@ -99,9 +95,7 @@ class SceneTables:
 
     def _tables(self, key: str) -> list[tuple[int, Table]]:
         """The tables of a list with their indices; entries that are no tables are left out."""
-        entries = self._given.get(key)
-        if not isinstance(entries, list):
-            return []
+        entries = list_of(self._given.get(key))
         return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, Mapping)]
 
     def _named(self, key: str) -> dict[str, tuple[int, Table]]:
@@ -112,6 +106,11 @@ class SceneTables:
             if isinstance(name, str):
                 first.setdefault(name, (i, table))
         return first
+
+    def table_named(self, key: str, name: Any) -> Table:
+        """The first table of a name in a list; an empty one where there is none."""
+        _, table = self.named(key).get(name, (0, {})) if isinstance(name, str) else (0, {})
+        return table
 
 
 def faults_of_range(value: Any, path: Path = ()) -> Iterator[Fault]:
@@ -173,9 +172,7 @@ def printable(text: str) -> str:
 
 def shortened(text: str) -> str:
     """A text, cut off where it is too long for a message."""
-    if len(text) <= LONGEST_TEXT:
-        return text
-    return text[: LONGEST_TEXT - 3] + "..."
+    return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 3] + "..."
 
 
 def listing(names: Iterable[str], what: str) -> str:
@@ -186,6 +183,29 @@ def listing(names: Iterable[str], what: str) -> str:
     if len(known) > LONGEST_LIST:
         known = [*known[:LONGEST_LIST], "…"]
     return f"{what}: {', '.join(known)}"
+
+
+def below(path: Path, faults: Iterable[Fault]) -> Iterator[Fault]:
+    """Faults whose paths are counted from where ``path`` starts."""
+    return (fault._replace(path=(*path, *fault.path)) for fault in faults)
+
+
+def refused_keys(given: Table, keys: Iterable[str], problem: str, remedy: str) -> Iterator[Fault]:
+    """A fault for each of some keys that a table has."""
+    return (Fault((key,), problem, remedy) for key in keys if key in given)
+
+
+def not_ascending(numbers: Sequence[float], path: Path, what: str) -> Iterator[Fault]:
+    """A fault for each of several numbers that is not greater than the one before it.
+
+    Args:
+        numbers: the numbers.
+        path: of their list.
+        what: one of them in words.
+    """
+    for i, (before, number) in enumerate(itertools.pairwise(numbers), 1):
+        if not number > before:
+            yield Fault((*path, i), f"must be > {shown(before)}, the {what} before it, got {shown(number)}")
 
 
 def frame_faults(given: Table) -> Iterator[Fault]:
@@ -222,11 +242,19 @@ def faults_of_ends(given: Table, *, equal: bool) -> Iterator[Fault]:
         yield Fault(("upper",), "must not be below lower" if equal else "must be above lower")
 
 
+def table_of(value: Any) -> Table:
+    """The table that a value is; an empty one where it is faulty or left out."""
+    return value if isinstance(value, Mapping) else {}
+
+
+def list_of(value: Any) -> Sequence[Any]:
+    """The list that a value is; an empty one where it is faulty or left out."""
+    return value if isinstance(value, list | tuple) else ()
+
+
 def numbers_of(value: Any) -> list[float]:
     """The numbers of a value that is a number or a list of numbers; none where it is faulty or left out."""
-    numbers = [value]
-    if isinstance(value, list | tuple):
-        numbers = list(value)
+    numbers = list(value) if isinstance(value, list | tuple) else [value]
     # Truth values are integers in Python.
     for number in numbers:
         if isinstance(number, bool) or not isinstance(number, int | float):

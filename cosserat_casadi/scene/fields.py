@@ -95,6 +95,4 @@ def _annotations(field: FieldInfo) -> Iterator[Any]:
 
 
 def _metadata(annotation: Any) -> tuple[Any, ...]:
-    if get_origin(annotation) is Annotated:
-        return tuple(annotation.__metadata__)
-    return ()
+    return tuple(annotation.__metadata__) if get_origin(annotation) is Annotated else ()

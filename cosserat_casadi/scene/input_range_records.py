@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Discriminator
 
-from cosserat_casadi.scene.faults import Fault, SceneTables, listing, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, list_of, listing, shown, table_of
 from cosserat_casadi.scene.input_rules import entry_counts
 from cosserat_casadi.scene.records import HashedTable, refusal
 from cosserat_casadi.scene.values import SEVERAL, SINGLE, NotEmpty, Number, listed
@@ -45,13 +45,12 @@ InputRanges = Annotated[dict[str, Pairs], AfterValidator(HashedTable)]
 
 def ranges_of_no_input(scene: SceneTables) -> Iterator[Fault]:
     """Faults of ranges of names that are neither free nor parameters, or whose pairs are not as many as entries."""
-    ranges = scene.get("ranges")
-    if not isinstance(ranges, Mapping):
+    ranges = table_of(scene.get("ranges"))
+    if not ranges:
         return
     counts = entry_counts(scene)
-    parameters = scene.get("parameters")
-    listed = parameters if isinstance(parameters, list) else []
     # Of names that are tied together the first is the parameter's.
+    listed = list_of(scene.get("parameters"))
     names = [*counts, *(entry[0] if isinstance(entry, list) and entry else entry for entry in listed)]
     for name, pairs in ranges.items():
         if name not in names:

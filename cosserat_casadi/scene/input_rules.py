@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
 from cosserat_casadi.scene.constraint_records import JOINTS
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, below, list_of, listing, numbers_of, shown, table_of
 from cosserat_casadi.scene.load_records import LOADS
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import Rod
@@ -20,10 +20,7 @@ Owners = dict[str, tuple[type[Entry] | None, Table]]
 def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     """An input names nothing in the scene, or what cannot be free."""
     owners = owners_of(scene)
-    entries = scene.get("inputs")
-    if not isinstance(entries, list):
-        return
-    for i, entry in enumerate(entries):
+    for i, entry in enumerate(list_of(scene.get("inputs"))):
         if not isinstance(entry, str):
             continue
         # Names have no dots; fields of inner tables do.
@@ -32,8 +29,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
         elif name in owners:
             record, table = owners[name]
-            for fault in field_faults(field, record, table, scene):
-                yield fault.below(("inputs", i))
+            yield from below(("inputs", i), field_faults(field, record, table, scene))
         else:
             problem = f"no load, actuator or rod is named {shown(name)}"
             yield Fault(("inputs", i), problem, listing(owners, "names"))
@@ -63,9 +59,7 @@ def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _numbers(count: int) -> str:
-    if count == 1:
-        return "1 number"
-    return f"1 number or {count}"
+    return "1 number" if count == 1 else f"1 number or {count}"
 
 
 def owners_of(scene: SceneTables) -> Owners:
@@ -157,8 +151,7 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
     requests: dict[str, str] = {}
     asked: list[tuple[Any, str]] = []
     for i, measurement in scene.tables("measurements"):
-        inputs = measurement.get("inputs")
-        names = inputs if isinstance(inputs, Mapping) else ()
+        names = table_of(measurement.get("inputs"))
         asked += [(name, f"measurements[{i}] sets {shown(name)}") for name in names]
     for i, unknown in scene.tables("unknowns"):
         name = unknown.get("input")

@@ -72,15 +72,11 @@ acceleration = [0, 0, -9.81]
 
     def acts_on_rod(self, rod: str) -> bool:
         """Whether gravity weighs the rod of this name."""
-        if self.rods is None:
-            return self.acts_on_all
-        return rod in self.rods
+        return self.acts_on_all if self.rods is None else rod in self.rods
 
     def acts_on_body(self, body: str) -> bool:
         """Whether gravity weighs the body of this name."""
-        if self.bodies is None:
-            return self.acts_on_all
-        return body in self.bodies
+        return self.acts_on_all if self.bodies is None else body in self.bodies
 
 
 class SectionWrench(LoadRecord):

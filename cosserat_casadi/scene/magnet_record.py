@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, Table, one_of
+from cosserat_casadi.scene.faults import Fault, Table, list_of, one_of
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.load_records import LOADS, LoadRecord
 from cosserat_casadi.scene.records import Record
@@ -120,8 +120,8 @@ field = [0, 0.02, 0]
 
 def _zero(key: str, given: Table, remedy: str) -> Iterator[Fault]:
     """The fault that all numbers under a key are zero."""
-    value = given.get(key)
-    if isinstance(value, list | tuple) and value and not any(_is_not_zero(component) for component in value):
+    value = list_of(given.get(key))
+    if value and not any(_is_not_zero(component) for component in value):
         yield Fault((key,), "must not be zero", remedy)
 
 
@@ -136,10 +136,7 @@ def _is_not_zero(component: Any) -> bool:
 
 def _too_strong(given: Table) -> Iterator[Fault]:
     """The field is given in another unit than tesla."""
-    value = given.get("field")
-    if not isinstance(value, list | tuple):
-        return
-    for i, component in enumerate(value):
+    for i, component in enumerate(list_of(given.get("field"))):
         if isinstance(component, int | float) and abs(component) > STRONGEST_FIELD:
             problem = f"must be at most {STRONGEST_FIELD:g} T, got {component:g}"
             yield Fault(("field", i), problem, "fields are in tesla: 1 mT is 1e-3, 1 G is 1e-4")

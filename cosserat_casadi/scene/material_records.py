@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Table, numbers_of, one_of, shown
+from cosserat_casadi.scene.faults import Fault, Table, list_of, numbers_of, one_of, refused_keys, shown
 from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, PoissonRatio, Positive, Whole, listed
 
@@ -92,9 +92,9 @@ material.table = { bending_y = [[5, 0.12], [10, 0.2]], torsion = [[10, 0.05], [2
             yield Fault((), "has no curve", "give stress against strain, as in bending_y = [[5, 0.12], [10, 0.2]]")
         for name, curve in given.items():
             yield from _curve_faults(name, curve)
-        for name in ("bending_x", "bending_y"):
-            if "bending" in given and name in given:
-                yield Fault((name,), "stands beside bending", "give bending of round sections, or the two axes")
+        if "bending" in given:
+            remedy = "give bending of round sections, or the two axes"
+            yield from refused_keys(given, ("bending_x", "bending_y"), "stands beside bending", remedy)
 
 
 def _curve_faults(name: str, curve: Any) -> Iterator[Fault]:
@@ -322,10 +322,7 @@ material = { law = "ogden", youngs_modulus = 1.2e6, ogden = [[0.4e6, 2.0]] }
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """Require that every pair is stable by itself."""
         yield from super().conflicts(given)
-        pairs = given.get("ogden")
-        if not isinstance(pairs, list | tuple):
-            return
-        for i, pair in enumerate(pairs):
+        for i, pair in enumerate(list_of(given.get("ogden"))):
             numbers = numbers_of(pair)
             if len(numbers) == 2 and not numbers[0] * numbers[1] > 0.0:
                 problem = f"must have μ α > 0, got {shown(numbers[0])} and {shown(numbers[1])}"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, below, numbers_of, shown, table_of
 from cosserat_casadi.scene.input_rules import input_part_faults
 from cosserat_casadi.scene.records import Entry, HashedTable, Record
 from cosserat_casadi.scene.values import Component, NotEmpty, Number, PositiveComponent, Share, Whole
@@ -147,13 +147,9 @@ class MeasurementRecord(Entry):
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """Faults of names that columns set and that are no inputs of the scene."""
-        inputs = given.get("inputs")
-        if not isinstance(inputs, Mapping):
-            return
-        for name in inputs:
+        for name in table_of(given.get("inputs")):
             if isinstance(name, str):
-                for fault in input_part_faults(name, scene):
-                    yield fault.below(("inputs", name))
+                yield from below(("inputs", name), input_part_faults(name, scene))
 
 
 MEASUREMENTS: Family[MeasurementRecord] = Family("measurements", key="quantity")
@@ -181,8 +177,7 @@ class MovingMeasurement(MeasurementRecord):
         if scene.get("simulation") is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or leave time out"
             yield Fault(("time",), "is of a motion, and the scene has none", remedy)
-        inputs = given.get("inputs")
-        for name in inputs if isinstance(inputs, Mapping) else ():
+        for name in table_of(given.get("inputs")):
             mover = table_that_moves(name, scene)
             if mover is not None:
                 problem = f"motions[{mover}] has the values of {shown(name)} over time"

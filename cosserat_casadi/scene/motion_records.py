@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -13,12 +14,12 @@ from pydantic import Field, model_validator
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, Table, numbers_of
+from cosserat_casadi.scene.faults import Fault, Table, not_ascending, numbers_of, refused_keys
 from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.scene.number_table import read_numbers, shortened
 from cosserat_casadi.scene.profiles import coefficient_count
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.values import Component, LegendreComponent, NotEmpty, Number, Positive, not_increasing
+from cosserat_casadi.scene.values import Component, LegendreComponent, NotEmpty, Number, Positive
 
 SLOPE_SLACK = 1e-9
 """Change of slope relative to the steepest one that is put down to rounding."""
@@ -229,9 +230,7 @@ def _wave_faults(given: Table) -> Iterator[Fault]:
     if given.get("wave") == "travelling":
         yield from _travelling_faults(given)
         return
-    for key in TRAVELLING:
-        if key in given:
-            yield Fault((key,), "is for a travelling wave", 'wave = "travelling", or leave it out')
+    yield from refused_keys(given, TRAVELLING, "is for a travelling wave", 'wave = "travelling", or leave it out')
 
 
 def _travelling_faults(given: Table) -> Iterator[Fault]:
@@ -254,7 +253,7 @@ def _table_faults(given: Table) -> Iterator[Fault]:
             yield Fault((key,), "missing", f"{other} are given")
     times = given.get("times")
     values = given.get("values")
-    yield from not_increasing(numbers_of(times), ("times",))
+    yield from islice(not_ascending(numbers_of(times), ("times",), "time"), 1)
     if not isinstance(values, list):
         return
     if isinstance(times, list) and len(times) != len(values):
@@ -278,9 +277,8 @@ def _file_faults(given: Table) -> Iterator[Fault]:
 
 
 def _without_wave(given: Table) -> Iterator[Fault]:
-    for key in ("phase", "wave", *TRAVELLING):
-        if key in given:
-            yield Fault((key,), "is for a wave", "leave it out, or give amplitude and frequency")
+    remedy = "leave it out, or give amplitude and frequency"
+    return refused_keys(given, ("phase", "wave", *TRAVELLING), "is for a wave", remedy)
 
 
 # Files
@@ -301,7 +299,7 @@ def _read(file: str) -> tuple[list[float], list[list[float]], list[Problem]]:
     if problems:
         return [], [], shortened(problems, file)
     times = numbers[:, header.index(TIME_COLUMN)].tolist()
-    for fault in not_increasing(times, ()):
+    for fault in not_ascending(times, (), "time"):
         row = int(fault.path[-1])
         return [], [], [Problem(f"{file}, line {lines[row]}", f"{TIME_COLUMN} {fault.problem}")]
     values = numbers[:, [header.index(column) for column in columns]]
@@ -313,9 +311,7 @@ def _value_columns(header: Sequence[str]) -> list[str]:
     given = [column for column in header if column.startswith("value")]
     if given in ([], ["value"]):
         return ["value"]
-    components = 3
-    if "value.w" in given:
-        components = 4
+    components = 4 if "value.w" in given else 3
     # A number behind the axis is the degree of a Legendre coefficient.
     matches = [re.fullmatch(r"value\.[xyz]\.([0-9]{1,2})", column) for column in given]
     degrees = [int(match[1]) for match in matches if match is not None]

@@ -9,7 +9,7 @@ import numpy as np
 
 from cosserat_casadi.maths.splines import least_norm, table_values
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, below, listing, numbers_of, shown, table_of
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.input_rules import field_faults, owners_of
 from cosserat_casadi.scene.motion_records import InputMotion
@@ -46,8 +46,7 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
             remedy = listing(_names(scene), "inputs")
             yield Fault(("motions", i, "input"), f"{shown(name)} is no input of this scene", remedy)
             continue
-        for fault in field_faults(moving.field, moving.record, moving.table, scene):
-            yield fault.below(("motions", i, "input"))
+        yield from below(("motions", i, "input"), field_faults(moving.field, moving.record, moving.table, scene))
         motion = sound(InputMotion, table)
         # A motion with faults of its own has no values to judge.
         if motion is None:
@@ -60,8 +59,7 @@ def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
                 faults += _range_faults(motion, moving)
         if not faults and moving.declared.nonzero:
             turns.setdefault(name, {})[i] = motion
-        for fault in faults:
-            yield fault.below(("motions", i))
+        yield from below(("motions", i), faults)
     for name, of_input in turns.items():
         if len(of_input) == names.count(name):
             yield from _zero_faults(of_input, _duration(scene))
@@ -95,12 +93,7 @@ def _names(scene: SceneTables) -> Iterator[str]:
 
 def _duration(scene: SceneTables) -> float:
     """Time that is simulated, s; infinite where the scene does not say."""
-    simulation = scene.get("simulation")
-    if not isinstance(simulation, Mapping):
-        return np.inf
-    for duration in numbers_of(simulation.get("duration")):
-        return duration
-    return np.inf
+    return next(iter(numbers_of(table_of(scene.get("simulation")).get("duration"))), np.inf)
 
 
 def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
@@ -113,9 +106,7 @@ def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
         return
     key = "values" if motion.is_table else "amplitude"
     numbers = "1 number" if wanted == 1 else f"{wanted} numbers"
-    remedy = ""
-    if wanted > moving.declared.components:
-        remedy = "those of each Legendre coefficient in turn"
+    remedy = "those of each Legendre coefficient in turn" if wanted > moving.declared.components else ""
     problem = f"must have {numbers} at each time, got {motion.entry_count}"
     yield Fault((key,), problem, remedy)
 

@@ -15,7 +15,7 @@ from pydantic import Discriminator, Field, Tag
 
 from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, list_of, numbers_of, refused_keys
 from cosserat_casadi.scene.records import Entry, Record, sound
 from cosserat_casadi.scene.rod_records import admitted_strains, is_round
 from cosserat_casadi.scene.values import (
@@ -67,9 +67,7 @@ TABLE = Tag("⟨table⟩")
 
 
 def _number_or_table(value: Any) -> str:
-    if isinstance(value, Mapping | Friction):
-        return TABLE.tag
-    return SINGLE.tag
+    return TABLE.tag if isinstance(value, Mapping | Friction) else SINGLE.tag
 
 
 Coefficients = Annotated[
@@ -198,10 +196,8 @@ class ObstacleRecord(Entry):
                 problem = "is of impacts, which a contact that is smooth does not have"
                 yield Fault(("restitution",), problem, "give damping, s/m, or leave out the width")
             return
-        for key in SMOOTH_KEYS[1:]:
-            if key in given:
-                problem = "is of a contact that is smooth: without width contact is exact"
-                yield Fault((key,), problem, "give width, m, or leave it out")
+        problem = "is of a contact that is smooth: without width contact is exact"
+        yield from refused_keys(given, SMOOTH_KEYS[1:], problem, "give width, m, or leave it out")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -242,35 +238,27 @@ def _disks_without_contact(given: Table, scene: SceneTables, *, flat: bool) -> I
     """Rows of disks that are still rows, as reading makes bodies of rows that touch exactly; and such bodies."""
     if not flat:
         for key in ("disks", "bodies"):
-            named = given.get(key)
-            for i, name in enumerate(named if isinstance(named, list | tuple) else ()):
-                _, table = scene.named(key).get(name, (0, {})) if isinstance(name, str) else (0, {})
+            for i, name in enumerate(list_of(given.get(key))):
+                table = scene.table_named(key, name)
                 if "thickness" in table or (key == "disks" and table):
                     problem = f"{name!r} has a rim, and where a rim meets a curved obstacle no closed form tells"
                     yield Fault((key, i), problem, "give width, m, or bodies with a radius alone, which are balls")
         return
-    rows = given.get("disks")
-    for i, name in enumerate(rows if isinstance(rows, list | tuple) else ()):
-        _, row = scene.named("disks").get(name, (0, {})) if isinstance(name, str) else (0, {})
+    for i, name in enumerate(list_of(given.get("disks"))):
         # A row that is faulty has faults of its own.
-        if sound(Disks, row) is not None:
+        if sound(Disks, scene.table_named("disks", name)) is not None:
             problem = f"disks of {name!r} touch exactly, and their numbers are no parameters"
             yield Fault(("disks", i), problem, "give width, m, or leave those parameters out")
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
     """Bodies that have no radius to keep."""
-    bodies = given.get("bodies")
-    if not isinstance(bodies, list | tuple):
-        return
-    known = scene.named("bodies")
-    for i, name in enumerate(bodies):
+    for i, name in enumerate(list_of(given.get("bodies"))):
+        body = scene.table_named("bodies", name)
         # A name that nothing has is refused with the other references.
-        if not isinstance(name, str) or name not in known:
-            continue
-        if "radius" not in known[name][1]:
+        if body and "radius" not in body:
             yield Fault(("bodies", i), f"the body {name!r} has no radius to keep", "give the body a radius, m")
-        if "width" in given and "thickness" in known[name][1]:
+        if "width" in given and "thickness" in body:
             problem = f"the body {name!r} is a disk, and bodies that touch an obstacle with a width are balls"
             yield Fault(("bodies", i), problem, "leave out its thickness, or put [[disks]] on the rod")
 
@@ -422,8 +410,8 @@ rods = ["finger"]
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """Two points at least, neighbours apart, and as many radii."""
         yield from super().conflicts(given)
-        points = given.get("points")
-        if not isinstance(points, list | tuple) or not points:
+        points = list_of(given.get("points"))
+        if not points:
             return
         if len(points) < FEWEST_POINTS:
             yield Fault(("points",), f"must have {FEWEST_POINTS} points at least, got {len(points)}")
@@ -435,8 +423,8 @@ rods = ["finger"]
             if distances and 0.0 < min(distances) < CLOSEST_POINTS * max(distances):
                 problem = f"are {min(distances):g} m apart at the least and {max(distances):g} m at the most"
                 yield Fault(("points",), problem, "no smooth line through them can be computed: space them evenly")
-        radius = given.get("radius")
-        if isinstance(radius, list | tuple) and radius and len(radius) != len(points):
+        radius = list_of(given.get("radius"))
+        if radius and len(radius) != len(points):
             yield Fault(("radius",), f"must have one radius for each of {len(points)} points, got {len(radius)}")
 
 

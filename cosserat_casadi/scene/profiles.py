@@ -156,9 +156,7 @@ def ends_of(value: Any) -> tuple[float, ...]:
             return read_profile(value).converted(Notation.ENDS).numbers
         except RefusedProfile:
             return ()
-    ends: tuple[Any, ...] = (value, value)
-    if isinstance(value, list | tuple):
-        ends = tuple(value)
+    ends: tuple[Any, ...] = tuple(value) if isinstance(value, list | tuple) else (value, value)
     if len(ends) != 2 or not all(_is_number(end) for end in ends):
         return ()
     return ends

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, table_of
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import is_round
 from cosserat_casadi.scene.values import Name, Names, NotNegative, Positive
@@ -106,9 +106,9 @@ def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:
 def _ties(scene: SceneTables) -> Iterator[tuple[Any, Any]]:
     """Ties: of rods to the rods that they start on, and to the bodies of their joints."""
     for name, (_, rod) in scene.named("rods").items():
-        base = rod.get("base")
-        if isinstance(base, Mapping) and isinstance(base.get("rod"), str):
-            yield name, base["rod"]
+        carrier = table_of(rod.get("base")).get("rod")
+        if isinstance(carrier, str):
+            yield name, carrier
     for _, joint in scene.tables("joints"):
         if isinstance(joint.get("body"), str):
             yield joint.get("rod"), ("body", joint["body"])

@@ -13,7 +13,18 @@ import numpy as np
 from pydantic import AfterValidator, Field, StrictBool
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, shown
+from cosserat_casadi.scene.faults import (
+    Fault,
+    Path,
+    SceneTables,
+    Table,
+    below,
+    list_of,
+    numbers_of,
+    refused_keys,
+    shown,
+    table_of,
+)
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.material_records import ElasticMaterial
 from cosserat_casadi.scene.orientations import Oriented
@@ -224,14 +235,12 @@ damping = { retardation_time = 0.01 }
         if "retardation_time" not in given and not others:
             remedy = "give retardation_time, s, coefficients by strain such as bending_x, prony, or mass_proportional"
             yield Fault(("retardation_time",), "missing", remedy)
-        branches = given.get("prony", ())
-        if isinstance(branches, list | tuple):
-            tables = [branch for branch in branches if isinstance(branch, Mapping)]
-            shares = [[numbers_of(table.get(name, table.get("share"))) for table in tables] for name in STRAINS]
-            total = max(sum(map(sum, of_strain)) for of_strain in shares)
-            if total >= 1.0:
-                problem = f"must have shares that add up to less than 1, got {shown(total)}"
-                yield Fault(("prony",), problem, "what is left of the instantaneous stiffness carries loads at rest")
+        tables = [table_of(branch) for branch in list_of(given.get("prony"))]
+        shares = [[numbers_of(table.get(name, table.get("share"))) for table in tables] for name in STRAINS]
+        total = max(sum(map(sum, of_strain)) for of_strain in shares)
+        if total >= 1.0:
+            problem = f"must have shares that add up to less than 1, got {shown(total)}"
+            yield Fault(("prony",), problem, "what is left of the instantaneous stiffness carries loads at rest")
 
 
 # Shape and pose
@@ -298,9 +307,7 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
 
     def held(self) -> Base:
         """The base clamped where it starts."""
-        if not self.free:
-            return self
-        return self.model_copy(update={"free": False})
+        return self.model_copy(update={"free": False}) if self.free else self
 
 
 RotaryInertia = Annotated[tuple[NotNegative, NotNegative, NotNegative], listed(3, "3 numbers")]
@@ -371,18 +378,17 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
             for name in admitted:
                 if name not in stiffness:
                     yield Fault(("stiffness", name), "missing", f"the rod admits {name}")
-        damping = given.get("damping")
         # Without a sound choice of strains none is known to be left out.
-        if isinstance(damping, Mapping) and admitted:
-            branches = damping.get("prony")
-            tables: list[tuple[tuple[str | int, ...], Any]] = [(("damping",), damping)]
-            if isinstance(branches, list | tuple):
-                tables += [(("damping", "prony", i), branch) for i, branch in enumerate(branches)]
-            remedy = f"its strains: {', '.join(admitted)}"
-            for place, table in tables:
-                for name in STRAINS:
-                    if isinstance(table, Mapping) and name in table and name not in admitted:
-                        yield Fault((*place, name), "is of a strain that the rod does not admit", remedy)
+        if not admitted:
+            return
+        damping = table_of(given.get("damping"))
+        others = [name for name in STRAINS if name not in admitted]
+        remedy = f"its strains: {', '.join(admitted)}"
+        tables: list[tuple[Path, Any]] = [(("damping",), damping)]
+        tables += [(("damping", "prony", i), branch) for i, branch in enumerate(list_of(damping.get("prony")))]
+        for place, table in tables:
+            problem = "is of a strain that the rod does not admit"
+            yield from below(place, refused_keys(table_of(table), others, problem, remedy))
 
     @classmethod
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -390,11 +396,11 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
         if not field.startswith("base."):
             return
         name = given.get("name")
-        base = given.get("base")
+        base = table_of(given.get("base"))
         # The base of a carried rod is an unknown, not an input, as is a free one.
-        if isinstance(base, Mapping) and "rod" in base:
+        if "rod" in base:
             yield Fault((), f"{shown(name)} starts on another rod", "move the base of that one")
-        elif isinstance(base, Mapping) and base.get("free") is True:
+        elif base.get("free") is True:
             yield Fault((), f"the base of {shown(name)} is free", "nothing holds it: what acts on it are loads")
         holding = (*scene.tables("supports"), *scene.tables("joints"))
         # A joint at the base moves with it.
@@ -430,7 +436,7 @@ def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
 
 def _not_positive(matrix: Any, admitted: Sequence[int]) -> Iterator[Fault]:
     """Faults of a stiffness matrix: rows that do not mirror columns, or strains that would cost no energy."""
-    rows = [] if not isinstance(matrix, list | tuple) else [numbers_of(row) for row in matrix]
+    rows = [numbers_of(row) for row in list_of(matrix)]
     if len(rows) != len(STRAINS) or any(len(row) != len(STRAINS) for row in rows):
         return
     for i, j in itertools.combinations(range(len(STRAINS)), 2):
@@ -466,7 +472,5 @@ def admitted_strains(strain: Any) -> tuple[int, ...]:
     """Indices of the strains that the entry ``strain`` of a rod admits, ascending; none where it is faulty."""
     if isinstance(strain, str):
         return PRESETS.get(strain, ())
-    if not isinstance(strain, list | tuple):
-        return ()
     # In the order of the strains, whatever the order of the list.
-    return tuple(index for index, name in enumerate(STRAINS) if name in strain)
+    return tuple(index for index, name in enumerate(STRAINS) if name in list_of(strain))

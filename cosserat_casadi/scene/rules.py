@@ -7,7 +7,7 @@ bodies that cannot close, is found by the model. A rule of one kind alone is a m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from cosserat_casadi.scene.actuator_records import ACTUATORS
@@ -20,7 +20,18 @@ from cosserat_casadi.scene.assembly_rules import (
 from cosserat_casadi.scene.constraint_records import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.disk_record import Disks
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import SINGULAR, Fault, Path, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.faults import (
+    SINGULAR,
+    Fault,
+    Path,
+    SceneTables,
+    Table,
+    below,
+    list_of,
+    listing,
+    shown,
+    table_of,
+)
 from cosserat_casadi.scene.input_range_records import ranges_of_no_input
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.load_records import LOADS
@@ -136,19 +147,14 @@ def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, 
     """The names that a table refers to, each with its path in the table and the key of the list that has it."""
     for field, key in record.references.items():
         value = table.get(field)
-        if _holds_one_name(record, field):
+        # One name, or a list of names.
+        if record.model_fields[field].annotation in (str, str | None):
             if isinstance(value, str):
                 yield (field,), value, key
-        elif isinstance(value, list):
-            for i, name in enumerate(value):
-                if isinstance(name, str):
-                    yield (field, i), name, key
-
-
-def _holds_one_name(record: type[Entry], field: str) -> bool:
-    """Whether a field that refers to other tables holds one name; a list of names otherwise."""
-    annotation: Any = record.model_fields[field].annotation
-    return annotation in (str, str | None)
+            continue
+        for i, name in enumerate(list_of(value)):
+            if isinstance(name, str):
+                yield (field, i), name, key
 
 
 # Rods, supports and accuracy
@@ -158,8 +164,7 @@ def own_rules(scene: SceneTables) -> Iterator[Fault]:
     """The rules that a kind brings along."""
     # What concerns one kind alone, such as the reach of a support, is written beside its record.
     for path, record, table in _entries(scene):
-        for fault in record.scene_conflicts(table, scene):
-            yield fault.below(path)
+        yield from below(path, record.scene_conflicts(table, scene))
 
 
 def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
@@ -216,13 +221,11 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
 
 def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     """Faults of ``of_rods``: entries are of rods of the scene, once each, with one number for each strain."""
-    accuracy = scene.get("accuracy")
-    if not isinstance(accuracy, Mapping) or not isinstance(accuracy.get("of_rods"), list):
-        return
     rods = scene.named("rods")
     first: dict[str, int] = {}
-    for i, own in enumerate(accuracy["of_rods"]):
-        name = own.get("rod") if isinstance(own, Mapping) else None
+    for i, entry in enumerate(list_of(table_of(scene.get("accuracy")).get("of_rods"))):
+        own = table_of(entry)
+        name = own.get("rod")
         if not isinstance(name, str):
             continue
         path: Path = ("accuracy", "of_rods", i)
@@ -233,19 +236,16 @@ def discretised_rods_that_are_not(scene: SceneTables) -> Iterator[Fault]:
             yield Fault((*path, "rod"), f"of_rods[{first[name]}] is of {shown(name)} already")
         _, rod = rods[name]
         admitted = len(admitted_strains(rod.get("strain")))
-        modes = own.get("modes")
+        modes = list_of(own.get("modes"))
         # Zero stands for a faulty entry, which has a fault of its own.
-        if isinstance(modes, list) and admitted and modes and admitted != len(modes):
+        if admitted and modes and admitted != len(modes):
             problem = f"must have one entry per strain, got {len(modes)} where the rod admits {admitted}"
             yield Fault((*path, "modes"), problem)
 
 
 def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
     """The modes that are listed are as many as the strains of each rod."""
-    accuracy = scene.get("accuracy")
-    if not isinstance(accuracy, Mapping) or not isinstance(accuracy.get("modes"), list):
-        return
-    count = len(accuracy["modes"])
+    count = len(list_of(table_of(scene.get("accuracy")).get("modes")))
     for i, rod in scene.tables("rods"):
         admitted = len(admitted_strains(rod.get("strain")))
         # Zero stands for a faulty entry, which has a fault of its own.
@@ -257,9 +257,8 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
 
 def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     """A parameter, or an unknown, names no number of the scene, or one that cannot be a parameter."""
-    listed = scene.get("parameters")
     groups: list[tuple[list[Any], Path]] = []
-    for i, entry in enumerate(listed if isinstance(listed, list | tuple) else []):
+    for i, entry in enumerate(list_of(scene.get("parameters"))):
         groups.append((_listed_names(entry), ("parameters", i)))
     parameters = len(groups)
     first: dict[str, int] = {}
@@ -306,11 +305,9 @@ def _listed_names(given: Any) -> list[Any]:
 
 def measured_twice(scene: SceneTables) -> Iterator[Fault]:
     """Two measurements read a column of the same rows as the same number: it would count twice."""
-    first: list[tuple[int, dict[str, Any], list[Any]]] = []
+    first: list[tuple[int, dict[str, Any], Sequence[Any]]] = []
     for i, table in scene.tables("measurements"):
-        columns = table.get("columns")
-        if not isinstance(columns, list):
-            continue
+        columns = list_of(table.get("columns"))
         rows = {key: value for key, value in table.items() if key not in OF_ONE_COLUMN}
         for earlier, earlier_rows, earlier_columns in first:
             shared = [one for one, other in zip(columns, earlier_columns, strict=False) if one and one == other]

@@ -255,9 +255,7 @@ inputs = ["push.force", "cable.tension"]
 
     def baked(self) -> Scene:
         """The scene without parameters: every number is a constant of its model."""
-        if not self.parameters:
-            return self
-        return self.model_copy(update={"parameters": ()})
+        return self.model_copy(update={"parameters": ()}) if self.parameters else self
 
     @property
     def motion_tolerance(self) -> float:

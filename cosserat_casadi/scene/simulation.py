@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, Table, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, Table, not_ascending, numbers_of, shown
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, not_increasing
+from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole
 
 TOLERANCE = 1e-3
 """Error of the paths of tips, relative to the rod length, where the scene asks for none: enough for a film."""
@@ -65,9 +66,7 @@ start = "unloaded"
         """Times of the rows of the result, ascending, shape (rows,), s."""
         if self.times is not None:
             return np.asarray(self.times, dtype=float)
-        frames = FRAMES
-        if self.frames is not None:
-            frames = self.frames
+        frames = FRAMES if self.frames is None else self.frames
         return np.linspace(0.0, self.duration, frames)
 
     @classmethod
@@ -76,7 +75,7 @@ start = "unloaded"
         if "frames" in given and "times" in given:
             yield Fault(("times",), "stands beside frames", "give one of the two")
         times = numbers_of(given.get("times"))
-        yield from not_increasing(times, ("times",))
+        yield from islice(not_ascending(times, ("times",), "time"), 1)
         # A duration that is no number has a fault of its own, and bounds nothing.
         for duration in numbers_of(given.get("duration")):
             for i, time in enumerate(times):

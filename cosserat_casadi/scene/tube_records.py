@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, numbers_of, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, below, numbers_of, refused_keys, shown, table_of
 from cosserat_casadi.scene.input_fields import InputField
 from cosserat_casadi.scene.material_records import Material
 from cosserat_casadi.scene.records import Entry, Record
@@ -132,9 +132,7 @@ translation = 0.15
 
     def input_upper(self, field: str) -> float:
         """A tube is not pushed out of its drive; inf of its rotation."""
-        if field == "translation":
-            return self.length
-        return super().input_upper(field)
+        return self.length if field == "translation" else super().input_upper(field)
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -171,11 +169,8 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
             problem = "stands beside tubes, which are solved on their own"
             others = ", ".join(other for other in BESIDE_TUBES if other not in ("schema", "tubes"))
             yield Fault((key,), problem, f"leave it out; beside tubes may stand {others}")
-    accuracy = scene.get("accuracy")
-    if isinstance(accuracy, Mapping):
-        for key in OF_RODS:
-            if key in accuracy:
-                yield Fault(("accuracy", key), "is for rods", "tubes are computed to tolerance: leave it out")
+    accuracy, remedy = table_of(scene.get("accuracy")), "tubes are computed to tolerance: leave it out"
+    yield from below(("accuracy",), refused_keys(accuracy, OF_RODS, "is for rods", remedy))
     if tubes and not any(_reaches_out(table) for _, table in tubes):
         index, _ = tubes[0]
         yield Fault(("tubes", index, "translation"), "no tube stands out of the plate", "push one out: translation > 0")
@@ -199,8 +194,7 @@ def _load_faults(scene: SceneTables) -> Iterator[Fault]:
             problem = "does not act on tubes beside their tips"
             yield Fault(("loads", index, "moment"), problem, 'give a force, N, or a "tip_wrench"')
         elif kind == "distributed_wrench":
-            for fault in _spread_faults(load):
-                yield fault.below(("loads", index))
+            yield from below(("loads", index), _spread_faults(load))
         name = load.get("name")
         if isinstance(name, str) and name in names:
             first, _ = names[name]
@@ -248,11 +242,9 @@ def _reaches_out(tube: Table) -> bool:
 
 def _nesting_faults(scene: SceneTables) -> Iterator[Fault]:
     """Tubes, in the order of their size, that do not fit into the next one."""
-    walls = []
+    walls: list[tuple[float, float, int, Any]] = []
     for index, tube in scene.tables("tubes"):
-        section = tube.get("section")
-        if not isinstance(section, Mapping):
-            continue
+        section = table_of(tube.get("section"))
         outer = numbers_of(section.get("outer_radius"))
         inner = numbers_of(section.get("inner_radius"))
         if outer and inner:
@@ -265,6 +257,4 @@ def _nesting_faults(scene: SceneTables) -> Iterator[Fault]:
 
 
 def _named(name: Any) -> str:
-    if isinstance(name, str):
-        return shown(name)
-    return "without a name"
+    return shown(name) if isinstance(name, str) else "without a name"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, faults_of_ends, one_of, shown
+from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, below, faults_of_ends, one_of, shown, table_of
 from cosserat_casadi.scene.input_rules import input_part_faults
 from cosserat_casadi.scene.measurement_record import overlap, table_that_moves
 from cosserat_casadi.scene.records import Entry, Record
@@ -89,13 +89,9 @@ per_row = true
         if not isinstance(name, str):
             return
         path: Path = ("input",)
-        for fault in input_part_faults(name, scene):
-            yield fault.below(path)
+        yield from below(path, input_part_faults(name, scene))
         for i, measurement in scene.tables("measurements"):
-            inputs = measurement.get("inputs")
-            if not isinstance(inputs, Mapping):
-                continue
-            for measured in inputs:
+            for measured in table_of(measurement.get("inputs")):
                 if isinstance(measured, str) and overlap(name, measured):
                     problem = f"measurements[{i}] sets {shown(measured)}"
                     yield Fault(path, problem, "what is unknown has no column: leave it out there, or here")

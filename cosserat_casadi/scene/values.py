@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import (
@@ -48,9 +47,7 @@ def listed(count: int, what: str) -> BeforeValidator:
     """Refuse lists of any other length in one sentence, instead of one for each missing entry."""
 
     def check(value: Any) -> Any:
-        got: object = shown(value)
-        if isinstance(value, list | tuple):
-            got = len(value)
+        got: object = len(value) if isinstance(value, list | tuple) else shown(value)
         if got != count:
             raise refusal([Fault((), f"must be a list of {what}, got {got}")])
         return value
@@ -80,9 +77,7 @@ SEVERAL = Tag("⟨list⟩")
 
 
 def _single_or_several(value: Any) -> str:
-    if isinstance(value, list | tuple):
-        return SEVERAL.tag
-    return SINGLE.tag
+    return SEVERAL.tag if isinstance(value, list | tuple) else SINGLE.tag
 
 
 BY_LENGTH = Discriminator(_single_or_several)
@@ -140,9 +135,7 @@ class Varying:
             "powers": {**coefficients, "description": "coefficients of powers of X"},
         }
         positive, not_negative, any_values = TABLE_TITLES
-        title = any_values
-        if "minimum" in number:
-            title = not_negative
+        title = not_negative if "minimum" in number else any_values
         if "exclusiveMinimum" in number:
             title = positive
         return {
@@ -227,14 +220,6 @@ def _without_list_of_one(entry: str | tuple[str, ...]) -> str | tuple[str, ...]:
     """The name alone where a list has no other: both spellings are one parameter."""
     names = names_in(entry)
     return names[0] if len(names) == 1 else entry
-
-
-def not_increasing(times: Sequence[float], path: Path) -> Iterator[Fault]:
-    """The first of several times that is not later than the one before it."""
-    for i, (before, time) in enumerate(itertools.pairwise(times), 1):
-        if not time > before:
-            yield Fault((*path, i), f"must be > {shown(before)}, the time before it, got {shown(time)}")
-            return
 
 
 def above_base(remedy_at_base: str) -> AfterValidator:

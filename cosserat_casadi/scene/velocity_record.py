@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 from pydantic import Field
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, list_of, refused_keys, shown, table_of
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import STRAINS, admitted_strains
 from cosserat_casadi.scene.values import Polynomials, Vector
@@ -67,9 +67,7 @@ curvature_rate = [0, { base = 2.0, tip = 0.0 }, 0]
         if ("rod" in given) == ("body" in given):
             yield Fault((), "names a rod and a body, or neither", "give one of the two")
         if "body" in given:
-            for key in OF_STRAINS:
-                if key in given:
-                    yield Fault((key,), "a body has no strains", "leave it out")
+            yield from refused_keys(given, OF_STRAINS, "a body has no strains", "leave it out")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -78,13 +76,10 @@ curvature_rate = [0, { base = 2.0, tip = 0.0 }, 0]
             others = [table for _, table in scene.tables("velocities") if key in given and table.get(key) == given[key]]
             if len(others) > 1:
                 yield Fault((key,), f"{shown(given[key])} has more than one initial velocity", "give one table for it")
-        _, rod = scene.named("rods").get(str(given.get("rod")), (0, {}))
-        base = rod.get("base")
-        if rod and not (isinstance(base, Mapping) and base.get("free") is True):
-            for key in OF_FRAMES:
-                if key in given:
-                    problem = "the base of the rod is held, and has no velocity of its own"
-                    yield Fault((key,), problem, "move it by [[motions]], or set free = true")
+        rod = scene.table_named("rods", given.get("rod"))
+        if rod and table_of(rod.get("base")).get("free") is not True:
+            problem = "the base of the rod is held, and has no velocity of its own"
+            yield from refused_keys(given, OF_FRAMES, problem, "move it by [[motions]], or set free = true")
         admitted = admitted_strains(rod.get("strain"))
         rates = [*_components(given, "curvature_rate"), *_components(given, "tangent_rate")]
         for index, (key, rate) in enumerate(rates):
@@ -94,7 +89,5 @@ curvature_rate = [0, { base = 2.0, tip = 0.0 }, 0]
 
 def _components(given: Table, key: str) -> list[tuple[str, Any]]:
     """The three components of a key as the file has them; zero where it does not have three."""
-    rates = given.get(key)
-    if not isinstance(rates, list | tuple) or len(rates) != len(STILL):
-        rates = STILL
-    return [(key, rate) for rate in rates]
+    rates = list_of(given.get(key))
+    return [(key, rate) for rate in (rates if len(rates) == len(STILL) else STILL)]

@@ -84,9 +84,7 @@ class RowModel:
 
     def _counted_in_measure(self, solution: Solution | TubeSolution) -> Solution | TubeSolution:
         """This equilibrium with the unknowns that it has under the scaling of the measure."""
-        if isinstance(solution, TubeSolution):
-            return solution
-        if not self.measure or not solution.converged:
+        if isinstance(solution, TubeSolution) or not self.measure or not solution.converged:
             return solution
         if solution.model.scene.touches_exactly:
             return solution if self.measure == self.scene else _in_units_of(_scene(self.measure), solution)

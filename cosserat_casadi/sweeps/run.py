@@ -48,9 +48,8 @@ from cosserat_casadi.sweeps.work import (
     MODELLED_ROWS,
     Answer,
     Chunk,
-    InContact,
+    LibraryWithPython,
     Part,
-    WatchedRows,
     chunks,
 )
 
@@ -275,13 +274,13 @@ def run_sweep(
         work = plan.work
         if plan.output is None or plan.part is None:
             memory = Memory()
-            choice = _choice(plan, progress)
-            _solve_rest(plan, choice, machine, work, memory, progress)
-            return _sweep(plan, choice, work, memory.results(), progress)
+            run = _Run(plan, work, _choice(plan, progress), progress)
+            run.solve_rest(machine, memory)
+            return run.sweep(memory.results())
         with Store(plan.part) as store:
-            choice = _begun(plan, work, store, progress)
-            _solve_rest(plan, choice, machine, work, store, progress)
-            sweep = _sweep(plan, choice, work, store.results(), progress)
+            run = _Run(plan, work, _begun(plan, work, store, progress), progress)
+            run.solve_rest(machine, store)
+            sweep = run.sweep(store.results())
             write_sweep(sweep, plan.output)
             store.remove()
     return sweep
@@ -321,7 +320,7 @@ def run_shard(
         raise SceneError(Problem("--shard", f"{file} is of another sweep", "remove it, or choose another --output"))
     with _machine(scheduler, cores, plan.device) as machine, Store(file) as store:
         choice = _begun(plan, work, store, told, _choice_of_others(plan, shard))
-        _solve_rest(plan, choice, machine, work, store, told)
+        _Run(plan, work, choice, told).solve_rest(machine, store)
     return count
 
 
@@ -355,14 +354,12 @@ def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
                 file.unlink()
         return read_sweep(plan.output)
     work = plan.work
-    rows = {chunk.number: len(chunk.rows) for chunk in work}
     heads = {shard: Store(file).head() for shard, file in files.items()}
     _check_shards(plan, work, heads)
-    width = len(plan.results)
     done: dict[Path, set[int]] = {}
     for file in files.values():
         with Store(file) as store:
-            store.resume(rows, width)
+            store.resume(*_sizes(plan, work))
             done[file] = set(store.done)
     known = set[int]().union(*done.values())
     missing = [chunk for chunk in work if chunk.number not in known]
@@ -372,7 +369,7 @@ def merge_shards(plan: Plan, *, progress: StageProgress | None = None) -> Sweep:
             Problem("--merge", f"not done to the end: {named(unfinished, TOLD)}", "run these shards again")
         )
     choice = Choice.read(_known(heads)[0]["choice"])
-    sweep = _sweep(plan, choice, work, _results_of(done, rows, width), progress or not_told)
+    sweep = _Run(plan, work, choice, progress or not_told).sweep(_results_of(done, *_sizes(plan, work)))
     write_sweep(sweep, plan.output)
     for file in files.values():
         file.unlink(missing_ok=True)
@@ -450,13 +447,17 @@ def _begun(
     """Ready a store for more results; return its discretisation: a new sweep's is ``choice``, or is chosen now."""
     head = store.head()
     if head is not None:
-        rows = {chunk.number: len(chunk.rows) for chunk in work}
-        store.resume(rows, len(plan.results))
+        store.resume(*_sizes(plan, work))
         return Choice.read(head["choice"])
     if choice is None:
         choice = _choice(plan, progress)
     store.start({"sweep": plan.identity, "choice": choice.plain()})
     return choice
+
+
+def _sizes(plan: Plan, work: Sequence[Chunk]) -> tuple[dict[int, int], int]:
+    """Rows of each chunk, by its number, and numbers that a row is answered with."""
+    return {chunk.number: len(chunk.rows) for chunk in work}, len(plan.results)
 
 
 def _choice(plan: Plan, progress: StageProgress) -> Choice:
@@ -467,165 +468,152 @@ def _choice(plan: Plan, progress: StageProgress) -> Choice:
     return choose(plan.variants, plan.table, plan.samples, progress)
 
 
-def _solve_rest(
-    plan: Plan,
-    choice: Choice,
-    machine: Cores | Cluster,
-    work: Sequence[Chunk],
-    store: Store | Memory,
-    progress: StageProgress,
-) -> None:
-    """Solve every chunk that is not done, and keep it."""
-    rest = [chunk for chunk in work if chunk.number not in store.done]
-    total = sum(len(chunk.rows) for chunk in work)
-    count = total - sum(len(chunk.rows) for chunk in rest)
-    tasks = _tasks(plan, choice, rest, progress)
-    for chunk, results in machine.run(tasks):
-        store.add(chunk.number, results)
-        if chunk.number % LET_GO == 0:
-            # Inputs were read for it.
-            plan.scratch.let_go()
-        count += len(results)
-        progress("Sweeping", count, total)
+@dataclass(frozen=True)
+class _Run:
+    """A sweep on its discretisation.
 
-
-def _tasks(
-    plan: Plan,
-    choice: Choice,
-    rest: Sequence[Chunk],
-    progress: StageProgress,
-) -> Iterator[tuple[Chunk, list[Part]]]:
-    """Chunks with what solves them; sources are generated when their first chunk comes."""
-    answer: Answer | None = None
-    answer_of: int | None = None
-    for chunk in rest:
-        if not chunk.compiled and not chunk.in_contact:
-            # A model in Python for each variant that the chunk has rows of.
-            yield chunk, [(_row_model(plan, choice, k), plan.variants.given(rows)) for k, rows in chunk.pieces]
-            continue
-        # A compiled chunk has rows of one variant.
-        ((variant, rows),) = chunk.pieces
-        if answer is None or answer_of != variant:
-            progress("Compiling", 0, 0)
-            exact = plan.variants.entries[variant].scene.touches_exactly
-            answer = _answer_in_contact(plan, choice, variant) if exact else _library(plan, choice, variant)
-            answer_of = variant
-        yield chunk, [(answer, plan.variants.given(rows))]
-
-
-def _library(plan: Plan, choice: Choice, variant: int) -> Answer:
-    """The library of a variant, beside Python where rows may stall before an obstacle or a rod."""
-    entry = plan.variants.entries[variant]
-    model = build(choice.scene(entry.scene))
-    library: RowLibrary | DeviceRows
-    if plan.device is not None:
-        library = device_rows(model, plan.device, estimate_errors=plan.estimate_errors)
-    else:
-        library = row_library(
-            model,
-            estimate_errors=plan.estimate_errors,
-            stability=plan.stability,
-            lanes=len(entry.rows) >= IN_LANES_FROM,
-        )
-    if not has_barriers(entry.scene):
-        return library
-    if isinstance(library, RowLibrary):
-        # Once, before many processes look for it.
-        library.compiled()
-    return WatchedRows(library, _row_model(plan, choice, variant))
-
-
-def _answer_in_contact(plan: Plan, choice: Choice, variant: int) -> Answer:
-    """The library of a variant in exact contact; Python alone where C does not know what the scene has."""
-    entry = plan.variants.entries[variant]
-    given = plan.variants.given(entry.rows)
-    cases = given[representative_rows(given, plan.samples, plan.scratch)]
-    in_python = _row_model(plan, choice, variant)
-    try:
-        model = build(choice.scene(entry.scene))
-        library = contact_row_library(model, cases, estimate_errors=plan.estimate_errors, stability=plan.stability)
-        # Once, before many processes look for it.
-        library.compiled()
-    except ExportError:
-        return in_python
-    return InContact(library, in_python)
-
-
-def _row_model(plan: Plan, choice: Choice, variant: int) -> RowModel:
-    """A variant in Python."""
-    # Text, since models of CasADi do not travel to other processes.
-    measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""
-    scene = choice.scene(plan.variants.entries[variant].scene)
-    return RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
-
-
-def _sweep(
-    plan: Plan,
-    choice: Choice,
-    work: Sequence[Chunk],
-    answered: Iterable[tuple[int, FloatArray]],
-    progress: StageProgress,
-) -> Sweep:
-    """All results in the order of the table, some results checked.
-
-    Args:
-        plan: the plan of the sweep.
-        choice: its discretisation.
-        work: its chunks.
-        answered: for each chunk its number and its results, in any order.
+    Attributes:
+        plan: of the sweep.
+        work: its chunks, or those of a shard.
+        choice: the discretisation of all rows.
         progress: told the work under way.
     """
-    swept = len(plan.table.columns)
-    scratch = plan.scratch
-    values, outcomes = _gathered(plan, work, answered)
-    judged = None
-    if plan.stability and not plan.scene.tubes:
-        # Chunks that are solved in Python have been judged there.
-        in_c = {variant for chunk in work if chunk.compiled or chunk.in_contact for variant, _ in chunk.pieces}
-        judged = plan.variants.with_potential(in_c, scratch)
-    estimate, verdict = (plan.columns.index(name) for name in ERRORS) if plan.estimate_errors else (None, None)
-    for block in scratch.blocks(len(values)):
-        values[block, :swept] = plan.table.values[block]
-        if judged is not None:
-            values[block, -len(STABILITY) :][~judged[block]] = np.nan
-        if verdict is not None:
-            # 1 or 0 as of a solution; NaN where that is not known or has no meaning.
-            errors = values[block, estimate]
-            within = np.where(np.isnan(errors), np.nan, errors <= plan.scene.accuracy.tolerance)
-            within[outcomes[block] != 0] = 0.0
-            values[block, verdict] = within if plan.scene.accuracy.binds else np.nan
-    checked = []
-    # Rows of tubes are within tolerance each, or do not converge.
-    if not plan.scene.tubes:
-        posed = len(plan.scene.rods) + len(plan.scene.bodies)
-        # The outcome, first of a row of results, has no column of numbers; poses cannot be swept.
-        first = swept + len(JUDGED) - 1
-        poses = values[:, first : first + posed * len(POSE)]
-        checked = check(plan.variants, choice, outcomes, poses, scratch, progress)
-    sweep = Sweep(plan.table.columns, plan.columns[swept:], values, outcomes, {}, scratch)
-    # The record counts the outcomes of the sweep that it belongs to.
-    sweep.record.update(_record(plan, choice, sweep, checked))
-    return sweep
 
+    plan: Plan
+    work: Sequence[Chunk]
+    choice: Choice
+    progress: StageProgress
 
-def _gathered(
-    plan: Plan, work: Sequence[Chunk], answered: Iterable[tuple[int, FloatArray]]
-) -> tuple[FloatArray, npt.NDArray[np.int64]]:
-    """Results of all rows behind the columns of the table, which are left empty, and how the rows ended."""
-    swept = len(plan.table.columns)
-    result_columns = [plan.results.index(name) for name in plan.columns[swept:]]
-    count = len(plan.table.values)
-    values = plan.scratch.array((count, len(plan.columns)))
-    outcomes = plan.scratch.array((count,), np.int64)
-    # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
-    chunk_of = {chunk.number: chunk for chunk in work}
-    for number, results in answered:
-        rows = chunk_of[number].rows
-        outcomes[rows] = results[:, 0]
-        values[rows, swept:] = results[:, result_columns]
-        if number % LET_GO == 0:
-            plan.scratch.let_go()
-    return values, outcomes
+    def solve_rest(self, machine: Cores | Cluster, store: Store | Memory) -> None:
+        """Solve every chunk that is not done, and keep it."""
+        rest = [chunk for chunk in self.work if chunk.number not in store.done]
+        total = sum(len(chunk.rows) for chunk in self.work)
+        count = total - sum(len(chunk.rows) for chunk in rest)
+        for chunk, results in machine.run(self._tasks(rest)):
+            store.add(chunk.number, results)
+            if chunk.number % LET_GO == 0:
+                # Inputs were read for it.
+                self.plan.scratch.let_go()
+            count += len(results)
+            self.progress("Sweeping", count, total)
+
+    def _tasks(self, rest: Sequence[Chunk]) -> Iterator[tuple[Chunk, list[Part]]]:
+        """Chunks with what solves them; sources are generated when their first chunk comes."""
+        answer: Answer | None = None
+        answer_of: int | None = None
+        given = self.plan.variants.given
+        for chunk in rest:
+            if not chunk.compiled and not chunk.in_contact:
+                # A model in Python for each variant that the chunk has rows of.
+                yield chunk, [(self._in_python(variant), given(rows)) for variant, rows in chunk.pieces]
+                continue
+            # A compiled chunk has rows of one variant.
+            ((variant, rows),) = chunk.pieces
+            if answer is None or answer_of != variant:
+                self.progress("Compiling", 0, 0)
+                answer = self._compiled(variant)
+                answer_of = variant
+            yield chunk, [(answer, given(rows))]
+
+    def _compiled(self, variant: int) -> Answer:
+        """The library of a variant, beside Python in exact contact, and where rows may stall before smooth contact.
+
+        Python alone in exact contact where C does not know what the scene has.
+        """
+        plan = self.plan
+        entry = plan.variants.entries[variant]
+        model = build(self.choice.scene(entry.scene))
+        in_contact = entry.scene.touches_exactly
+        library: RowLibrary | DeviceRows
+        if in_contact:
+            given = plan.variants.given(entry.rows)
+            cases = given[representative_rows(given, plan.samples, plan.scratch)]
+            options = {"estimate_errors": plan.estimate_errors, "stability": plan.stability}
+            try:
+                library = contact_row_library(model, cases, **options)
+                library.compiled()
+            except ExportError:
+                return self._in_python(variant)
+        elif plan.device is not None:
+            library = device_rows(model, plan.device, estimate_errors=plan.estimate_errors)
+        else:
+            library = row_library(
+                model,
+                estimate_errors=plan.estimate_errors,
+                stability=plan.stability,
+                lanes=len(entry.rows) >= IN_LANES_FROM,
+            )
+        if not in_contact and not has_barriers(entry.scene):
+            return library
+        if isinstance(library, RowLibrary):
+            # Once, before many processes look for it.
+            library.compiled()
+        return LibraryWithPython(library, self._in_python(variant), in_contact)
+
+    def _in_python(self, variant: int) -> RowModel:
+        """A variant in Python."""
+        plan = self.plan
+        # Text, since models of CasADi do not travel to other processes.
+        measure = scene_text(self.choice.scene(plan.variants.nominal)) if plan.stability else ""
+        scene = self.choice.scene(plan.variants.entries[variant].scene)
+        return RowModel(scene_text(scene), plan.stability, measure, plan.estimate_errors)
+
+    def sweep(self, answered: Iterable[tuple[int, FloatArray]]) -> Sweep:
+        """All results in the order of the table, some results checked.
+
+        Args:
+            answered: for each chunk its number and its results, in any order.
+        """
+        plan = self.plan
+        swept = len(plan.table.columns)
+        scratch = plan.scratch
+        values, outcomes = self._gathered(answered)
+        judged = None
+        if plan.stability and not plan.scene.tubes:
+            # Chunks that are solved in Python have been judged there.
+            in_c = {variant for chunk in self.work if chunk.compiled or chunk.in_contact for variant, _ in chunk.pieces}
+            judged = plan.variants.with_potential(in_c, scratch)
+        estimate, verdict = (plan.columns.index(name) for name in ERRORS) if plan.estimate_errors else (None, None)
+        for block in scratch.blocks(len(values)):
+            values[block, :swept] = plan.table.values[block]
+            if judged is not None:
+                values[block, -len(STABILITY) :][~judged[block]] = np.nan
+            if verdict is not None:
+                # 1 or 0 as of a solution; NaN where that is not known or has no meaning.
+                errors = values[block, estimate]
+                within = np.where(np.isnan(errors), np.nan, errors <= plan.scene.accuracy.tolerance)
+                within[outcomes[block] != 0] = 0.0
+                values[block, verdict] = within if plan.scene.accuracy.binds else np.nan
+        checked = []
+        # Rows of tubes are within tolerance each, or do not converge.
+        if not plan.scene.tubes:
+            posed = len(plan.scene.rods) + len(plan.scene.bodies)
+            # The outcome, first of a row of results, has no column of numbers; poses cannot be swept.
+            first = swept + len(JUDGED) - 1
+            poses = values[:, first : first + posed * len(POSE)]
+            checked = check(plan.variants, self.choice, outcomes, poses, scratch, self.progress)
+        sweep = Sweep(plan.table.columns, plan.columns[swept:], values, outcomes, {}, scratch)
+        # The record counts the outcomes of the sweep that it belongs to.
+        sweep.record.update(_record(plan, self.choice, sweep, checked))
+        return sweep
+
+    def _gathered(self, answered: Iterable[tuple[int, FloatArray]]) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+        """Results of all rows behind the columns of the table, which are left empty, and how the rows ended."""
+        plan = self.plan
+        swept = len(plan.table.columns)
+        result_columns = [plan.results.index(name) for name in plan.columns[swept:]]
+        count = len(plan.table.values)
+        values = plan.scratch.array((count, len(plan.columns)))
+        outcomes = plan.scratch.array((count,), np.int64)
+        # Chunks have every row once; each is let go as soon as it has its place, since rows may be millions.
+        chunk_of = {chunk.number: chunk for chunk in self.work}
+        for number, results in answered:
+            rows = chunk_of[number].rows
+            outcomes[rows] = results[:, 0]
+            values[rows, swept:] = results[:, result_columns]
+            if number % LET_GO == 0:
+                plan.scratch.let_go()
+        return values, outcomes
 
 
 def _units(scene: Scene, columns: Sequence[str]) -> dict[str, str]:

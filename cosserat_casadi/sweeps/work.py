@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 from typing import TypeAlias
 
 import numpy as np
@@ -27,51 +29,41 @@ MODELLED_ROWS = 16
 """Rows of a chunk that is solved in Python."""
 
 
+STALLED = OUTCOMES.index(Outcome.LOAD_STALLED)
+"""Outcome of rows that stop before an obstacle or a rod."""
+
+
 @dataclass(frozen=True)
-class InContact:
-    """A library of rods in exact contact, which knows some arrangements of contacts; Python for rows that it leaves.
+class LibraryWithPython:
+    """A library, and Python for the rows that it leaves.
+
+    In exact contact it knows some arrangements of contacts, solves each row from its neighbour, and leaves all rows
+    without an equilibrium. Elsewhere none of its steps leads through an obstacle or a rod: it leaves rows that stall,
+    which may settle.
 
     Attributes:
-        library: solves a row from the one before it.
+        library: solves rows.
         model: the same scene in Python.
+        in_contact: whether rods touch obstacles exactly.
     """
 
-    library: RowLibrary
+    library: RowLibrary | DeviceRows
     model: RowModel
+    in_contact: bool
 
     def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs and parameters, which are solved from neighbour to neighbour."""
-        order = from_neighbour_to_neighbour(inputs)
+        """Rows of results for rows of inputs and parameters."""
+        order = from_neighbour_to_neighbour(inputs) if self.in_contact else np.arange(len(inputs))
         results = np.empty((len(inputs), self.library.results))
         results[order] = self.library.solve(inputs[order])
-        left = order[results[order, 0] != 0]
+        outcomes = results[order, 0]
+        left = order[outcomes != 0 if self.in_contact else outcomes == STALLED]
         if left.size:
             results[left] = self.model.solve(inputs[left])
         return results
 
 
-@dataclass(frozen=True)
-class WatchedRows:
-    """A library none of whose steps leads through an obstacle or a rod; Python for rows that stall, which may settle.
-
-    Attributes:
-        library: solves rows.
-        model: the same scene in Python.
-    """
-
-    library: RowLibrary | DeviceRows
-    model: RowModel
-
-    def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results for rows of inputs and parameters."""
-        results = self.library.solve(inputs)
-        stalled = np.flatnonzero(results[:, 0] == OUTCOMES.index(Outcome.LOAD_STALLED))
-        if stalled.size:
-            results[stalled] = self.model.solve(inputs[stalled])
-        return results
-
-
-Answer: TypeAlias = RowLibrary | DeviceRows | RowModel | InContact | WatchedRows
+Answer: TypeAlias = RowLibrary | DeviceRows | RowModel | LibraryWithPython
 """Solves rows."""
 
 Part = tuple[Answer, FloatArray]
@@ -115,7 +107,7 @@ def chunks(
         compiled_rows: rows of a chunk that a device solves; of one that a compiled library does by default.
     """
     listed: list[Chunk] = []
-    modelled = []
+    modelled: list[tuple[int, int]] = []
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
         in_contact = len(entry.rows) >= IN_CONTACT_FROM and touches_in_c(entry.scene)
@@ -132,8 +124,9 @@ def chunks(
             listed.append(Chunk(len(listed), ((index, rows),), in_threads, in_contact))
     # Variants of few rows share chunks, so that none is too small to be worth its transport.
     for first in range(0, len(modelled), MODELLED_ROWS):
-        pieces = _pieces(modelled[first : first + MODELLED_ROWS])
-        listed.append(Chunk(len(listed), tuple(pieces), compiled=False))
+        by_variant = groupby(modelled[first : first + MODELLED_ROWS], key=itemgetter(0))
+        pieces = tuple((index, np.array([row for _, row in rows])) for index, rows in by_variant)
+        listed.append(Chunk(len(listed), pieces, compiled=False))
     return listed
 
 
@@ -141,12 +134,3 @@ def solve_parts(parts: Sequence[Part]) -> FloatArray:
     """Results of all rows of a chunk; they depend on these arguments alone."""
     results = [answer.solve(inputs) for answer, inputs in parts]
     return np.vstack(results)
-
-
-def _pieces(rows: Sequence[tuple[int, int]]) -> Iterator[tuple[int, npt.NDArray[np.int64]]]:
-    """Pairs of variant and row, as one array of rows for each variant."""
-    rows_of: dict[int, list[int]] = {}
-    for variant, row in rows:
-        rows_of.setdefault(variant, []).append(row)
-    for variant, own_rows in rows_of.items():
-        yield variant, np.array(own_rows)

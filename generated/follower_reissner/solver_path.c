@@ -150,8 +150,8 @@ static progress begin_path(int has_jacobian, workspace *work) {
 }
 
 /* From the equilibrium at t = 0 in points[0], with its tangent and, where it is known, its Jacobian in
-   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end, and the step to go on with, zero
-   where none is long enough. */
+   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end, and the
+   step to go on with, zero where none is long enough. */
 static progress follow_path(const load_path *path, const path_limits *limits, int has_jacobian, workspace *work,
                             solver_info *info) {
   progress now = begin_path(has_jacobian, work);

@@ -69,8 +69,8 @@ static int contracts(real before, real step) {
   return step <= ERROR_CONTRACTING * before || step <= 10 * TOLERANCE;
 }
 
-/* The balance at the corrections in the workspace, which stays there. Returns the length of the step of the missing modes that
-   it calls for. */
+/* The balance at the corrections in the workspace, which stays there. Returns the length of the step of the missing
+   modes that it calls for. */
 static real balance(const real *x, const real *missing, const real *inputs, workspace *work) {
   richer_balance_at(x, work->known_correction, missing, inputs, work->balance, work);
   return norm_of_missing(work->balance + N);
@@ -106,8 +106,8 @@ static real follow_missing(const real *x, const loads *at, const real *residual,
   return SQUARE_ROOT(second_square / first_square);
 }
 
-/* The change of what is watched by the corrections in the workspace, whose balance is there, and the step that the unknowns of
-   the answer make. What the step moves is that on the answer's own modes: the difference is of second order. */
+/* The change of what is watched by the corrections in the workspace, whose balance is there, and the step that the
+   unknowns of the answer make. What the step moves is that on the answer's own modes: the difference is of second order. */
 static real change_with_following(const real *x, const real *inputs, workspace *work) {
   const real *richer = work->balance + 2 * N + MISSING;
   real *after = work->watched_after;
@@ -117,8 +117,9 @@ static real change_with_following(const real *x, const real *inputs, workspace *
   return largest_change(work->watched, after);
 }
 
-/* One sweep of the corrections in the workspace, from the elastic steps that are there. Returns the change of what is watched,
-   and sets next to the length of the step that the missing modes would make before the unknowns of the answer follow. */
+/* One sweep of the corrections in the workspace, from the elastic steps that are there. Returns the change of what is
+   watched, and sets next to the length of the step that the missing modes would make before the unknowns of the answer
+   follow. */
 static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian, real *next, real *shortening,
                   workspace *work) {
   const loads at = full_load(inputs);

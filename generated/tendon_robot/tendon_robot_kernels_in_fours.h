@@ -227,6 +227,48 @@ static void MADE(tendon_robot_kernels_fwd1_pulls)(const casadi_real *given, casa
     EVERY_LANE(MADE(tendon_robot_kernels_fwd1_pulls_turn)(given + lane, made + lane))
 }
 
+static void MADE(tendon_robot_kernels_chain_turn)(const casadi_real *given, casadi_real *made) {
+  made[0] = given[0] * given[4] - given[1] * given[5] - given[2] * given[6] - given[3] * given[7];
+  made[1] = given[0] * given[5] + given[1] * given[4] + given[2] * given[7] - given[3] * given[6];
+  made[2] = given[0] * given[6] - given[1] * given[7] + given[2] * given[4] + given[3] * given[5];
+  made[3] = given[0] * given[7] + given[1] * given[6] - given[2] * given[5] + given[3] * given[4];
+}
+
+static void MADE(tendon_robot_kernels_chain)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 8, made += 4)
+    MADE(tendon_robot_kernels_chain_turn)(given, made);
+}
+
+static void MADE(tendon_robot_kernels_pull_turn)(const casadi_real *given, casadi_real *made) {
+  casadi_real a0, a1, a2, a3, a4, a5, a6, a7;
+  a0 = given[17] * given[20] + given[18] * given[21] + given[19] * given[22];
+  a1 = given[11] * given[20] + given[12] * given[21] + given[13] * given[22];
+  a2 = given[9] * given[9] / 2.0;
+  a3 = given[14] * given[20] + given[15] * given[21] + given[16] * given[22];
+  a4 = given[10] * (given[8] * a1 - given[6] * a0) - a2 * a3;
+  a5 = given[10] * (given[7] * a0 - given[8] * a3) - a2 * a1;
+  a6 = a0 + (given[6] * a4 - given[7] * a5);
+  a7 = C[1] * a6;
+  a0 = given[10] * (given[6] * a3 - given[7] * a1) - a2 * a0;
+  a5 = a3 + (given[8] * a5 - given[6] * a0);
+  a3 = C[1] * a5;
+  a4 = a1 + (given[7] * a0 - given[8] * a4);
+  a0 = C[1] * a4;
+  made[0] = given[4] * a7 - given[5] * a3 + a4;
+  made[1] = a5 - given[3] * a7 + given[5] * a0;
+  made[2] = a6 + given[3] * a3 - given[4] * a0;
+  made[3] = given[2] * a3 - given[1] * a7;
+  made[4] = given[0] * a7 - given[2] * a0;
+  made[5] = given[1] * a0 - given[0] * a3;
+}
+
+static void MADE(tendon_robot_kernels_pull)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 23, made += 6)
+    MADE(tendon_robot_kernels_pull_turn)(given, made);
+}
+
 static void MADE(tendon_robot_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
   FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
   FOUR b16;
@@ -566,6 +608,111 @@ static void MADE(tendon_robot_k_jacobian_columns)(const casadi_real *w, const ca
     EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_2)(w, turns + lane, columns + lane, passed + lane))
     EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_3)(w, turns + lane, columns + lane, passed + lane))
     EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_4)(w, turns + lane, columns + lane, passed + lane))
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_0)(casadi_real *w) {
+  FOR_FOURS(i, 18) {
+    STORE(w + 66 + i, LOAD(w + 1 + i) + LOAD(w + 19 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_2)(casadi_real *w) {
+  FOR_FOURS(i, 36) {
+    STORE(w + 208 + i, LOAD(tendon_robot_kernels_table_3 + i) * LOAD(w + 244 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_3)(casadi_real *w) {
+  FOR_FOURS(i, 60) {
+    STORE(w + 370 + i, LOAD(w + 84 + i) + LOAD(w + 144 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_7)(casadi_real *w) {
+  FOR_FOURS(i, 24) {
+    STORE(w + 430 + i, SPREAD(w[204]) * LOAD(w + 108 + i));
+    STORE(w + 454 + i, SPREAD(w[205]) * LOAD(w + 76 + i));
+    STORE(w + 478 + i, SPREAD(w[206]) * LOAD(w + 132 + i));
+    STORE(w + 502 + i, SPREAD(w[207]) * LOAD(w + 166 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_8)(casadi_real *w) {
+  FOR_FOURS(i, 12) {
+    STORE(w + 78 + i, LOAD(w + 442 + i) + LOAD(w + 466 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_9)(casadi_real *w) {
+  FOR_FOURS(i, 24) {
+    STORE(w + 108 + i, LOAD(w + 132 + i) + LOAD(w + 478 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_10)(casadi_real *w) {
+  FOR_FOURS(i, 24) {
+    STORE(w + 132 + i, LOAD(w + 160 + i) + LOAD(w + 502 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_11)(casadi_real *w) {
+  FOR_FOURS(i, 19) {
+    FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
+    b0 = EACH(2.0) * LOAD(w + 787 + i);
+    b1 = b0 * LOAD(w + 787 + i);
+    b2 = EACH(2.0) * LOAD(w + 806 + i) * LOAD(w + 806 + i);
+    b3 = EACH(2.0) * LOAD(w + 825 + i);
+    b4 = b3 * LOAD(w + 787 + i);
+    b5 = EACH(2.0) * LOAD(w + 844 + i);
+    b6 = b5 * LOAD(w + 806 + i);
+    b7 = b3 * LOAD(w + 806 + i);
+    b8 = b5 * LOAD(w + 787 + i);
+    b3 = EACH(1.0) - b3 * LOAD(w + 825 + i);
+    b0 = b0 * LOAD(w + 806 + i);
+    b5 = b5 * LOAD(w + 825 + i);
+    STORE(w + 430 + i, EACH(1.0) - b1 - b2);
+    STORE(w + 449 + i, b4 + b6);
+    STORE(w + 468 + i, b7 - b8);
+    STORE(w + 487 + i, b4 - b6);
+    STORE(w + 506 + i, b3 - b2);
+    STORE(w + 525 + i, b0 + b5);
+    STORE(w + 730 + i, b7 + b8);
+    STORE(w + 749 + i, b0 - b5);
+    STORE(w + 768 + i, b3 - b1);
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_12)(casadi_real *w) {
+  FOR_FOURS(i, 20) {
+    FOUR b0, b1, b2;
+    b0 = EACH(0.4) * LOAD(w + 863 + i);
+    b1 = EACH(0.4) * LOAD(w + 883 + i);
+    b2 = EACH(0.4) * LOAD(w + 903 + i);
+    STORE(w + 66 + i, b0);
+    STORE(w + 156 + i, b1);
+    STORE(w + 176 + i, b2);
+    STORE(w + 787 + i, b1 * LOAD(w + 410 + i) - b2 * LOAD(w + 390 + i));
+    STORE(w + 807 + i, b2 * LOAD(w + 370 + i) - b0 * LOAD(w + 410 + i));
+    STORE(w + 827 + i, b0 * LOAD(w + 390 + i) - b1 * LOAD(w + 370 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_14)(casadi_real *w) {
+  FOR_FOURS(i, 36) {
+    STORE(w + 244 + i, LOAD(w + 208 + i) + LOAD(w + 280 + i) + LOAD(w + 316 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_15)(casadi_real *w) {
+  FOR_FOURS(i, 18) {
+    STORE(w + 66 + i, LOAD(w + 244 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_17)(casadi_real *w) {
+  FOR_FOURS(i, 18) {
+    STORE(w + 66 + i, EACH((-1.0)) * LOAD(w + 104 + i));
   }
 }
 

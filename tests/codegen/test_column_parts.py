@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Discretisation, Model, build, export, scene_from_dict
+from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS
+from cosserat_casadi.codegen import column_parts
 from cosserat_casadi.codegen.assembled import Assembled, assembled
 from cosserat_casadi.codegen.blocks import INTERFACE
 from cosserat_casadi.codegen.columns import in_columns, on_path
@@ -108,6 +111,35 @@ def test_parts_by_columns_make_the_jacobian(lengths: tuple[float, ...]) -> None:
     of_rods = [part for part in parts.jacobian.parts if parts.blocks.entry_owners[part.entries[0]] != INTERFACE]
     assert len({part.kernel for part in of_rods[1:]}) == 1
     assert all(isinstance(parts.jacobian.kernels[part.kernel], PrintedKernel) for part in of_rods)
+
+
+def carried_rods(count: int) -> Model:
+    """A chain of planar rods, each on the middle of the one before it, in springs."""
+    names = [f"rod_{i}" for i in range(count)]
+    rods = [rod("planar", name=names[0])]
+    rods += [rod("planar", name=own, base={"rod": carrier, "at": 0.5}) for carrier, own in pairwise(names)]
+    bed = {"kind": "foundation", "stiffness": [3.0, 2.0, 1.0]}
+    tables = {"schema": 1, "rods": rods, "loads": [bed | {"name": f"bed_{name}", "rod": name} for name in names]}
+    return build(scene_from_dict(tables), dict.fromkeys(names, Discretisation((2,), 3, (0.0, 0.5, 1.0))))
+
+
+@pytest.mark.parametrize(
+    "most",
+    [pytest.param(MOST_IN_COLUMNS, marks=pytest.mark.slow), 100],
+    ids=["by columns", "in loops"],
+)
+def test_a_chain_costs_the_sum_of_its_links(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
+    """A moving base is computed with its rod: links of a chain share code, in loops too where they are long."""
+    monkeypatch.setattr(column_parts, "MOST_IN_COLUMNS", most)
+    model = carried_rods(5)
+    parts = in_parts(model)
+    x = np.random.default_rng(3).normal(scale=0.3, size=model.size)
+    expected = np.array(model.path_jacobian(x, model.pack(), 0.7).nonzeros())
+    assert_allclose(entries_by_parts(model, parts, x, 0.7), expected, rtol=0, atol=1e-13 * abs(expected).max())
+    # The world holds the first rod; the second is on a rod whose base stays; the last one carries none.
+    assert [part.kernel for part in parts.jacobian.parts] == [0, 1, 2, 2, 3]
+    of_middle = parts.jacobian.kernels[2]
+    assert isinstance(of_middle, PrintedKernel) == (most == MOST_IN_COLUMNS)
 
 
 def test_turns_of_columns_in_groups() -> None:

@@ -84,6 +84,22 @@ def test_function_of_a_model_is_the_same_as_steps(model: Model, name: str) -> No
     assert_same(written, function, 1e-14)
 
 
+def test_equal_steps_are_taken_once() -> None:
+    """CasADi keeps an operation, a product, a call and a constant as often as they are written."""
+    x = ca.MX.sym("x", 3)
+    scalar = ca.SX.sym("x", 3)
+    root = ca.Function("root", [scalar], [ca.sqrt(ca.sumsqr(scalar))], {"never_inline": True})
+
+    def written() -> ca.MX:
+        matrix = ca.DM([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 10.0]])
+        return ca.sin(matrix @ x) * root(matrix @ x)
+
+    once = ca.Function("once", [x], [written()])
+    twice = ca.Function("twice", [x], [written(), 2.0 * written()])
+    assert len(program_of(twice).steps) == len(program_of(once).steps) + 1
+    assert_same(function_of(program_of(twice)), twice, 0.0)
+
+
 def test_steps_whose_entries_come_out_zero() -> None:
     """CasADi leaves them out where a factor is a constant zero: their places stay."""
     a, x = ca.MX.sym("a"), ca.MX.sym("x", 9)

@@ -9,7 +9,7 @@ import pytest
 
 from cosserat_casadi.compiling import texts
 
-TEMPLATES = [file.name for file in (resources.files("cosserat_casadi.codegen") / "templates").iterdir()]
+TEMPLATES = [file.name for file in (resources.files("cosserat_casadi.compiling") / "templates").iterdir()]
 
 NESTED = """first
 @{if outer}

@@ -118,17 +118,7 @@ def linear(noise_from: NoiseFrom, squares: float, count: int = 20) -> Statistics
     """So many residuals of one unknown whose information is their number."""
     ones = np.ones((count, 1))
     offsets = np.array([0, count])
-    nothing = np.zeros((1, 0))
-    arrow = ArrowStep(
-        np.zeros(count),
-        ones,
-        np.zeros((count, 0)),
-        offsets,
-        (np.zeros(1), np.zeros(1)),
-        (np.zeros(0), nothing),
-        np.zeros(1, dtype=bool),
-        np.zeros((1, 0), dtype=bool),
-    )
+    arrow = ArrowStep(np.zeros(count), ones, offsets, 1, np.zeros(1), np.zeros(1), np.zeros(1, dtype=bool))
     scales = (np.ones(1), np.zeros(0))
     return statistics(arrow, ("a",), scales, freedom=count - 1, squares=squares, noise_from=noise_from)
 

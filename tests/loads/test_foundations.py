@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError, build, scene_from_dict, solve
+from tests.derivatives import check_jacobian
 from tests.families import mostly_slow
 from tests.reference.rods import rotation_from_quaternion
 from tests.scenes import rod, scene
@@ -55,6 +56,22 @@ def tied_to(name: str, nodes: np.ndarray, unloaded: np.ndarray) -> np.ndarray:
     if name != "curve":
         return unloaded
     return np.array([0.1 + 0.2 * (2 * nodes - 1), -0.3 + 0 * nodes, 0.1 * nodes + 0.2 * nodes**2])
+
+
+def test_loads_on_the_same_sections_share_their_motion() -> None:
+    """A second load on them costs no product that is a matrix of many rows and columns."""
+    soil = foundation(name="soil", stiffness=[20.0, 90.0, 30.0], frame="body")
+    base = {"free": True, "position": [0.1, -0.2, 0.3]}
+    products = []
+    for loads in ([foundation()], [foundation(), soil]):
+        tables = {"schema": 1, "rods": [rod("reissner", base=base)], "loads": loads, "accuracy": FEW}
+        model = build(scene_from_dict(tables))
+        check_jacobian(model, atol=1e-11)
+        function = model.path_jacobian
+        codes = [function.instruction_id(k) for k in range(function.n_instructions())]
+        results = [function.instruction_MX(k) for k, code in enumerate(codes) if code == ca.OP_MTIMES]
+        products.append(sum(min(result.shape) > 3 for result in results))
+    assert products[0] == products[1]
 
 
 @pytest.mark.parametrize("strain", mostly_slow(["kirchhoff", "reissner"], quick=["reissner"]))

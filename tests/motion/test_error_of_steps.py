@@ -24,6 +24,7 @@ from cosserat_casadi.motion.simulate import (
     LEAST_SLOPE_AFTER_IMPACTS,
     LEAST_SLOPE_OF_ALIKE,
     LEAST_TIGHTENING,
+    SLOPE_OF_THREE_ALIKE,
     TIGHTER,
     Simulator,
     TimedHistory,
@@ -214,6 +215,16 @@ def test_two_motions_tell_the_error_of_the_finer_one(
     assert_allclose(left_by(10.0, finer, coarser) * (errors[1] - errors[0]), errors[0], rtol=1e-6, atol=0)
 
 
+@pytest.mark.parametrize(
+    ("fallen", "power"), [(0.04, LEAST_SLOPE), (0.16, SLOPE_OF_THREE_ALIKE), (0.3, LEAST_SLOPE), (1.0, LEAST_SLOPE)]
+)
+def test_three_motions_that_are_struck_alike_tell_errors_closer(fallen: float, power: float) -> None:
+    """Where their distances fall as errors of steps do, the error is told by more than the least power."""
+    struck = cast(History, SimpleNamespace(events=[event(0.5)], statistics=SimpleNamespace(steps=10**8)))
+    errors = (1e-3, 1e-3 * 10.0**power)
+    assert_allclose(left_by(10.0, struck, struck, fallen) * (errors[1] - errors[0]), errors[0], rtol=1e-6, atol=0)
+
+
 def test_where_more_exact_steps_end_early_the_last_whole_motion_and_its_error_are_kept(
     simulator: Simulator, coarse: History, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -367,7 +378,8 @@ def test_steps_of_a_model_are_made_more_exact_until_they_agree() -> None:
     assert true_error(simulator, timed.history) <= timed.error <= wanted
 
 
-def test_a_search_takes_a_motion_on_each_set_of_modes_and_one_for_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def sizes_of_motions(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Number of unknowns of each motion with controlled steps that is computed from now on."""
     sizes = []
     plain = Simulator.controlled
 
@@ -376,10 +388,25 @@ def test_a_search_takes_a_motion_on_each_set_of_modes_and_one_for_its_steps(monk
         return plain(simulator, tolerance)
 
     monkeypatch.setattr(Simulator, "controlled", counted)
+    return sizes
+
+
+def test_a_search_takes_a_motion_on_each_set_of_modes_and_one_for_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = sizes_of_motions(monkeypatch)
     motion = simulate(scene_from_dict(transients.sudden_weight(tolerance=3e-3)))
     assert motion.converged, motion.message
     assert len(sizes) == len(set(sizes)) + 1
     assert sizes[-1] == sizes[-2] == motion.model.size
+
+
+def test_modes_that_are_foreseen_to_be_enough_take_exact_steps_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The motion on fewer modes tells their error together with that of its own modes: from above."""
+    sizes = sizes_of_motions(monkeypatch)
+    motion = simulate(scene_from_dict(transients.sudden_weight(tolerance=5e-3)))
+    assert motion.converged, motion.message
+    assert len(sizes) == len(set(sizes)) == 2
+    error = np.abs(motion.tip().position[:, [0, 2]] - transients.SUDDEN_WEIGHT_TIP).max()
+    assert 3e-5 < error < motion.error_estimate
 
 
 def test_a_steel_wire_is_not_buckled_by_what_newtons_method_leaves_of_its_stretch() -> None:

@@ -128,7 +128,7 @@ class Interruption:
 
 
 def strand(history: History) -> Strand:
-    return Strand(history.model.discretisation, history.settings, False, 0.0, 0.0, history.resume)
+    return Strand(history.model.discretisation, history.settings, False, 0.0, 0.0, False, history.resume)
 
 
 def through_data(history: History) -> Resume:

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Hyperplane, Monitor, tangent_along
+from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Monitor, tangent_along
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, bracketed_zero
 from cosserat_casadi.numerics.trace import PathOutcome, Trace, crossing_direction, trace
@@ -229,9 +229,9 @@ def test_correction_of_least_norm_where_a_direction_is_neutral() -> None:
         lambda x, t: [0.0, 0.0],
         [0.0, 0.0],
     )
-    corrected = neutral.correct(np.array([1.2, 0.7, 0.3]), Hyperplane(np.array([0.0, 0.0, 1.0]), 0.3))
+    corrected = neutral.correct(np.array([1.2, 0.7, 0.3]), np.array([0.0, 0.0, 1.0]), 0.3)
     assert corrected is not None
-    assert_allclose(corrected.y, [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
+    assert_allclose(corrected[0], [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
 
 
 def test_a_step_goes_its_length_along_the_tangent_and_not_around_a_corner() -> None:

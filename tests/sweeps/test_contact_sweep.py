@@ -18,7 +18,7 @@ from cosserat_casadi.sweeps.outcome_table import LABELS
 from cosserat_casadi.sweeps.row_model import RowModel, result_row
 from cosserat_casadi.sweeps.table import table_of
 from cosserat_casadi.sweeps.variants import variants_of
-from cosserat_casadi.sweeps.work import IN_CONTACT_FROM, InContact, chunks
+from cosserat_casadi.sweeps.work import IN_CONTACT_FROM, LibraryWithPython, chunks
 from tests.codegen.contact_libraries import pulled_over_bar
 from tests.paths.test_contact_path import BAR
 
@@ -120,7 +120,8 @@ def test_rows_that_c_leaves_are_solved_in_python() -> None:
             rows[:, 0] = [0, LABELS.index("contact_unsettled"), 0, 0]
             return rows
 
-    rows = InContact(Left(), RowModel(SCENE, estimate_errors=True)).solve(pushes)  # type: ignore[arg-type]
+    python = RowModel(SCENE, estimate_errors=True)
+    rows = LibraryWithPython(Left(), python, in_contact=True).solve(pushes)  # type: ignore[arg-type]
     assert seen == [-0.02, -0.1, -0.3, -0.5]
     assert_allclose(rows[:, 0], np.zeros(4), rtol=0, atol=0)
     (expected,) = RowModel(SCENE, estimate_errors=True).solve(pushes[[2]])

@@ -52,11 +52,11 @@ class Constant:
 def answers_at_once(replace: Any) -> None:
     """Replace what solves rows."""
 
-    def tasks(plan: Plan, choice: Any, rest: Any, progress: Any) -> Iterator[tuple[Any, Any]]:
+    def tasks(of: Any, rest: Any) -> Iterator[tuple[Any, Any]]:
         for chunk in rest:
-            yield chunk, [(Constant(len(plan.results)), plan.variants.given(chunk.rows))]
+            yield chunk, [(Constant(len(of.plan.results)), of.plan.variants.given(chunk.rows))]
 
-    replace(run, "_tasks", tasks)
+    replace(run._Run, "_tasks", tasks)
     replace(run, "check", lambda *_: [])
 
 

@@ -38,9 +38,7 @@ TURNED = 1e-6
 
 def error_words(error: float, within: bool | None, tolerance: float) -> str:
     """An estimated error with markup: beside the tolerance, told apart above it; alone where none has a meaning."""
-    words = f"{error:.1e} of the length"
-    if error == UNKNOWN:
-        words = "not known"
+    words = "not known" if error == UNKNOWN else f"{error:.1e} of the length"
     if within is None:
         return words
     if within:
@@ -236,15 +234,11 @@ def _print_parameters(console: Console, model: Model) -> None:
 
 
 def _with_unit(number: float, unit: str) -> str:
-    if unit == "1":
-        return f"{number:.6g}"
-    return f"{number:.6g} {unit}"
+    return f"{number:.6g}" if unit == "1" else f"{number:.6g} {unit}"
 
 
 def _print_price(console: Console, model: Model, cost: Price) -> None:
-    igm = "IGM"
-    if len(model.igm) > 1:
-        igm = f"IGM of all {len(model.igm)} rods"
+    igm = f"IGM of all {len(model.igm)} rods" if len(model.igm) > 1 else "IGM"
     console.print(
         f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm}, residual {cost.residual}, "
         f"residual and Jacobian {cost.jacobian}.",

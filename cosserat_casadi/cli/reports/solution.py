@@ -83,9 +83,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
 
 def _with_error(gap: float, error: float | None) -> str:
     """A gap with the error of the model that it was measured on: it is not known more exactly."""
-    if error is None:
-        return f"{gap:.3g}"
-    return f"{gap:.3g} ± {error:.1g}"
+    return f"{gap:.3g}" if error is None else f"{gap:.3g} ± {error:.1g}"
 
 
 def _rod_table(solution: Solution) -> Table:

@@ -194,9 +194,7 @@ def _rows(entries: list[dict[str, Any]]) -> str:
 
 
 def _within(error: float, tolerance: float) -> str:
-    if error <= tolerance:
-        return "within"
-    return "[bold red]more than[/]"
+    return "within" if error <= tolerance else "[bold red]more than[/]"
 
 
 def print_sobol(console: Console, indices: SobolIndices) -> None:

@@ -91,7 +91,7 @@ class ArrangementKernels:
         whole = self._of_z([self._by_z(self._written.jacobian)])
         name = f"{self.name}_jacobian"
         columned = by_columns(self._written_jacobian, whole, name)
-        return kernel(self.equations.nominal.model, whole, name) if columned is None else columned
+        return kernel(self.equations.nominal.model, whole, name) if columned is None else columned.printed
 
     @property
     def _written_jacobian(self) -> WrittenJacobian:

@@ -168,7 +168,8 @@ static void respond_to(const real *row, const stage_factors *factors, real *resp
   for (int i = 0; i < N; i++) response[i] = IS_SHAPE[i] ? work->stage_solution[i] : 0;
 }
 
-/* The same of all gaps, and by how much gaps open then. Of rods with other units of energy one answers more than the other. */
+/* The same of all gaps, and by how much gaps open then. Of rods with other units of energy one answers more than the
+   other. */
 static void respond(const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
   for (int j = 0; j < count; j++) {
@@ -514,7 +515,8 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
       section_gap gap;
       stage_at(start, STAGES - 1, unknowns, &work->at);
       for (int k = 0; k < work->touch_count; k++) {
-        gradient_at(work->touches + k, work->touches[k].place, work->at.state, work->at.inputs, &gap, work->gradients[k], work);
+        gradient_at(work->touches + k, work->touches[k].place, work->at.state, work->at.inputs, &gap, work->gradients[k],
+                    work);
 #ifdef CONTACT_RUBS
         note_slide(k, &gap, work->at.state, work->at.inputs, work);
 #endif

@@ -48,9 +48,9 @@ static int linearise(const arrangement *at, const real *z, const real *inputs, w
   return 1;
 }
 
-/* Minus the inverse of the Jacobian at hand times a residual. After steps with one Jacobian it is corrected by C. G. Broyden's
-   updates, applied from the steps alone: C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995,
-   section 7.3. */
+/* Minus the inverse of the Jacobian at hand times a residual. After steps with one Jacobian it is corrected by C. G.
+   Broyden's updates, applied from the steps alone: C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations,
+   SIAM 1995, section 7.3. */
 static void quasi_newton_step(const arrangement *at, const real *residual, real *step, workspace *work) {
   const int n = at->size;
   for (int i = 0; i < n; i++) step[i] = -residual[i];

@@ -1,10 +1,11 @@
 /* How inputs move over a communication step.
 
    Loads move in a straight line from their value at its start to the one that was given: held at one of the two, they
-   would be late or early by half a step. What moves rods or prescribes a length needs rates and accelerations, and the importer gives a value for the end of each communication step alone. The rate at the end of a
-   step is that of the parabola through the last three values; the first step begins at rest, and its parabola without a
-   rate. Two accelerations, one in each half of the step, lead from value and rate at its start to those at its end. So
-   neither values nor rates jump; on a smooth path they are right to the third and to the second power of the step. */
+   would be late or early by half a step. What moves rods or prescribes a length needs rates and accelerations, and the
+   importer gives a value for the end of each communication step alone. The rate at the end of a step is that of the
+   parabola through the last three values; the first step begins at rest, and its parabola without a rate. Two
+   accelerations, one in each half of the step, lead from value and rate at its start to those at its end. So neither
+   values nor rates jump; on a smooth path they are right to the third and to the second power of the step. */
 
 /* Values at both ends of a communication step, and rates. */
 typedef struct {

@@ -37,7 +37,8 @@ real tubes_determinant(const real *x, const real *inputs, solver_workspace *work
    than SAME_BRANCH. Zero, and x as it was, where they do not lead to the inputs: tubes that are opposed exactly stay so. */
 static int solve_with_care(const real *inputs, real *x, workspace *work, solver_info *info) {
   static const newton_limits limits = {
-      .max_iterations = MAX_ITERATIONS, .max_jacobians = MAX_ITERATIONS, .max_halvings = 0, .inexact = 0, .reuse_jacobian = 0};
+      .max_iterations = MAX_ITERATIONS, .max_jacobians = MAX_ITERATIONS, .max_halvings = 0, .inexact = 0,
+      .reuse_jacobian = 0};
   path_point *point = work->points;
   updated_jacobian *jacobian = work->updated_jacobians;
   real *trial = work->points[1].x;
@@ -107,7 +108,8 @@ solver_status tubes_solve_sensitivity(const real *inputs, const real *x, real *d
 }
 
 /* The determinant at the solution of a turn, whose Jacobian the memory is left with; 0 at a snap. */
-static real determinant_at_end(const real *inputs, const real *x, int has_derivatives, solver_memory *memory, workspace *work) {
+static real determinant_at_end(const real *inputs, const real *x, int has_derivatives, solver_memory *memory,
+                               workspace *work) {
   if (!has_derivatives || !memory->has_jacobian) {
     const loads at = full_load(inputs);
     memory->has_jacobian = linearise(x, &at, &memory->jacobian, work) && memory->jacobian.regular;

@@ -41,7 +41,8 @@ static int is_zero(const real *x) {
 
 static solver_info no_result(void) {
   const solver_info none = {
-      .status = SOLVER_NOT_FINITE, .iterations = 0, .jacobians = 0, .residual_norm = 0, .load_factor = 0, .error_estimate = -1};
+      .status = SOLVER_NOT_FINITE, .iterations = 0, .jacobians = 0, .residual_norm = 0, .load_factor = 0,
+      .error_estimate = -1};
   return none;
 }
 

@@ -24,7 +24,8 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
     move_section(own, &gap, 1, work->moved_by_inputs, work);
     memset(work->weights, 0, (size_t)count * sizeof *work->weights);
     add_weights(faces, &gap, 1, work->weights);
-    points->by_inputs(work->at.state, work->at.inputs, work->weights, work->gaps_by_inputs[stage] + m * INPUTS, work->mixed, work);
+    points->by_inputs(work->at.state, work->at.inputs, work->weights, work->gaps_by_inputs[stage] + m * INPUTS, work->mixed,
+                      work);
     for (int j = 0; j < INPUTS; j++) {
       for (int i = 0; i < N; i++) {
         const real turned = turning(own, &gap, work->moved + 4 * i, work->moved_by_inputs + 4 * j);
@@ -37,7 +38,8 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
 /* Change of a gap at a stage with the unknowns of both. */
 static real gap_of_stages(int stage, int m, const real *unknowns, const workspace *work) {
   const real *gradient = work->stage_gradients[stage][m];
-  return STAGE_MATRIX_SQUARED[stage][0] * dot(gradient, unknowns) + STAGE_MATRIX_SQUARED[stage][1] * dot(gradient, unknowns + N);
+  const real *weights = STAGE_MATRIX_SQUARED[stage];
+  return weights[0] * dot(gradient, unknowns) + weights[1] * dot(gradient, unknowns + N);
 }
 
 #ifdef CONTACT_RUBS

@@ -186,7 +186,8 @@ static int downhill(const facing *own, const real *gaps, int count, real near) {
   return look;
 }
 
-/* Place next to another where the gap is least, by the polynomials of an element; not beyond the ends by more than a little. */
+/* Place next to another where the gap is least, by the polynomials of an element; not beyond the ends by more than a
+   little. */
 static real place_near(const facing *own, const real *nodes, real near, int element, workspace *work) {
   const real first = own->ends[element];
   const real last = own->ends[element + 1];

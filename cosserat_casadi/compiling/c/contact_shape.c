@@ -42,7 +42,8 @@ static real strain_at(const arrangement *at, const real *z, int rod, int first, 
   return value * nominal_width(elements, e) / width;
 }
 
-/* Unknowns of the shape `old` on the elements and modes of another arrangement, whose places stand in z already; forces are zero. */
+/* Unknowns of the shape `old` on the elements and modes of another arrangement, whose places stand in z already; forces
+   are zero. */
 static void project(const arrangement *from, const real *old, const arrangement *to, real *z) {
   for (int rod = 0; rod < RODS; rod++) {
     const rod_modes *own = to->modes + rod;

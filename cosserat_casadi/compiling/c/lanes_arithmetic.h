@@ -72,5 +72,6 @@ IN_PLACE lanes lanes_or(lanes x, lanes y) { return HOLDS((x != IN_ALL(0.0)) | (y
 /* condition ? x : 0, and x < 0 ? -1 : x > 0 ? 1 : x. */
 IN_PLACE lanes lanes_if(lanes condition, lanes x) { return lanes_where((lane_marks)(condition != IN_ALL(0.0)), x); }
 IN_PLACE lanes lanes_sign(lanes x) {
-  return lanes_chosen((lane_marks)(x < IN_ALL(0.0)), IN_ALL(-1.0), lanes_chosen((lane_marks)(x > IN_ALL(0.0)), IN_ALL(1.0), x));
+  const lanes not_below = lanes_chosen((lane_marks)(x > IN_ALL(0.0)), IN_ALL(1.0), x);
+  return lanes_chosen((lane_marks)(x < IN_ALL(0.0)), IN_ALL(-1.0), not_below);
 }
