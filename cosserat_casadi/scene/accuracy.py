@@ -103,8 +103,8 @@ shape = true
     )
     chosen_for: Annotated[tuple[Range, ...], NotEmpty()] | None = Field(
         None,
-        description="what modes and nodes were chosen for, as `cosserat tune` writes it: 'column=low:high' of inputs "
-        "and parameters, in their units",
+        description="ranges that modes and nodes were chosen for, as `cosserat tune` writes them: "
+        "'column=low:high' of inputs and parameters, in their units",
     )
 
     def of_rod(self, name: str) -> Accuracy | RodDiscretisation:

@@ -150,8 +150,8 @@ offset = [1.5e-3, 0.0]
     )
     pull: Pull = Field(
         1.0,
-        description="direction of the last pull at the base: 'in' loses tension along the course, 'out' gains it; "
-        "1 and −1 are the same, without unit; between them it turns round",
+        description="direction of the last pull at the base: 'in' (or 1) loses tension along the course, "
+        "'out' (or −1) gains it, without unit; values between stand for a reversal",
     )
     axial_stiffness: Positive | None = Field(
         None, description="stiffness EA of the cable, N; one of given length does not stretch where it is left out"
@@ -269,7 +269,9 @@ reference_pressure = 2.0e4
         "without unit",
     )
     offset_growth: tuple[Number, ...] = Field(
-        (), description="coefficients of the offset likewise, as the wall moves outwards, without unit"
+        (),
+        description="coefficients c of offset(p) = offset (1 + c₁ (p/p₀) + …), as the wall moves "
+        "outwards, without unit",
     )
     reference_pressure: Positive | None = Field(None, description="pressure p₀ of the growths, Pa")
     offset: Offset = Field(
@@ -328,7 +330,7 @@ profile = { base = 1.0, tip = 0.2 }
 
     kind: Literal["muscle"] = Field(description="active moment and force in the sections of a rod")
     rod: str = Field(description="name of the rod that it bends, twists, shears or stretches")
-    activation: Number = Field(1.0, description="what moment and force are multiplied by, without unit")
+    activation: Number = Field(1.0, description="factor on moment, force and curvature, without unit")
     moment: Vector = Field(
         (0.0, 0.0, 0.0), description="moment in section axes that bends and twists the rod at activation 1, N m"
     )

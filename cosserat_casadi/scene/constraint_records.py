@@ -191,14 +191,16 @@ mass = 0.1
     )
 
     radius: Positive | None = Field(
-        None, description="radius of the ball about its origin that keeps from obstacles which name it, m"
+        None, description="radius of the ball about its origin, which may not enter obstacles that name the body, m"
     )
     thickness: NotNegative | None = Field(
         None,
         description="with radius: thickness of a disk in place of the ball, square to its z axis, for contact at "
         "rest with obstacles without a width, m",
     )
-    listed: bool = Field(True, description="false keeps the body out of results: of disks and joints written as bodies")
+    listed: bool = Field(
+        True, description="false keeps the body out of results, as for disks and joints that are written as bodies"
+    )
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -278,8 +280,8 @@ class JointRecord(Oriented, Entry):
     )
     body: str | None = Field(
         None,
-        description="name of the body; left out, the joint is in the world, or at X = 0 where the base of the rod is, "
-        "in the world or on another rod",
+        description="name of the body; when left out, the joint is in the world or, with at = 0, where "
+        "the base of the rod is, in the world or on another rod",
     )
     rod: str = Field("", description="name of the jointed rod; none where the joint carries a body")
     carries: CarriedBody | None = Field(

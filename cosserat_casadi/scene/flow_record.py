@@ -46,13 +46,16 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
         0.0, description="viscous drag along the rod per length and speed, ζ_t, Pa s"
     )
     added_mass: NotNegative = Field(
-        1.0, description="mass of fluid that moves along across the rod over that displaced, in motion, without unit"
+        1.0,
+        description="mass of fluid that moves along with the rod across its tangent, over the "
+        "displaced mass, in motion, without unit",
     )
     gravity: Vector | None = Field(
-        None, description="acceleration in world axes, m/s², by which displaced fluid carries the rod; none without it"
+        None,
+        description="gravity in world axes, m/s², for the buoyancy of the displaced fluid; no buoyancy when left out",
     )
     diameter: Size | None = Field(
-        None, description="diameter that the stream sees, m; that of the section where it is left out"
+        None, description="diameter for the drag, m; the diameter of the section when left out"
     )
     rods: Names | None = Field(None, description="names of the rods in the fluid; all rods when left out")
 

@@ -41,7 +41,8 @@ span = [0.4, 1.0]
     )
     curve: Polynomials | None = Field(
         None,
-        description="points of the world that the sections X are tied to, m, where that is not the unloaded rod; a "
+        description="points of the world that the sections X are tied to, m, in place of those of the "
+        "unloaded rod; a "
         "component may list Legendre coefficients in 2X − 1",
     )
     span: Span = Field((0.0, 1.0), description="abscissae X between which the rod lies in the foundation")

@@ -133,7 +133,7 @@ class TabulatedMaterial(Material):
     """A material whose sections were measured: curves between whose points stress rises smoothly.
 
     A curve without negative strains holds for both signs. Strains without a curve are linear. Beyond its ends a curve
-    goes on straight, and a result there is told.
+    goes on straight, and results there are reported.
     """
 
     example: ClassVar[str] = """\

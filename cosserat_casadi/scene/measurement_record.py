@@ -103,7 +103,8 @@ class MeasurementRecord(Entry):
         description="standard deviation of one entry, in the unit of the quantity; a number, or one for each entry"
     )
     case: str | None = Field(
-        None, description="column whose equal cells make rows, of all files, one case; else each row is a case"
+        None,
+        description="column whose equal cells join rows of all files into one case; when left out, each row is a case",
     )
     where: Annotated[dict[str, Cell], AfterValidator(HashedTable)] = Field(
         default_factory=HashedTable,

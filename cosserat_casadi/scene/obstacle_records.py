@@ -118,21 +118,22 @@ class ObstacleRecord(Entry):
     )
     stiffness: Positive | None = Field(
         None,
-        description="with width: rate of the force per length with the gap where the gap is zero, N/m²; "
+        description="with width: slope of the force per length against the gap, where the gap is zero, N/m²; "
         "30 EI/(L² width²) of each rod when left out",
     )
     damping: NotNegative = Field(
-        0.0, description="with width: share by which it pushes more in motion, per speed of approach, s/m"
+        0.0, description="with width: relative increase of its push in motion, per speed of approach, s/m"
     )
     friction: Coefficients = Field(
         0.0,
-        description="coefficient μ of Coulomb's friction, without unit, or a table of those along a rod, back and "
+        description="coefficient μ of Coulomb's friction, without unit, or a table of coefficients along "
+        "a rod, back and "
         "across it: with width in motion and along paths, without in exported steps of motions",
     )
     slip_speed: Positive = Field(
         1e-3,
-        description="with width and friction: speed, m/s, below which what sticks creeps in motion, under a force "
-        "that grows with it",
+        description="with width and friction: speed, m/s, below which a contact that sticks creeps in "
+        "motion, under a force that grows with the speed",
     )
     restitution: Share = Field(
         0.0,

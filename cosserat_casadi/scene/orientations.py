@@ -61,7 +61,8 @@ class Oriented(Record):
     """A table with an orientation: its quaternion, or another way to say it, which the record keeps as that."""
 
     tangent: Direction | None = Field(
-        None, description="direction of the z axis, without unit; the shortest rotation of z, instead of quaternion"
+        None,
+        description="direction of the z axis, reached by the shortest rotation, without unit; instead of quaternion",
     )
     twist: Number | None = Field(None, description="angle about that direction, rad; with tangent")
     rotation_vector: Vector | None = Field(

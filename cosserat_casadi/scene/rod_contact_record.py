@@ -30,8 +30,8 @@ width = 5e-4
     name: Name | None = Field(None, description="name of the contact, a letter, then letters, digits and underscores")
     rods: Names | None = Field(
         None,
-        description="names of two rods, or of one that touches itself; every two rods when left out, but those of "
-        "which one starts on the other or that are joined to one body",
+        description="names of two rods, or of one that touches itself; when left out, every two rods "
+        "except those of which one starts on the other or that are joined to one body",
     )
     width: Positive | None = Field(
         None,
@@ -39,7 +39,8 @@ width = 5e-4
     )
     stiffness: Positive | None = Field(
         None,
-        description="rate of the force per length with the gap where the gap of parallel rods is zero, N/m²; "
+        description="slope of the force per length against the gap, where the gap of parallel rods is "
+        "zero, N/m²; "
         "30 EI/(L² width²) of the stiffer rod when left out",
     )
     friction: NotNegative = Field(
@@ -47,7 +48,9 @@ width = 5e-4
         description="coefficient μ of friction in motion and on paths, without unit, the same in all directions",
     )
     slip_speed: Positive = Field(
-        1e-3, description="with friction: speed, m/s, below which what sticks creeps, under a force that grows with it"
+        1e-3,
+        description="with friction: speed, m/s, below which a contact that sticks creeps, under a "
+        "force that grows with the speed",
     )
 
     @property

@@ -181,14 +181,14 @@ damping = { prony = [{ share = 0.2, time = 0.03 }, { share = 0.1, torsion = 0.05
 """
 
     share: ShareOfStiffness = Field(
-        description="stiffness over the instantaneous one of the rod, below 1, without unit"
+        description="stiffness of the spring over the instantaneous stiffness of the rod, below 1, without unit"
     )
-    bending_x: ShareOfStiffness | None = Field(None, description="share of bending about local x, if another")
-    bending_y: ShareOfStiffness | None = Field(None, description="share of bending about local y, if another")
-    torsion: ShareOfStiffness | None = Field(None, description="share of torsion, if another")
-    shear_x: ShareOfStiffness | None = Field(None, description="share of shear along local x, if another")
-    shear_y: ShareOfStiffness | None = Field(None, description="share of shear along local y, if another")
-    extension: ShareOfStiffness | None = Field(None, description="share of extension, if another")
+    bending_x: ShareOfStiffness | None = Field(None, description="share of bending about local x, if it differs")
+    bending_y: ShareOfStiffness | None = Field(None, description="share of bending about local y, if it differs")
+    torsion: ShareOfStiffness | None = Field(None, description="share of torsion, if it differs")
+    shear_x: ShareOfStiffness | None = Field(None, description="share of shear along local x, if it differs")
+    shear_y: ShareOfStiffness | None = Field(None, description="share of shear along local y, if it differs")
+    extension: ShareOfStiffness | None = Field(None, description="share of extension, if it differs")
     time: Positive = Field(description="relaxation time τ of its stress at constant strain, s")
 
 
@@ -207,8 +207,8 @@ damping = { retardation_time = 0.01 }
     )
     mass_proportional: NotNegative | None = Field(
         None,
-        description="α of a force −α ρA ṙ per length, and of couples likewise, on the rod and on disks fixed to it, "
-        "1/s; the damping ratio of a mode is α/(2ω) by it",
+        description="α of a force −α ρA ṙ per length, and of the corresponding couples, on the rod and "
+        "on disks fixed to it, 1/s; it adds α/(2ω) to the damping ratio of a mode",
     )
     bending_x: SizeOrZero | None = Field(None, description="damping of bending about local x, N m² s; 0 when left out")
     bending_y: SizeOrZero | None = Field(None, description="damping of bending about local y, N m² s; 0 when left out")

@@ -84,7 +84,8 @@ inputs = ["push.force", "cable.tension"]
     title: str = Field("", description="one line about the scene")
     inputs: Annotated[tuple[str, ...], AfterValidator(without_repetition)] | None = Field(
         None,
-        description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
+        description="inputs that stay free at run time, each as 'load.field'; when left out, every "
+        "magnitude of loads and actuators",
     )
     parameters: Annotated[tuple[TiedNames, ...], AfterValidator(without_repetition)] = Field(
         (),
@@ -94,8 +95,9 @@ inputs = ["push.force", "cable.tension"]
     )
     ranges: InputRanges = Field(
         default_factory=HashedTable,
-        description="where inputs and parameters will go, by name, in their units: [low, high] for all entries, or a "
-        "list of these, one for each; modes and nodes are chosen for all of it",
+        description="ranges of inputs and parameters by name, in their units: [low, high] for all "
+        "entries, or a list with one pair for each; modes and nodes are chosen for the whole of "
+        "these ranges",
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
     rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field((), description="the rods, at least one, unless it has tubes")
@@ -108,7 +110,7 @@ inputs = ["push.force", "cable.tension"]
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave")
     rod_contacts: tuple[RodContact, ...] = Field((), description="rods that may not enter each other, or themselves")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
-        (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
+        (), description="concentric tubes, instead of rods; only loads act on them"
     )
     targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")

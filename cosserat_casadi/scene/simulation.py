@@ -54,7 +54,7 @@ start = "unloaded"
         "when left out, or 1e-3 where that is left out too",
     )
     step: Positive | None = Field(
-        None, description="time step that is kept to, s; its error is estimated, not controlled; chosen when left out"
+        None, description="fixed time step, s; its error is estimated, not controlled; steps are chosen when left out"
     )
     integrator: Literal["radau", "gauss"] = Field(
         "radau",

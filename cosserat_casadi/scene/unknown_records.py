@@ -58,8 +58,8 @@ per_row = true
     input: str | None = Field(None, description="'load.field' of the input, or of a part such as 'push.force.z'")
     per_row: bool = Field(
         False,
-        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds; an "
-        "estimate asks for a prior where not",
+        description="whether it is found anew for each case; a parameter only by an estimate, between "
+        "its bounds; where it is false, an estimate needs a prior",
     )
     lower: Component | None = Field(None, description="least value in its unit; a number, or one for each entry")
     upper: Component | None = Field(None, description="largest value in its unit; a number, or one for each entry")
@@ -114,7 +114,7 @@ starts = 8
 
     loss: Literal["squares", "huber", "cauchy"] = Field(
         "squares",
-        description="what a residual costs: its square, or less where it is large, so that outliers weigh less",
+        description="cost of a residual: its square, or less where it is large, so that outliers weigh less",
     )
     loss_width: Positive = Field(
         2.0, description="residual, in standard deviations, from which on 'huber' and 'cauchy' cost less, without unit"
@@ -124,7 +124,7 @@ starts = 8
         description="whether intervals follow from sigma as stated, or from sigma scaled so that the residuals fit it",
     )
     failures: Literal["leave_out", "stop"] = Field(
-        "leave_out", description="what becomes of cases without an equilibrium: they are left out, or all stops"
+        "leave_out", description="whether cases without an equilibrium are left out, or stop the identification"
     )
     hold_out: Annotated[Number, Field(ge=0, lt=1)] = Field(
         0.0, description="share of the cases that is not fitted but predicted, without unit"

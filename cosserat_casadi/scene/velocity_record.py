@@ -27,7 +27,8 @@ OF_STRAINS = ("curvature_rate", "tangent_rate")
 class InitialVelocity(Entry):
     """Velocity of a free base or a body, and rates of the strains of a rod, at t = 0.
 
-    Bases that are not named begin at rest. Bodies and carried bases that are not go along as joints demand.
+    Bases that are not named begin at rest. Bodies and carried bases that are not named move as their
+    joints demand.
     """
 
     example: ClassVar[str] = """\
