@@ -74,6 +74,24 @@ def test_loads_on_the_same_sections_share_their_motion() -> None:
     assert products[0] == products[1]
 
 
+def test_loads_on_as_many_other_sections_move_with_their_own() -> None:
+    parts = [foundation(name="below", span=[0.0, 0.5]), foundation(name="above", span=[0.5, 1.0])]
+    magnets = [
+        {
+            "kind": "magnet",
+            "name": f"magnet_{at}",
+            "rod": "rod",
+            "at": at / 2,
+            "moment": [1.0, 2.0, 0.3],
+            "field": [0.3, 0.2, -0.1],
+        }
+        for at in (1, 2)
+    ]
+    rods = [rod(base={"free": True, "position": [0.1, -0.2, 0.3]})]
+    tables = {"schema": 1, "rods": rods, "loads": [*parts, *magnets], "accuracy": FEW}
+    check_jacobian(build(scene_from_dict(tables)), atol=1e-11)
+
+
 @pytest.mark.parametrize("strain", mostly_slow(["kirchhoff", "reissner"], quick=["reissner"]))
 @pytest.mark.parametrize("name", CASES)
 def test_residual_vs_gradient_of_the_energy(name: str, strain: str) -> None:
