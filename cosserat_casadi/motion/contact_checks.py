@@ -15,6 +15,7 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.event_restart import LAID_DOWN
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -47,7 +48,10 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     if simulation is not None and model.scene.rubs_exactly:
-        yield Problem("obstacles", RUBS_IN_C, f"export with --dynamics, or {remedy}; or leave friction out")
+        for pair in OneSided(model).pairs:
+            if pair.rigid:
+                what = "a rigid stop, or cable that goes slack, strikes, which steps with friction of exact contact do not"
+                yield Problem(pair.name, what, f"give it a stiffness, or {remedy}; or leave friction out")
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]

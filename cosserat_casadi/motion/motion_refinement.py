@@ -470,7 +470,11 @@ def _with_fixed(search: _Search) -> Motion:
     space_error = float("inf")
     if witness.start.found:
         # Its steps are controlled in any case: those of the user may be too long for more modes.
-        history = witness.controlled(_step_tolerance(search, timed))
+        history = (
+            witness.stepped(timed.history.statistics.largest_step)
+            if scene.rubs_exactly
+            else witness.controlled(_step_tolerance(search, timed))
+        )
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         # After impacts, and with waves, errors fall as slowly with the modes as in a search.
@@ -657,7 +661,7 @@ def _ladder(scene: Scene) -> tuple[int, ...]:
 
 def _on_level(search: _Search, simulator: Simulator) -> History:
     """The motion on one level: the first one settles the size of given steps, or how exact the steps are to be."""
-    given = search.simulation.step is not None or search.simulation.integrator == "gauss"
+    given = search.simulation.step is not None or simulator.has_equal_steps
     if not search.levels and given:
         timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.time_error = timed.error

@@ -40,11 +40,13 @@ from cosserat_casadi.motion.motion_compiler import MARGINS, RESOLUTION, MotionCo
 from cosserat_casadi.motion.motion_ending import message_of, outcome_of
 from cosserat_casadi.motion.motion_event import EventWatch, MotionEvent
 from cosserat_casadi.motion.motion_start import ALONG, Start, equilibrium_start, given_start, unloaded_start
-from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.moving_inputs import MovingInputs, Piece
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, external
-from cosserat_casadi.motion.step_kernels import interpreted
+from cosserat_casadi.motion.rubbing_library import RubbingSteps
+from cosserat_casadi.motion.rubbing_motion import rubbing_history
+from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.sudden_loads import warnings
 from cosserat_casadi.motion.tip_paths import Paths, path_distance, paths, watched_states
 from cosserat_casadi.motion.trajectory import (
@@ -120,11 +122,17 @@ NOT_NEARER = 0.5
 FAR_APART = 10.0
 """Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
 
-FIRST_GAUSS_STEPS = 50
-"""Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
+HALVED_WHERE_RUBBING, LEFT_BY_HALF_WHERE_RUBBING = 2.0, 1.0
+"""The same of motions with friction of exact contact: what breaks loose or lifts off in a step may leave its first power.
+
+The power is the second one where nothing does: then twice as much and three times as much is told as is there.
+"""
+
+FIRST_EQUAL_STEPS = 50
+"""Steps that a motion without a tolerance of a step is first divided into; they are halved until motions agree."""
 
 MOST_HALVINGS = 10
-"""Times that steps of Gauss's method are halved before a tolerance is given up."""
+"""Times that such steps are halved before a tolerance is given up."""
 
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
@@ -255,6 +263,21 @@ class Simulator:
         return self._integrated(radau(STAGES), settings)
 
     @property
+    def has_equal_steps(self) -> bool:
+        """Whether no tolerance of a step controls the steps: they are halved until motions agree."""
+        return self.simulation.integrator == "gauss" or self._rubs
+
+    @property
+    def _rubs(self) -> bool:
+        """Whether friction of exact contact acts, which steps in C have."""
+        return self.model.scene.rubs_exactly
+
+    @cached_property
+    def _rubbing(self) -> RubbingSteps:
+        """Steps with friction, for all motions of the model."""
+        return RubbingSteps(self.model)
+
+    @property
     def _stretch(self) -> float:
         """Least stretch or shear, over the length, that a force of EI/ℓ² makes; infinite where rods admit none."""
         rods = self.model.discrete.rods.values()
@@ -294,7 +317,7 @@ class Simulator:
         """
         if self.simulation.step is not None:
             return self._with_given_step(self.simulation.step)
-        if self.simulation.integrator == "gauss":
+        if self.has_equal_steps:
             return self._with_halved_steps(tolerance)
         return self.tightened(self.controlled(first), first, lambda _: tolerance)
 
@@ -369,11 +392,13 @@ class Simulator:
         """
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
-        error = HALVED * distance if shorter.completed else float("nan")
-        return TimedHistory(history, error, step_tolerance, Companion(shorter, HALVED), distance)
+        left = HALVED_WHERE_RUBBING if self._rubs else HALVED
+        error = left * distance if shorter.completed else float("nan")
+        return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance)
 
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
-        size = self.simulation.duration / FIRST_GAUSS_STEPS
+        size = self.simulation.duration / FIRST_EQUAL_STEPS
+        left = LEFT_BY_HALF_WHERE_RUBBING if self._rubs else LEFT_BY_HALF
         history = self.stepped(size)
         history_paths = self.paths(history)
         error = distance = float("nan")
@@ -387,8 +412,8 @@ class Simulator:
             shorter_paths = self.paths(shorter)
             if history.completed and shorter.completed:
                 distance = path_distance(history_paths, shorter_paths)
-                error = LEFT_BY_HALF * distance
-            companion = Companion(history, LEFT_BY_HALF)
+                error = left * distance
+            companion = Companion(history, left)
             history = shorter
             history_paths = shorter_paths
             if error <= tolerance:
@@ -399,6 +424,8 @@ class Simulator:
         pieces = self.moving.pieces(self.simulation.duration)
         rates = np.zeros(self.model.size) if self.start.v is None else self.start.v
         kernels = None if self.source is None else self.source.kernels(self.model)
+        if self._rubs:
+            return self._rubbed(pieces, rates, settings, kernels or interpreted(self.model))
         libraries = INTERPRETED if kernels is None else kernels.libraries
         if libraries not in self._flights:
             self._flights[libraries] = free_flight(self.model, libraries=libraries)
@@ -419,6 +446,16 @@ class Simulator:
         )
         if history.legs and self.start.resume is None and not self.model.scene.touches_exactly:
             self._begun[libraries] = history.legs[0].restart
+        if self.source is not None:
+            self.source.learn(history.statistics)
+        return history
+
+    def _rubbed(
+        self, pieces: Sequence[Piece], rates: FloatArray, settings: StepSettings, kernels: StepKernels
+    ) -> History:
+        start = self.start.x, rates
+        tell = None if self.tell is None else self._after_step
+        history = rubbing_history(self._rubbing, pieces, start, settings, kernels, tell, self.watch)
         if self.source is not None:
             self.source.learn(history.statistics)
         return history

@@ -1,4 +1,4 @@
-"""Functions of what rubs in exact contact, for steps in C: how the point that touches slides along the surface.
+"""Functions of what rubs in exact contact in motion: how the point that touches slides along the surface.
 
 A section of the radius ρ touches at −ρ n from its centre, n the normal of the obstacle, and that point of its material
 has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes;

@@ -1,0 +1,347 @@
+"""A motion with friction of exact contact: equal steps, each divided where something strikes, stops or turns back.
+
+Friction asks for steps that decide by themselves what sticks and what slips, which event after event would be without
+end where a rod lies on many sections. The law is in C, see :mod:`~cosserat_casadi.motion.rubbing_library`; here its
+stretches become the legs of a history, and their changes its events.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, refuse
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
+from cosserat_casadi.motion.event_restart import ContactEvent, Restart
+from cosserat_casadi.motion.history import (
+    DIFFERENTIATED,
+    FreeFlight,
+    History,
+    Leg,
+    Stops,
+    check_start,
+    equations_of,
+)
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.rubbing_library import RubbingSteps, RubbingTouch, ToldStretch
+from cosserat_casadi.motion.rubbing_step import RubbingStep
+from cosserat_casadi.motion.step_kernels import StepKernels
+from cosserat_casadi.motion.step_words import STAGES
+from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
+from cosserat_casadi.numerics.guards import Guards, crossing
+from cosserat_casadi.numerics.integration import (
+    AfterStep,
+    Integration,
+    IntegrationCost,
+    StepOutcome,
+    StepSettings,
+    stalled_at,
+)
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+SHORTEST = 2.0**-12
+"""Shortest step over the step of the motion, before it ends where its equations are not solved."""
+
+BOUNCE = 1e-6
+"""Height over the length from which a fall is told as an impact, as bounces of motions without friction are."""
+
+UNSETTLED = (
+    "At t = {time:.6g} s no forces that push and rub were found for what touches, in a step of {size:.3g} s: damp the "
+    "rods, or allow more modes."
+)
+
+
+@dataclass
+class _Told:
+    """A motion as far as it was computed.
+
+    Attributes:
+        model: the model.
+        steps: the steps in C.
+        legs: stretches with the same contacts.
+        taken: steps of the leg at hand.
+        restart: its begin; None where the next stretch begins one.
+        touches: what presses at the end, with its places there.
+        rubbing: pairs of which something touches and nothing slips, at the end.
+        cost: numbers of all steps.
+    """
+
+    model: Model
+    steps: RubbingSteps
+    legs: list[Leg] = field(default_factory=list)
+    taken: list[RubbingStep] = field(default_factory=list)
+    restart: Restart[ContactPhase] | None = None
+    touches: tuple[RubbingTouch, ...] = ()
+    stuck: frozenset[int] = frozenset()
+    cost: IntegrationCost = IntegrationCost(0, 0, 0, 0, 0)
+
+    def add(self, piece: Piece, plain: MotionEquations, stretch: ToldStretch, before: Instant) -> RubbingStep:
+        """Take a stretch into the motion, whose state before a blow at its begin is given."""
+        pressing = tuple(touch for touch in stretch.touches if touch.presses)
+        step = self._step(stretch, pressing, before.time)
+        events = tuple(self._events(stretch, pressing, before.time))
+        lost, work = self._lost(piece, stretch, before)
+        if self.restart is None or lost or events or not _go_on(self.touches, pressing):
+            self.close(piece, plain)
+            start = ConsistentStart(step.start, 0.0, 0.0, 0.0, 0)
+            self.restart = Restart(start, self._phase(pressing), lost, work, events)
+        self.taken.append(step)
+        self.touches = pressing
+        return step
+
+    def close(
+        self, piece: Piece, plain: MotionEquations, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan
+    ) -> None:
+        """End the leg at hand, if there is one."""
+        if self.restart is None:
+            return
+        integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
+        self.legs.append(Leg(piece, self.restart, integration, plain))
+        self.restart, self.taken, self.cost = None, [], IntegrationCost(0, 0, 0, 0, 0)
+
+    def _step(self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float) -> RubbingStep:
+        """The stretch as a step, with forces along normals, then along the tangents, behind the unknowns."""
+        method = radau(STAGES)
+        differential = self.model.discrete.unknowns.differential
+        normal = np.array([touch.forces for touch in pressing]).reshape(-1, STAGES).T
+        along = np.array([touch.friction.T for touch in pressing]).reshape(-1, STAGES).T
+        forces = np.concatenate([normal, along], axis=1)
+        none = np.zeros(forces.shape[1])
+        unknowns = np.concatenate([stretch.unknowns, forces], axis=1)
+        first = method.values_at(0.0) @ unknowns
+        x = np.where(differential, stretch.x, first[: len(differential)])
+        a = np.where(differential, first[: len(differential)], 0.0)
+        start = Instant(time, np.append(x, first[len(x) :]), np.append(stretch.v, none), np.append(a, none))
+        last = stretch.end
+        end = Instant(
+            time + stretch.size, np.append(last[0], forces[-1]), np.append(last[1], none), np.append(last[2], none)
+        )
+        return RubbingStep(
+            method=method,
+            differential=np.append(differential, np.zeros(len(none), dtype=bool)),
+            start=start,
+            size=stretch.size,
+            unknowns=unknowns,
+            end=end,
+            error=float("nan"),
+            iterations=0,
+            residual=0.0,
+            contraction=0.0,
+            axes=np.array([touch.axis for touch in pressing]).reshape(-1, 3),
+            slips=tuple(touch.slips for touch in pressing),
+            power=stretch.power,
+            put_in=stretch.put_in,
+        )
+
+    def _phase(self, pressing: Sequence[RubbingTouch]) -> ContactPhase:
+        touches = tuple(
+            MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in pressing
+        )
+        return ContactPhase(touches, self._laid(pressing), Follower(self.steps.facings, touches))
+
+    def _laid(self, touches: Sequence[RubbingTouch]) -> frozenset[int]:
+        """Pairs in which a rod lies."""
+        facings = self.steps.facings
+        return frozenset(own.facing for own in touches if not own.slides and not facings[own.facing].of_body)
+
+    def _lost(self, piece: Piece, stretch: ToldStretch, before: Instant) -> tuple[float, float]:
+        """Energy that a blow at the begin of a stretch took, and work that moving inputs did in it, J."""
+        if np.array_equal(stretch.v, before.v):
+            return 0.0, 0.0
+        value, rate, _ = piece.at(before.time)
+        kinetic = [float(self.model.energies(before.x, v, value, rate)[0]) for v in (before.v, stretch.v)]
+        lost = kinetic[0] - kinetic[1]
+        return (stretch.taken, stretch.taken - lost) if np.any(rate) else (lost, 0.0)
+
+    def _events(
+        self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float
+    ) -> Iterator[ContactEvent]:
+        """Changes of contact from the stretch before to this one."""
+        facings = self.steps.facings
+        struck = [own for own in stretch.touches if own.is_struck]
+        total = sum(own.impulse for own in struck)
+        laid, laid_before = self._laid(pressing), self._laid(self.touches)
+
+        def event(kind: str, own: RubbingTouch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
+            facing = facings[own.facing]
+            place = min(max(own.place, 0.0), 1.0)
+            return ContactEvent(
+                kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body
+            )
+
+        for own in struck:
+            yield event("impact", own, stretch.taken * own.impulse / total, own.impulse)
+        for old in self.touches:
+            if old.facing not in laid | laid_before and not any(_is_same(old, own) for own in pressing):
+                yield event("lift_off", old._replace(place=old.end_place))
+        for number in sorted(laid_before - laid - {own.facing for own in pressing}):
+            yield event("lift_off", next(own for own in self.touches if own.facing == number))
+        for number in sorted(laid - laid_before):
+            yield event("lie_down", next(own for own in pressing if own.facing == number))
+        touching = {own.facing for own in pressing}
+        stuck = frozenset(touching - {own.facing for own in pressing if own.slips})
+        was_touching = {own.facing for own in self.touches}
+        for number in sorted(touching):
+            kind = "stick" if number in stuck else "slip"
+            if number in was_touching and (number in stuck) == (number in self.stuck):
+                continue
+            if facings[number].obstacle.rubs:
+                yield event(kind, next(own for own in pressing if own.facing == number))
+        self.stuck = stuck
+
+
+def rubbing_history(
+    steps: RubbingSteps,
+    pieces: Sequence[Piece],
+    start: tuple[FloatArray, FloatArray],
+    settings: StepSettings,
+    kernels: StepKernels,
+    after_step: AfterStep | None = None,
+    stops: Stops | None = None,
+) -> History:
+    """Integrate a model over all pieces of its inputs, or until one ends early.
+
+    Args:
+        steps: of the model in C.
+        pieces: pieces of its inputs, one after the other.
+        start: unknowns and their rates at the start, shape (n,) each.
+        settings: with the size of steps.
+        kernels: inverse dynamics and its derivatives.
+        after_step: told of every step.
+        stops: makes the values at whose zeros the motion stops.
+
+    Raises:
+        SceneError: the start contradicts the constraints, or is inside an obstacle.
+    """
+    model = steps.model
+    assert settings.size is not None, "steps of these motions are equal"
+    steps.use(kernels)
+    steps.restart()
+    told = _Told(model, steps)
+    flight = FreeFlight(model, None, None)
+
+    def history(stopped: int | None = None) -> History:
+        return History(model, tuple(told.legs), radau(STAGES), settings, flight, stopped)
+
+    at = _first(steps, pieces, start, kernels)
+    for before, piece in pairwise([None, *pieces]):
+        assert piece is not None, "pieces follow the first entry"
+        jumped = None if stops is None or before is None else stops.jumped(before, piece, at)
+        if jumped is not None:
+            return history(jumped)
+        plain = equations_of(model, piece, None, kernels)
+        guards = None if stops is None else stops.guards(piece, at)
+        for size in _sizes(piece, settings.size):
+            done, tried = 0.0, size
+            while done < size * (1.0 - 1e-12):
+                own = min(tried, size - done)
+                outcome, stretches, counts = steps.take(at, _inputs(piece, at.time, own), own)
+                told.cost = _more(told.cost, len(stretches), outcome, counts)
+                if outcome is not None and tried > SHORTEST * size:
+                    tried /= 2.0
+                    continue
+                if outcome is not None:
+                    told.close(piece, plain)
+                    told.legs.append(_stalled(piece, plain, at, told, tried))
+                    return history()
+                for stretch in stretches:
+                    step = told.add(piece, plain, stretch, at)
+                    stopped = _stopped(step, guards)
+                    if stopped is not None:
+                        told.taken[-1] = step.until(stopped[0])
+                        told.close(piece, plain, StepOutcome.COMPLETED)
+                        return history(stopped[1])
+                    at = Instant(step.end.time, *stretch.end)
+                done += own
+                if _is_interrupted(after_step, at.time, own):
+                    told.close(piece, plain, StepOutcome.INTERRUPTED, own)
+                    return history()
+        told.close(piece, plain, StepOutcome.COMPLETED, settings.size)
+    return history()
+
+
+def _first(
+    steps: RubbingSteps, pieces: Sequence[Piece], start: tuple[FloatArray, FloatArray], kernels: StepKernels
+) -> Instant:
+    """The first instant, with the accelerations that it has where nothing touches.
+
+    Raises:
+        SceneError: the start contradicts the constraints, or is inside an obstacle.
+    """
+    model, piece = steps.model, pieces[0]
+    x, v = start
+    inputs = piece.at(piece.start).value
+    depths = [-facing.deepest(facing.nodes(x, inputs)).gap for facing in steps.facings]
+    if max(depths) > model.scene.accuracy.tolerance:
+        what = f"a rod is inside an obstacle by {max(depths):.2g} (over the length) where the motion starts"
+        refuse([Problem("simulation.start", what, "start from another shape, or move the obstacle")])
+    plain = equations_of(model, piece, None, kernels)
+    found = consistent_start(plain, piece.start, x, v, DIFFERENTIATED * piece.smooth)
+    check_start(model, piece, Restart(found, ContactPhase()), {}, pieces[-1].end)
+    return found.instant
+
+
+def _sizes(piece: Piece, size: float) -> Iterator[float]:
+    """Sizes of the steps of a piece: equal ones between its kinks."""
+    for begin, end in pairwise([piece.start, *piece.kinks, piece.end]):
+        count = max(1, int(np.ceil((end - begin) / size * (1.0 - 1e-12))))
+        yield from [(end - begin) / count] * count
+
+
+def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:
+    """Inputs and their rates at the begin of a step, and the accelerations that bring the rates to those at its end."""
+    begin, end = piece.at(time), piece.at(time + size)
+    return [begin.value, begin.rate, (end.rate - begin.rate) / size]
+
+
+def _more(cost: IntegrationCost, taken: int, outcome: StepOutcome | None, counts: tuple[int, int]) -> IntegrationCost:
+    iterations, jacobians = counts
+    return IntegrationCost(
+        cost.steps + taken,
+        cost.rejected + (outcome is not None),
+        cost.iterations + iterations,
+        cost.jacobians + jacobians,
+        cost.factorisations + jacobians,
+    )
+
+
+def _stalled(piece: Piece, plain: MotionEquations, at: Instant, told: _Told, size: float) -> Leg:
+    """The end of a motion whose equations are not solved."""
+    phase = told.legs[-1].restart.phases if told.legs else ContactPhase()
+    sentence = UNSETTLED.format(time=at.time, size=size)
+    restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phase, stalled=sentence)
+    return Leg(piece, restart, replace(stalled_at(at), statistics=told.cost), plain)
+
+
+def _stopped(step: RubbingStep, guards: Guards | None) -> tuple[float, int] | None:
+    return None if guards is None else crossing(step, guards)
+
+
+def _is_interrupted(after_step: AfterStep | None, time: float, size: float) -> bool:
+    """Whether who is told of a step stops the motion."""
+    try:
+        if after_step is not None:
+            after_step(time, size)
+    except KeyboardInterrupt:
+        return True
+    return False
+
+
+def _is_same(old: RubbingTouch, own: RubbingTouch) -> bool:
+    """Whether a contact at the end of a stretch is one at the begin of the next."""
+    return old.facing == own.facing and abs(old.end_place - own.place) <= SAME_PLACE
+
+
+def _go_on(before: Sequence[RubbingTouch], now: Sequence[RubbingTouch]) -> bool:
+    """Whether the contacts of a stretch are those of the stretch before."""
+    return len(before) == len(now) and all(
+        _is_same(old, own) and (old.slides, old.height) == (own.slides, own.height)
+        for old, own in zip(before, now, strict=True)
+    )
