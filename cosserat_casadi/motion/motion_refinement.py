@@ -407,6 +407,7 @@ def simulate(
         return simulated(start, simulation, progress)
     refuse_tubes(subject)
     scene = subject.scene if isinstance(subject, Model) else subject
+    refuse_going_on(scene)
     whole = simulation or scene.simulation
     if whole is None:
         return simulated(start, simulation, progress)

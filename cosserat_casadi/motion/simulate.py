@@ -122,11 +122,14 @@ NOT_NEARER = 0.5
 FAR_APART = 10.0
 """Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
 
-HALVED_WHERE_RUBBING, LEFT_BY_HALF_WHERE_RUBBING = 2.0, 1.0
-"""The same of motions with friction of exact contact: what breaks loose or lifts off in a step may leave its first power.
+HALVED_WHERE_RUBBING = 2.0
+"""Error of a motion with friction of exact contact over its distance to one of half the step.
 
-The power is the second one where nothing does: then twice as much and three times as much is told as is there.
+What breaks loose or lifts off in a step may leave its first power; where nothing does it leaves the second one.
 """
+
+HALVED_WHERE_STRUCK = 3.4
+"""The same where impacts strike: errors then go with the root of the step."""
 
 FIRST_EQUAL_STEPS = 50
 """Steps that a motion without a tolerance of a step is first divided into; they are halved until motions agree."""
@@ -392,13 +395,18 @@ class Simulator:
         """
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
-        left = HALVED_WHERE_RUBBING if self._rubs else HALVED
+        left = self._halved(shorter)
         error = left * distance if shorter.completed else float("nan")
         return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance)
 
+    def _halved(self, history: History) -> float:
+        """Error of a motion over its distance to one of half the step, from above, by that one."""
+        if not self._rubs:
+            return HALVED
+        return HALVED_WHERE_STRUCK if is_struck(history) else HALVED_WHERE_RUBBING
+
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
         size = self.simulation.duration / FIRST_EQUAL_STEPS
-        left = LEFT_BY_HALF_WHERE_RUBBING if self._rubs else LEFT_BY_HALF
         history = self.stepped(size)
         history_paths = self.paths(history)
         error = distance = float("nan")
@@ -410,9 +418,13 @@ class Simulator:
             if shorter.outcome is StepOutcome.INTERRUPTED:
                 return TimedHistory(shorter, float("nan"))
             shorter_paths = self.paths(shorter)
+            left = self._halved(shorter) - 1.0 if self._rubs else LEFT_BY_HALF
             if history.completed and shorter.completed:
-                distance = path_distance(history_paths, shorter_paths)
+                before, distance = distance, path_distance(history_paths, shorter_paths)
                 error = left * distance
+                if self._rubs and is_struck(shorter):
+                    # Impacts of two motions may happen to be alike: a third one is asked, without which none is known.
+                    error = left * float(np.maximum(before / 2.0, distance))
             companion = Companion(history, left)
             history = shorter
             history_paths = shorter_paths
