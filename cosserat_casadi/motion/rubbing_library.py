@@ -21,6 +21,7 @@ from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_forces import Touches
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import (
     CALL,
@@ -198,13 +199,16 @@ class RubbingSteps:
         self._told = np.zeros((self.sizes.most_told, self.sizes.row))
         self._held.share("told", self._told)
         self._residual = program_record(model.inverse_dynamics_in_scalars)
-        self.restart()
+        counts_of_bytes = (self.sizes.memory, self.sizes.workspace)
+        self._memory, self._workspace = (ctypes.create_string_buffer(count) for count in counts_of_bytes)
 
-    def restart(self) -> None:
-        """Begin another motion."""
-        self._memory, self._workspace = (
-            ctypes.create_string_buffer(count) for count in (self.sizes.memory, self.sizes.workspace)
-        )
+    def begin(self, at: Instant, touches: Touches) -> None:
+        """Begin a motion in which these contacts press at an instant."""
+        given = [[touch.facing, touch.slides, touch.place, touch.height] for touch in touches]
+        known = np.array(given, dtype=float).reshape(-1, 4)
+        accelerations = np.ascontiguousarray(at.a)
+        addresses = accelerations.ctypes.data, len(known), known.ctypes.data
+        self._library.rubbing_begin(self._memory, *addresses)
 
     def _record(self, points: Sequence[MovingPoints]) -> Held:
         """The model as C has it."""
@@ -338,6 +342,7 @@ def _library(
     with without_compiler():
         library = ctypes.CDLL(str(compiled_texts(NAME, texts, find_compiler(), INCLUDED)))
     pointers = (POINTER,) * 4
+    library.rubbing_begin.argtypes = [POINTER, POINTER, ctypes.c_int, POINTER]
     library.rubbing_step.argtypes = [*pointers, DOUBLE, *pointers]
     found = (ctypes.c_longlong * 11)()
     library.rubbing_sizes(found)

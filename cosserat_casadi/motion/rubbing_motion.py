@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.history import (
@@ -49,8 +49,8 @@ from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 SHORTEST = 2.0**-12
 """Shortest step over the step of the motion, before it ends where its equations are not solved."""
 
-BOUNCE = 1e-6
-"""Height over the length from which a fall is told as an impact, as bounces of motions without friction are."""
+ROUNDED = 1e-12
+"""Share of a step that counts as rounding."""
 
 UNSETTLED = (
     "At t = {time:.6g} s no forces that push and rub were found for what touches, in a step of {size:.3g} s: damp the "
@@ -82,10 +82,12 @@ class _Told:
     stuck: frozenset[int] = frozenset()
     cost: IntegrationCost = IntegrationCost(0, 0, 0, 0, 0)
 
-    def add(self, piece: Piece, plain: MotionEquations, stretch: ToldStretch, before: Instant) -> RubbingStep:
-        """Take a stretch into the motion, whose state before a blow at its begin is given."""
+    def add(
+        self, piece: Piece, plain: MotionEquations, stretch: ToldStretch, before: Instant, end: float
+    ) -> RubbingStep:
+        """Take a stretch into the motion, up to a time, s, whose state before a blow at its begin is given."""
         pressing = tuple(touch for touch in stretch.touches if touch.presses)
-        step = self._step(stretch, pressing, before.time)
+        step = self._step(stretch, pressing, before.time, end)
         events = tuple(self._events(stretch, pressing, before.time))
         lost, work = self._lost(piece, stretch, before)
         if self.restart is None or lost or events or not _go_on(self.touches, pressing):
@@ -106,7 +108,9 @@ class _Told:
         self.legs.append(Leg(piece, self.restart, integration, plain))
         self.restart, self.taken, self.cost = None, [], IntegrationCost(0, 0, 0, 0, 0)
 
-    def _step(self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float) -> RubbingStep:
+    def _step(
+        self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float, end_time: float
+    ) -> RubbingStep:
         """The stretch as a step, with forces along normals, then along the tangents, behind the unknowns."""
         method = radau(STAGES)
         differential = self.model.discrete.unknowns.differential
@@ -120,9 +124,7 @@ class _Told:
         a = np.where(differential, first[: len(differential)], 0.0)
         start = Instant(time, np.append(x, first[len(x) :]), np.append(stretch.v, none), np.append(a, none))
         last = stretch.end
-        end = Instant(
-            time + stretch.size, np.append(last[0], forces[-1]), np.append(last[1], none), np.append(last[2], none)
-        )
+        end = Instant(end_time, np.append(last[0], forces[-1]), np.append(last[1], none), np.append(last[2], none))
         return RubbingStep(
             method=method,
             differential=np.append(differential, np.zeros(len(none), dtype=bool)),
@@ -201,6 +203,7 @@ def rubbing_history(
     steps: RubbingSteps,
     pieces: Sequence[Piece],
     start: tuple[FloatArray, FloatArray],
+    touches: Touches,
     settings: StepSettings,
     kernels: StepKernels,
     after_step: AfterStep | None = None,
@@ -212,6 +215,7 @@ def rubbing_history(
         steps: of the model in C.
         pieces: pieces of its inputs, one after the other.
         start: unknowns and their rates at the start, shape (n,) each.
+        touches: what presses there; other contacts are looked for.
         settings: with the size of steps.
         kernels: inverse dynamics and its derivatives.
         after_step: told of every step.
@@ -223,7 +227,6 @@ def rubbing_history(
     model = steps.model
     assert settings.size is not None, "steps of these motions are equal"
     steps.use(kernels)
-    steps.restart()
     told = _Told(model, steps)
     flight = FreeFlight(model, None, None)
 
@@ -231,6 +234,7 @@ def rubbing_history(
         return History(model, tuple(told.legs), radau(STAGES), settings, flight, stopped)
 
     at = _first(steps, pieces, start, kernels)
+    steps.begin(at, touches)
     for before, piece in pairwise([None, *pieces]):
         assert piece is not None, "pieces follow the first entry"
         jumped = None if stops is None or before is None else stops.jumped(before, piece, at)
@@ -238,10 +242,11 @@ def rubbing_history(
             return history(jumped)
         plain = equations_of(model, piece, None, kernels)
         guards = None if stops is None else stops.guards(piece, at)
-        for size in _sizes(piece, settings.size):
-            done, tried = 0.0, size
-            while done < size * (1.0 - 1e-12):
-                own = min(tried, size - done)
+        for end in _ends(piece, settings.size):
+            size = tried = end - at.time
+            while at.time < end:
+                own = tried if tried < (1.0 - ROUNDED) * (end - at.time) else end - at.time
+                begin = at.time
                 outcome, stretches, counts = steps.take(at, _inputs(piece, at.time, own), own)
                 told.cost = _more(told.cost, len(stretches), outcome, counts)
                 if outcome is not None and tried > SHORTEST * size:
@@ -251,15 +256,16 @@ def rubbing_history(
                     told.close(piece, plain)
                     told.legs.append(_stalled(piece, plain, at, told, tried))
                     return history()
-                for stretch in stretches:
-                    step = told.add(piece, plain, stretch, at)
+                taken = np.cumsum([stretch.size for stretch in stretches[:-1]])
+                reached = [*(begin + taken), end if own == end - begin else begin + own]
+                for stretch, time in zip(stretches, reached, strict=True):
+                    step = told.add(piece, plain, stretch, at, float(time))
                     stopped = _stopped(step, guards)
                     if stopped is not None:
                         told.taken[-1] = step.until(stopped[0])
                         told.close(piece, plain, StepOutcome.COMPLETED)
                         return history(stopped[1])
                     at = Instant(step.end.time, *stretch.end)
-                done += own
                 if _is_interrupted(after_step, at.time, own):
                     told.close(piece, plain, StepOutcome.INTERRUPTED, own)
                     return history()
@@ -288,11 +294,11 @@ def _first(
     return found.instant
 
 
-def _sizes(piece: Piece, size: float) -> Iterator[float]:
-    """Sizes of the steps of a piece: equal ones between its kinks."""
+def _ends(piece: Piece, size: float) -> Iterator[float]:
+    """Ends of the steps of a piece: equal ones between its kinks."""
     for begin, end in pairwise([piece.start, *piece.kinks, piece.end]):
-        count = max(1, int(np.ceil((end - begin) / size * (1.0 - 1e-12))))
-        yield from [(end - begin) / count] * count
+        count = max(1, int(np.ceil((end - begin) / size * (1.0 - ROUNDED))))
+        yield from np.linspace(begin, end, count + 1)[1:].tolist()
 
 
 def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:

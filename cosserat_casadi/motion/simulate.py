@@ -467,7 +467,8 @@ class Simulator:
     ) -> History:
         start = self.start.x, rates
         tell = None if self.tell is None else self._after_step
-        history = rubbing_history(self._rubbing, pieces, start, settings, kernels, tell, self.watch)
+        touches = () if self.start.phases is None else self.start.phases.touches
+        history = rubbing_history(self._rubbing, pieces, start, touches, settings, kernels, tell, self.watch)
         if self.source is not None:
             self.source.learn(history.statistics)
         return history

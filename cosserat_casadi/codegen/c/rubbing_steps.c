@@ -371,6 +371,22 @@ void rubbing_sizes(long long *sizes) {
   memcpy(sizes, found, sizeof found);
 }
 
+/* Has a motion that begins with accelerations know so many contacts, which press: facing, whether it slides, place, gap that
+   it keeps of each. */
+void rubbing_begin(solver_step_memory *memory, const real *accelerations, int count, const real *known) {
+  memset(memory, 0, sizeof *memory);
+  memcpy(memory->unknowns + N, accelerations, N * sizeof *accelerations);
+  memory->touch_count = count < TOUCHES ? count : TOUCHES;
+  for (int k = 0; k < memory->touch_count; k++, known += 4) {
+    solver_touch *own = memory->touches + k;
+    own->facing = (int)known[0];
+    own->slides = known[1] != 0;
+    own->presses = 1;
+    own->place = own->end_place = known[2];
+    own->height = known[3];
+  }
+}
+
 /* One step of a motion, in one part: as solver_step, with the stretches that are told. */
 int rubbing_step(model *of, const real *inputs, const real *rates, const real *accelerations, real size,
                  solver_state *state, solver_step_memory *memory, workspace *work, int *counts) {
