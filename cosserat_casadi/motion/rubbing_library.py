@@ -37,11 +37,10 @@ from cosserat_casadi.motion.contact_law import (
 )
 from cosserat_casadi.motion.contact_sections import facings, touching_points
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.moving_points import MovingPoints
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
-from cosserat_casadi.motion.surface_sliding import SurfaceSliding
+from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.scene.accuracy import MOST_NODES
@@ -195,7 +194,9 @@ class RubbingSteps:
         most_looks = max(LOOKS * (len(own.ends) - 1) + 1 for own in self.facings)
         counts = (model.size, model.inputs.size, len(points), len(self.facings))
         self._library, self.sizes = _library(*counts, _room(most_points), _room(most_looks))
-        self._held = self._record(points)
+        self._points = points
+        self._libraries: Libraries | None = None
+        self._held = self._record()
         self._told = np.zeros((self.sizes.most_told, self.sizes.row))
         self._held.share("told", self._told)
         self._residual = program_record(model.inverse_dynamics_in_scalars)
@@ -210,36 +211,47 @@ class RubbingSteps:
         addresses = accelerations.ctypes.data, len(known), known.ctypes.data
         self._library.rubbing_begin(self._memory, *addresses)
 
-    def _record(self, points: Sequence[MovingPoints]) -> Held:
-        """The model as C has it."""
+    def _record(self) -> Held:
+        """The model as C has it, without its functions."""
         model = self.model
-        held = Held(RubbingModelRecord(len(points), len(self.facings)))
+        held = Held(RubbingModelRecord(len(self._points), len(self.facings)))
         differential = model.discrete.unknowns.differential
         held.share("is_shape", differential.astype(np.intc))
         held.share("displacements", np.where(differential, displacements(model), 0.0))
         held.record.deepest = float(model.scene.accuracy.tolerance)
-        of_points = (PointKernelsRecord * len(points))()
-        for record, own in zip(of_points, points, strict=True):
-            record.count = own.count
-            one = Held(record)
-            functions = own.in_steps
-            for name in ("positions", "velocities", "gradient"):
-                one.point(name, program_record(_stacked(functions[name])))
-            one.point("hessian", function_record(RepeatedCall(functions["hessian"])))
-            held.keep(one)
-        held.point("points", Held(of_points))
-        of_facings = (RubbingFacingRecord * len(self.facings))()
-        for record, facing in zip(of_facings, self.facings, strict=True):
-            held.keep(_facing_record(record, facing, points.index(facing.points)))
-        held.point("facings", Held(of_facings))
         return held
 
     def use(self, kernels: StepKernels) -> None:
-        """Have steps call these kernels from now on; inverse dynamics is a program where it is not in machine code."""
+        """Have steps call these kernels from now on; what is not in machine code is a program, or evaluated by CasADi."""
+        if kernels.libraries != self._libraries:
+            self._libraries = kernels.libraries
+            self._share_functions(kernels.libraries)
         residual = kernels.residual
         in_code = isinstance(residual, RepeatedCall) and residual.code is not None
         self._held.point("residual", function_record(residual) if in_code else self._residual)
         self._held.point("matrices", self._matrices(kernels.jacobians))
+
+    def _share_functions(self, libraries: Libraries) -> None:
+        """Have the record point at the functions of points, surfaces and what slides."""
+        of_points = (PointKernelsRecord * len(self._points))()
+        for record, own in zip(of_points, self._points, strict=True):
+            record.count = own.count
+            one = Held(record)
+            positions, gradient = own.in_iterations
+            for name, function in {"positions": positions, "velocities": own.velocities, "gradient": gradient}.items():
+                one.point(name, _function_record(function, libraries.residual))
+            _, hessian = own.in_derivatives
+            one.point("hessian", function_record(repeated(hessian, libraries.jacobians, as_scalars=False)))
+            self._held.keep(one)
+        self._held.point("points", Held(of_points))
+        of_facings = (RubbingFacingRecord * len(self.facings))()
+        sliding = functions_of_sliding(self.model)
+        for record, facing, function in zip(of_facings, self.facings, sliding, strict=True):
+            held = _facing_record(record, facing, self._points.index(facing.points))
+            if facing.obstacle.rubs:
+                held.point("slide", _function_record(function, libraries.residual))
+            self._held.keep(held)
+        self._held.point("facings", Held(of_facings))
 
     def _matrices(self, jacobians: Callable[..., list[FloatArray]]) -> Held:
         size, inputs = self.model.size, self.model.inputs.size
@@ -313,17 +325,14 @@ def _facing_record(record: RubbingFacingRecord, facing: Facing, points: int) -> 
     record.coefficients = (DOUBLE * 3)(*facing.obstacle.coefficients)
     for name, function in facing.surfaces.items():
         held.point(name, program_record(function))
-    if facing.obstacle.rubs:
-        held.point("slide", program_record(_stacked(SurfaceSliding(facing).function)))
     return held
 
 
-def _stacked(function: ca.Function) -> ca.Function:
-    """A function whose results are one column, of scalars where it can be."""
-    arguments = function.mx_in()
-    results = [ca.vec(ca.densify(result)) for result in function.call(arguments)]
-    stacked = ca.Function(function.name(), arguments, [ca.vertcat(*results)])
-    return stacked if chooses(stacked) else stacked.expand()
+def _function_record(function: ca.Function, library: str | None) -> Held:
+    """A function from a shared object; without one as a program, where it can be."""
+    if library is not None:
+        return function_record(repeated(function, library))
+    return program_record(function if chooses(function) else function.expand())
 
 
 def _room(count: int) -> int:

@@ -16,8 +16,10 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.contact_layer import STANDING
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_sections import facings
 
 
 @dataclass(frozen=True)
@@ -117,3 +119,14 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> tuple[Matrix, Matr
     world = quaternion_to_matrix(base.quaternion)
     directors = [world @ (director @ weights) for director in shape.directors]
     return base.position + world @ (shape.position @ weights), ca.horzcat(*directors)
+
+
+def functions_of_sliding(model: Model) -> list[ca.Function]:
+    """:attr:`SurfaceSliding.function` of all pairs that may touch, with results in one column; of each its number's name."""
+    found = []
+    for number, facing in enumerate(facings(model)):
+        function = SurfaceSliding(facing).function
+        arguments = function.mx_in()
+        results = [ca.vec(result) for result in function.call(arguments)]
+        found.append(ca.Function(f"rubbing_{number}", arguments, [ca.vertcat(*results)]))
+    return found

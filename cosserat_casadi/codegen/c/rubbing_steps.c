@@ -5,7 +5,7 @@
 
 /* What is compiled for speed waits for it: functions of the model, which take most of the time, are elsewhere. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("O1")
+#pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic")
 #endif
 
 #define STEPS_IN_CONTACT
