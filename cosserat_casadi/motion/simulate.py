@@ -122,6 +122,9 @@ NOT_NEARER = 0.5
 FAR_APART = 10.0
 """Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
 
+MOST_APART = 3
+"""Halvings of steps in a row that bring motions with impacts no nearer to each other, before a tolerance is given up."""
+
 HALVED_WHERE_RUBBING = 2.0
 """Error of a motion with friction of exact contact over its distance to one of half the step.
 
@@ -411,6 +414,7 @@ class Simulator:
         history_paths = self.paths(history)
         error = distance = float("nan")
         companion = None
+        apart = 0
         for _ in range(MOST_HALVINGS):
             size = size / 2.0
             shorter = self.stepped(size)
@@ -425,10 +429,11 @@ class Simulator:
                 if self._rubs and is_struck(shorter):
                     # Impacts of two motions may happen to be alike: a third one is asked, without which none is known.
                     error = left * float(np.maximum(before / 2.0, distance))
+                    apart = apart + 1 if hangs_on_rounding(shorter, distance, 2.0 * before, tolerance) else 0
             companion = Companion(history, left)
             history = shorter
             history_paths = shorter_paths
-            if error <= tolerance:
+            if error <= tolerance or apart == MOST_APART:
                 break
         return TimedHistory(history, error, companion=companion, distance=distance)
 
