@@ -24,6 +24,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.contact_checks import refuse_going_on
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     REST,

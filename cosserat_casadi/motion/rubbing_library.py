@@ -125,7 +125,7 @@ class RubbingTouch(NamedTuple):
         facing: index of the pair of a rod or body and an obstacle.
         slides: whether it is where the gap is least, or one section all along, or a body.
         presses: whether a force acts.
-        slips: whether it slips at the end of the stretch.
+        slips: whether it slips in the stretch; else it sticks.
         is_struck: whether the stretch begins with a blow on it.
         place: abscissa X at the begin.
         end_place: abscissa X at the end.

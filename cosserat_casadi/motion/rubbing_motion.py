@@ -69,7 +69,7 @@ class _Told:
         taken: steps of the leg at hand.
         restart: its begin; None where the next stretch begins one.
         touches: what presses at the end, with its places there.
-        rubbing: pairs of which something touches and nothing slips, at the end.
+        stuck: pairs of which something touches and nothing slips.
         cost: numbers of all steps.
     """
 

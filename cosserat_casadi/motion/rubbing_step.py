@@ -16,7 +16,7 @@ class RubbingStep(TimeStep):
 
     Attributes:
         axes: whose parts along the surfaces are the first tangents, shape (m, 3).
-        slips: whether each slips at the end of the step; else it sticks.
+        slips: whether each slips in the step; else it sticks.
         power: that friction takes at the stages, shape (s,), W.
         put_in: power of moving inputs against friction at the stages, shape (s,), W.
     """

@@ -275,11 +275,14 @@ enum {
      stages, state at the end; powers of friction at the stages, and what moving inputs put in there. */
   HEAD = 4,
   OF_STRETCH = HEAD + 2 * N + STAGED + 3 * N + 2 * STAGES,
-  /* Then of each that touches: facing, whether it slides, presses, slips at the end, is struck; place, place at the end,
+  /* Then of each that touches: facing, whether it slides, presses, slips, is struck; place, place at the end,
      gap that it keeps, forces at the stages, axis of the tangents, friction along both at the stages, impulse. */
   OF_TOUCH = 18,
   TOLD_ROW = OF_STRETCH + OF_TOUCH * TOUCHES
 };
+
+/* Way in a stretch at the speed of a section, over the length, up to which it counts as at rest. */
+static const real AT_REST = (real)1e-10;
 
 static real BLOW_TAKES;
 static int IS_STRUCK;
@@ -293,6 +296,13 @@ static void tell_blow(real taken, const workspace *work) {
     IMPULSES[k] = work->blow[ROWS * k] * FACING[work->touches[k].facing].force_unit;
     ARE_STRUCK[k] = !work->touches[k].presses && IMPULSES[k] > 0;
   }
+}
+
+/* Whether a section slips in a stretch: it moves at its begin, or at its end. */
+static int slips_in(int k, real size, const workspace *work) {
+  const real *ends[2] = {work->start_slides[k], work->stage_slides[STAGES - 1][k]};
+  if (!rubs(work->touches + k)) return 1;
+  return SQUARE_ROOT(larger(inner_of_two(ends[0], ends[0]), inner_of_two(ends[1], ends[1]))) * size > AT_REST;
 }
 
 static real *tell(real *to, const real *values, int count) {
@@ -342,7 +352,7 @@ static void tell_stretch(const step_start *start, workspace *work) {
     const real of_touch[OF_TOUCH] = {own->facing,
                                      own->slides,
                                      own->presses,
-                                     !rubs(own) || own->slips[STAGES - 1],
+                                     slips_in(k, start->size, work),
                                      IS_STRUCK && ARE_STRUCK[k],
                                      own->place,
                                      own->end_place,
