@@ -51,7 +51,7 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
     if simulation is not None and model.scene.rubs_exactly:
         for pair in OneSided(model).pairs:
             if pair.rigid:
-                what = "a rigid stop, or cable that goes slack, strikes, which steps with friction of exact contact do not"
+                what = "a rigid stop or cable strikes, for which steps with friction of exact contact have no blow"
                 yield Problem(pair.name, what, f"give it a stiffness, or {remedy}; or leave friction out")
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.

@@ -222,13 +222,15 @@ class RubbingSteps:
         return held
 
     def use(self, kernels: StepKernels) -> None:
-        """Have steps call these kernels from now on; what is not in machine code is a program, or evaluated by CasADi."""
+        """Have steps call these kernels from now on; of what is not in machine code programs, where there are any."""
         if kernels.libraries != self._libraries:
             self._libraries = kernels.libraries
             self._share_functions(kernels.libraries)
         residual = kernels.residual
-        in_code = isinstance(residual, RepeatedCall) and residual.code is not None
-        self._held.point("residual", function_record(residual) if in_code else self._residual)
+        if isinstance(residual, RepeatedCall) and residual.code is not None:
+            self._held.point("residual", function_record(residual))
+        else:
+            self._held.point("residual", self._residual)
         self._held.point("matrices", self._matrices(kernels.jacobians))
 
     def _share_functions(self, libraries: Libraries) -> None:

@@ -52,6 +52,8 @@ SHORTEST = 2.0**-12
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
 
+NO_COST = IntegrationCost(0, 0, 0, 0, 0)
+
 UNSETTLED = (
     "At t = {time:.6g} s no forces that push and rub were found for what touches, in a step of {size:.3g} s: damp the "
     "rods, or allow more modes."
@@ -80,7 +82,7 @@ class _Told:
     restart: Restart[ContactPhase] | None = None
     touches: tuple[RubbingTouch, ...] = ()
     stuck: frozenset[int] = frozenset()
-    cost: IntegrationCost = IntegrationCost(0, 0, 0, 0, 0)
+    cost: IntegrationCost = NO_COST
 
     def add(
         self, piece: Piece, plain: MotionEquations, stretch: ToldStretch, before: Instant, end: float
@@ -106,7 +108,7 @@ class _Told:
             return
         integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
         self.legs.append(Leg(piece, self.restart, integration, plain))
-        self.restart, self.taken, self.cost = None, [], IntegrationCost(0, 0, 0, 0, 0)
+        self.restart, self.taken, self.cost = None, [], NO_COST
 
     def _step(
         self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float, end_time: float
@@ -143,9 +145,7 @@ class _Told:
         )
 
     def _phase(self, pressing: Sequence[RubbingTouch]) -> ContactPhase:
-        touches = tuple(
-            MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in pressing
-        )
+        touches = tuple(MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in pressing)
         return ContactPhase(touches, self._laid(pressing), Follower(self.steps.facings, touches))
 
     def _laid(self, touches: Sequence[RubbingTouch]) -> frozenset[int]:
@@ -162,9 +162,7 @@ class _Told:
         lost = kinetic[0] - kinetic[1]
         return (stretch.taken, stretch.taken - lost) if np.any(rate) else (lost, 0.0)
 
-    def _events(
-        self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float
-    ) -> Iterator[ContactEvent]:
+    def _events(self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float) -> Iterator[ContactEvent]:
         """Changes of contact from the stretch before to this one."""
         facings = self.steps.facings
         struck = [own for own in stretch.touches if own.is_struck]
@@ -174,9 +172,7 @@ class _Told:
         def event(kind: str, own: RubbingTouch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
             facing = facings[own.facing]
             place = min(max(own.place, 0.0), 1.0)
-            return ContactEvent(
-                kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body
-            )
+            return ContactEvent(kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body)
 
         for own in struck:
             yield event("impact", own, stretch.taken * own.impulse / total, own.impulse)

@@ -45,4 +45,4 @@ def along_tangents(normal: FloatArray, axis: FloatArray, forces: FloatArray) -> 
     """
     first = axis - (axis @ normal) * normal
     first = first / np.linalg.norm(first)
-    return forces[0] * first + forces[1] * np.cross(normal, first)
+    return np.asarray(forces[0] * first + forces[1] * np.cross(normal, first))

@@ -123,7 +123,7 @@ FAR_APART = 10.0
 """Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
 
 MOST_APART = 3
-"""Halvings of steps in a row that bring motions with impacts no nearer to each other, before a tolerance is given up."""
+"""Halvings of steps in a row that bring motions with impacts no nearer to each other before they are given up."""
 
 HALVED_WHERE_RUBBING = 2.0
 """Error of a motion with friction of exact contact over its distance to one of half the step.

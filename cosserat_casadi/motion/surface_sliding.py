@@ -122,7 +122,7 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> tuple[Matrix, Matr
 
 
 def functions_of_sliding(model: Model) -> list[ca.Function]:
-    """:attr:`SurfaceSliding.function` of all pairs that may touch, with results in one column; of each its number's name."""
+    """How all pairs that may touch slide, each as :attr:`SurfaceSliding.function` with its results in one column."""
     found = []
     for number, facing in enumerate(facings(model)):
         function = SurfaceSliding(facing).function

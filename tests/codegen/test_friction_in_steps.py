@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, follow, modes_of, scene_from_dict, simulate, solve
+from cosserat_casadi import build, follow, modes_of, scene_from_dict, solve
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.control import motion_stage

@@ -10,7 +10,6 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words
-from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.compiling.texts import render
@@ -22,6 +21,7 @@ from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
 from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
+from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
 CONTACT_FILES = (
     "contact_gaps.c",
