@@ -1,4 +1,4 @@
-"""Steps in C of motions with friction of exact contact: those of exported libraries, with functions that Python gives.
+"""Steps in C of motions with friction of exact contact: steps of exported libraries, with functions that Python gives.
 
 An exported library has the equations of one model in it, which takes a compiler seconds; here they are programs, or
 functions in machine code of the motion. One library serves all models with as many unknowns and inputs.
@@ -160,7 +160,7 @@ class ToldStretch(NamedTuple):
         v: rates of the unknowns there, after the blow, shape (n,), 1/s.
         unknowns: of the stages, shape (2, n).
         end: x, v and a at the end, shape (3, n).
-        power: that friction takes at the stages, shape (2,), W.
+        power: power of friction at the stages, taken from the motion, shape (2,), W.
         put_in: power of moving inputs against friction at the stages, shape (2,), W.
         touches: what touches.
     """
@@ -222,7 +222,7 @@ class RubbingSteps:
         return held
 
     def use(self, kernels: StepKernels) -> None:
-        """Have steps call these kernels from now on; of what is not in machine code programs, where there are any."""
+        """Have steps call these kernels from now on; functions that are not in machine code are programs, if they can be."""
         if kernels.libraries != self._libraries:
             self._libraries = kernels.libraries
             self._share_functions(kernels.libraries)

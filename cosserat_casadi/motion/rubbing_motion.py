@@ -87,7 +87,7 @@ class _Told:
     def add(
         self, piece: Piece, plain: MotionEquations, stretch: ToldStretch, before: Instant, end: float
     ) -> RubbingStep:
-        """Take a stretch into the motion, up to a time, s, whose state before a blow at its begin is given."""
+        """Take a stretch into the motion, from the state before a blow at its begin up to a time, s."""
         pressing = tuple(touch for touch in stretch.touches if touch.presses)
         step = self._step(stretch, pressing, before.time, end)
         events = tuple(self._events(stretch, pressing, before.time))

@@ -17,7 +17,7 @@ class RubbingStep(TimeStep):
     Attributes:
         axes: whose parts along the surfaces are the first tangents, shape (m, 3).
         slips: whether each slips in the step; else it sticks.
-        power: that friction takes at the stages, shape (s,), W.
+        power: power of friction at the stages, taken from the motion, shape (s,), W.
         put_in: power of moving inputs against friction at the stages, shape (s,), W.
     """
 

@@ -132,7 +132,7 @@ What breaks loose or lifts off in a step may leave its first power; where nothin
 """
 
 HALVED_WHERE_STRUCK = 3.4
-"""The same where impacts strike: errors then go with the root of the step."""
+"""Error over the same distance where impacts strike: errors then go with the root of the step."""
 
 FIRST_EQUAL_STEPS = 50
 """Steps that a motion without a tolerance of a step is first divided into; they are halved until motions agree."""
