@@ -222,7 +222,7 @@ class RubbingSteps:
         return held
 
     def use(self, kernels: StepKernels) -> None:
-        """Have steps call these kernels from now on; functions that are not in machine code are programs, if they can be."""
+        """Have steps call these kernels from now on; functions without machine code are programs, if they can be."""
         if kernels.libraries != self._libraries:
             self._libraries = kernels.libraries
             self._share_functions(kernels.libraries)
