@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, follow, modes_of, scene_from_dict, solve
+from cosserat_casadi import build, follow, modes_of, scene_from_dict, simulate, solve
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.control import motion_stage
@@ -80,6 +80,16 @@ def test_a_block_sticks_below_the_angle_of_friction_slides_above_it_and_stops(tm
     # Within the step in which it stops the law holds at its stages.
     assert_allclose(way(made, ends), wanted, rtol=0, atol=friction * G * dt**2)
     assert np.ptp(way(made, ends[-100:])) < 1e-13
+    # Motions in Python have these steps.
+    path = {"times": [0, 0.1], "values": weights(0.0, 2).tolist()}
+    moving = block(friction) | {
+        "motions": [{"input": "weight.acceleration", **path}],
+        "simulation": {"duration": 0.1, "frames": 101, "start": "unloaded", "step": dt},
+        "velocities": [{"rod": "rod", "linear": [speed, 0, 0]}],
+    }
+    motion = simulate(build(scene_from_dict(moving).with_motion_inputs(), moving=True))
+    states = run(made, StepState(start.x, motion.v[0], start.a), made.compiled.step_memory(), dt, weights(0.0, 100))
+    assert_allclose([state.x for state in states], motion.x, rtol=0, atol=1e-11)
     # How several sections share it is not determined where a rod does not stretch; their sum is.
     assert abs(sum(contact.friction[0] for contact in made.compiled.step_contacts(memory))) < 1e-9
 

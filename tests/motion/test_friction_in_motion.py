@@ -99,6 +99,20 @@ def test_a_motion_that_rubs_neither_goes_on_nor_starts_inside() -> None:
 
 
 @pytest.mark.slow
+def test_a_rod_in_space_is_held_back_against_its_way() -> None:
+    speed, way = 0.4, np.array([0.6, 0.8, 0.0])
+    tables = block(0.0, 0.05, velocities=[{"rod": "rod", "linear": (speed * way).tolist()}])
+    stiff = {"bending_y": 5.0, "bending_x": 5.0, "torsion": 5.0}
+    tables["rods"] = [rod(base=FREE, strain="kirchhoff", stiffness=stiff)]
+    motion = moved(tables)
+    gone = motion.tip().position - motion.tip().position[0]
+    times = motion.times
+    assert_allclose(gone, np.outer(speed * times - FRICTION * G * times**2 / 2.0, way), rtol=0, atol=1e-8)
+    held = sum(contact.friction for contact in motion.contacts[-1])
+    assert_allclose(held, -FRICTION * MASS * G * way, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.1, 0.6])
 def test_a_block_that_strikes_askew_loses_what_friction_takes(friction: float) -> None:
     drop, speed, restitution = 0.05, 0.8, 0.5
