@@ -8,7 +8,7 @@ stretches become the legs of a history, and their changes its events.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -35,14 +35,13 @@ from cosserat_casadi.motion.step_kernels import StepKernels
 from cosserat_casadi.motion.step_words import STAGES
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
-from cosserat_casadi.numerics.guards import Guards, crossing
+from cosserat_casadi.numerics.guards import crossing
 from cosserat_casadi.numerics.integration import (
     AfterStep,
     Integration,
     IntegrationCost,
     StepOutcome,
     StepSettings,
-    stalled_at,
 )
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -65,50 +64,65 @@ class _Told:
     """A motion as far as it was computed.
 
     Attributes:
-        model: the model.
         steps: the steps in C.
+        piece: of the inputs.
+        plain: equations of motion in this piece, without what makes contacts push.
+        restart: begin of the leg at hand.
         legs: stretches with the same contacts.
         taken: steps of the leg at hand.
-        restart: its begin; None where the next stretch begins one.
         touches: what presses at the end, with its places there.
         stuck: pairs of which something touches and nothing slips.
-        cost: numbers of all steps.
+        cost: numbers of the steps of the leg at hand.
     """
 
-    model: Model
     steps: RubbingSteps
+    piece: Piece
+    plain: MotionEquations
+    restart: Restart[ContactPhase]
     legs: list[Leg] = field(default_factory=list)
     taken: list[RubbingStep] = field(default_factory=list)
-    restart: Restart[ContactPhase] | None = None
     touches: tuple[RubbingTouch, ...] = ()
     stuck: frozenset[int] = frozenset()
     cost: IntegrationCost = NO_COST
 
-    def add(
-        self, piece: Piece, plain: MotionEquations, stretch: ToldStretch, before: Instant, end: float
-    ) -> RubbingStep:
+    @property
+    def model(self) -> Model:
+        """The model."""
+        return self.steps.model
+
+    def add(self, stretch: ToldStretch, before: Instant, end: float) -> RubbingStep:
         """Take a stretch into the motion, from the state before a blow at its begin up to a time, s."""
         pressing = tuple(touch for touch in stretch.touches if touch.presses)
         step = self._step(stretch, pressing, before.time, end)
         events = tuple(self._events(stretch, pressing, before.time))
-        lost, work = self._lost(piece, stretch, before)
-        if self.restart is None or lost or events or not _go_on(self.touches, pressing):
-            self.close(piece, plain)
+        lost, work = self._lost(stretch, before)
+        if not self.taken or lost or events or not _go_on(self.touches, pressing):
+            self.close()
             start = ConsistentStart(step.start, 0.0, 0.0, 0.0, 0)
             self.restart = Restart(start, self._phase(pressing), lost, work, events)
         self.taken.append(step)
         self.touches = pressing
         return step
 
-    def close(
-        self, piece: Piece, plain: MotionEquations, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan
-    ) -> None:
-        """End the leg at hand, if there is one."""
-        if self.restart is None:
-            return
-        integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
-        self.legs.append(Leg(piece, self.restart, integration, plain))
-        self.restart, self.taken, self.cost = None, [], NO_COST
+    def close(self, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan) -> None:
+        """End the leg at hand, with the size of the next step, s; one without steps ends the motion."""
+        if self.taken or outcome is not StepOutcome.GUARDED:
+            integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
+            self.legs.append(Leg(self.piece, self.restart, integration, self.plain))
+            self.taken, self.cost = [], NO_COST
+
+    def stall(self, at: Instant, size: float) -> None:
+        """End the motion where the equations of a step of a size, s, are not solved."""
+        self.close()
+        sentence = UNSETTLED.format(time=at.time, size=size)
+        start = ConsistentStart(at, 0.0, 0.0, 0.0, 0)
+        self.restart = Restart(start, self.restart.phases, stalled=sentence)
+        self.close(StepOutcome.STALLED)
+
+    def count(self, taken: int, outcome: StepOutcome | None, iterations: int, jacobians: int) -> None:
+        """Count a step that was tried."""
+        more = (taken, outcome is not None, iterations, jacobians, jacobians)
+        self.cost = IntegrationCost(*(int(a + b) for a, b in zip(astuple(self.cost), more, strict=True)))
 
     def _step(
         self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float, end_time: float
@@ -153,11 +167,11 @@ class _Told:
         facings = self.steps.facings
         return frozenset(own.facing for own in touches if not own.slides and not facings[own.facing].of_body)
 
-    def _lost(self, piece: Piece, stretch: ToldStretch, before: Instant) -> tuple[float, float]:
+    def _lost(self, stretch: ToldStretch, before: Instant) -> tuple[float, float]:
         """Energy that a blow at the begin of a stretch took, and work that moving inputs did in it, J."""
         if np.array_equal(stretch.v, before.v):
             return 0.0, 0.0
-        value, rate, _ = piece.at(before.time)
+        value, rate, _ = self.piece.at(before.time)
         kinetic = [float(self.model.energies(before.x, v, value, rate)[0]) for v in (before.v, stretch.v)]
         lost = kinetic[0] - kinetic[1]
         return (stretch.taken, stretch.taken - lost) if np.any(rate) else (lost, 0.0)
@@ -220,59 +234,26 @@ def rubbing_history(
     Raises:
         SceneError: the start contradicts the constraints, or is inside an obstacle.
     """
-    model = steps.model
     assert settings.size is not None, "steps of these motions are equal"
+    model, piece = steps.model, pieces[0]
     steps.use(kernels)
-    told = _Told(model, steps)
-    flight = FreeFlight(model, None, None)
-
-    def history(stopped: int | None = None) -> History:
-        return History(model, tuple(told.legs), radau(STAGES), settings, flight, stopped)
-
-    at = _first(steps, pieces, start, kernels)
-    steps.begin(at, touches)
-    for before, piece in pairwise([None, *pieces]):
-        assert piece is not None, "pieces follow the first entry"
-        jumped = None if stops is None or before is None else stops.jumped(before, piece, at)
-        if jumped is not None:
-            return history(jumped)
-        plain = equations_of(model, piece, None, kernels)
-        guards = None if stops is None else stops.guards(piece, at)
-        for end in _ends(piece, settings.size):
-            size = tried = end - at.time
-            while at.time < end:
-                own = tried if tried < (1.0 - ROUNDED) * (end - at.time) else end - at.time
-                begin = at.time
-                outcome, stretches, counts = steps.take(at, _inputs(piece, at.time, own), own)
-                told.cost = _more(told.cost, len(stretches), outcome, counts)
-                if outcome is not None and tried > SHORTEST * size:
-                    tried /= 2.0
-                    continue
-                if outcome is not None:
-                    told.close(piece, plain)
-                    told.legs.append(_stalled(piece, plain, at, told, tried))
-                    return history()
-                taken = np.cumsum([stretch.size for stretch in stretches[:-1]])
-                reached = [*(begin + taken), end if own == end - begin else begin + own]
-                for stretch, time in zip(stretches, reached, strict=True):
-                    step = told.add(piece, plain, stretch, at, float(time))
-                    stopped = _stopped(step, guards)
-                    if stopped is not None:
-                        told.taken[-1] = step.until(stopped[0])
-                        told.close(piece, plain, StepOutcome.COMPLETED)
-                        return history(stopped[1])
-                    at = Instant(step.end.time, *stretch.end)
-                if _is_interrupted(after_step, at.time, own):
-                    told.close(piece, plain, StepOutcome.INTERRUPTED, own)
-                    return history()
-        told.close(piece, plain, StepOutcome.COMPLETED, settings.size)
-    return history()
+    plain = equations_of(model, piece, None, kernels)
+    begin = _begin(steps, pieces, start, plain)
+    steps.begin(begin.instant, touches)
+    told = _Told(steps, piece, plain, Restart(begin, ContactPhase()))
+    stopped = None
+    try:
+        stopped = _integrate(told, pieces, settings.size, kernels, after_step, stops)
+    except KeyboardInterrupt:
+        # What was computed stands: whoever stops a long motion wants to see it.
+        told.close(StepOutcome.INTERRUPTED)
+    return History(model, tuple(told.legs), radau(STAGES), settings, FreeFlight(model, None, None), stopped)
 
 
-def _first(
-    steps: RubbingSteps, pieces: Sequence[Piece], start: tuple[FloatArray, FloatArray], kernels: StepKernels
-) -> Instant:
-    """The first instant, with the accelerations that it has where nothing touches.
+def _begin(
+    steps: RubbingSteps, pieces: Sequence[Piece], start: tuple[FloatArray, FloatArray], plain: MotionEquations
+) -> ConsistentStart:
+    """The start, with the accelerations that it has where nothing touches.
 
     Raises:
         SceneError: the start contradicts the constraints, or is inside an obstacle.
@@ -284,10 +265,57 @@ def _first(
     if max(depths) > model.scene.accuracy.tolerance:
         what = f"a rod is inside an obstacle by {max(depths):.2g} (over the length) where the motion starts"
         refuse([Problem("simulation.start", what, "start from another shape, or move the obstacle")])
-    plain = equations_of(model, piece, None, kernels)
     found = consistent_start(plain, piece.start, x, v, DIFFERENTIATED * piece.smooth)
     check_start(model, piece, Restart(found, ContactPhase()), {}, pieces[-1].end)
-    return found.instant
+    return found
+
+
+def _integrate(
+    told: _Told,
+    pieces: Sequence[Piece],
+    size: float,
+    kernels: StepKernels,
+    after_step: AfterStep | None,
+    stops: Stops | None,
+) -> int | None:
+    """Take all steps; returns the number of the value that stops the motion, None where none does.
+
+    Arguments are those of :func:`rubbing_history`, with the size of steps, s.
+    """
+    at = told.restart.start.instant
+    for piece in pieces:
+        jumped = stops.jumped(told.piece, piece, at) if stops and told.legs else None
+        if jumped is not None:
+            return jumped
+        told.piece, told.plain = piece, equations_of(told.model, piece, None, kernels)
+        guards = stops.guards(piece, at) if stops else None
+        for end in _ends(piece, size):
+            whole = tried = end - at.time
+            while at.time < end:
+                left = end - at.time
+                own = tried if tried < (1.0 - ROUNDED) * left else left
+                outcome, stretches, counts = told.steps.take(at, _inputs(piece, at.time, own), own)
+                told.count(len(stretches), outcome, *counts)
+                if outcome is not None and tried <= SHORTEST * whole:
+                    told.stall(at, tried)
+                    return None
+                if outcome is not None:
+                    tried /= 2.0
+                    continue
+                reached = at.time + np.cumsum([stretch.size for stretch in stretches])
+                reached[-1] = end if own == left else at.time + own
+                for stretch, time in zip(stretches, reached.tolist(), strict=True):
+                    step = told.add(stretch, at, time)
+                    crossed = None if guards is None else crossing(step, guards)
+                    if crossed is not None:
+                        told.taken[-1] = step.until(crossed[0])
+                        told.close(StepOutcome.COMPLETED)
+                        return crossed[1]
+                    at = Instant(step.end.time, *stretch.end)
+                if after_step is not None:
+                    after_step(at.time, own)
+        told.close(StepOutcome.COMPLETED, size)
+    return None
 
 
 def _ends(piece: Piece, size: float) -> Iterator[float]:
@@ -301,39 +329,6 @@ def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:
     """Inputs and their rates at the begin of a step, and the accelerations that bring the rates to those at its end."""
     begin, end = piece.at(time), piece.at(time + size)
     return [begin.value, begin.rate, (end.rate - begin.rate) / size]
-
-
-def _more(cost: IntegrationCost, taken: int, outcome: StepOutcome | None, counts: tuple[int, int]) -> IntegrationCost:
-    iterations, jacobians = counts
-    return IntegrationCost(
-        cost.steps + taken,
-        cost.rejected + (outcome is not None),
-        cost.iterations + iterations,
-        cost.jacobians + jacobians,
-        cost.factorisations + jacobians,
-    )
-
-
-def _stalled(piece: Piece, plain: MotionEquations, at: Instant, told: _Told, size: float) -> Leg:
-    """The end of a motion whose equations are not solved."""
-    phase = told.legs[-1].restart.phases if told.legs else ContactPhase()
-    sentence = UNSETTLED.format(time=at.time, size=size)
-    restart = Restart(ConsistentStart(at, 0.0, 0.0, 0.0, 0), phase, stalled=sentence)
-    return Leg(piece, restart, replace(stalled_at(at), statistics=told.cost), plain)
-
-
-def _stopped(step: RubbingStep, guards: Guards | None) -> tuple[float, int] | None:
-    return None if guards is None else crossing(step, guards)
-
-
-def _is_interrupted(after_step: AfterStep | None, time: float, size: float) -> bool:
-    """Whether who is told of a step stops the motion."""
-    try:
-        if after_step is not None:
-            after_step(time, size)
-    except KeyboardInterrupt:
-        return True
-    return False
 
 
 def _is_same(old: RubbingTouch, own: RubbingTouch) -> bool:

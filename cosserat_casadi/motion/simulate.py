@@ -415,6 +415,8 @@ class Simulator:
         error = distance = float("nan")
         companion = None
         apart = 0
+        if history.outcome is StepOutcome.INTERRUPTED:
+            return TimedHistory(history, float("nan"))
         for _ in range(MOST_HALVINGS):
             size = size / 2.0
             shorter = self.stepped(size)

@@ -209,3 +209,13 @@ def test_a_base_that_drags_its_rod_along_does_the_work_that_friction_takes() -> 
     assert any(contact.slips for contacts in motion.contacts for contact in contacts)
     assert motion.energy.work[-1] > 3e-3
     assert np.abs(motion.energy.imbalance).max() < 2e-4
+
+
+@pytest.mark.slow
+def test_a_rod_that_lies_in_equilibrium_stays() -> None:
+    changes = ["table.friction=0.3", 'simulation.start="equilibrium"', "simulation.duration=0.02"]
+    lies = read_scene(ROOT / "examples" / "rod_lies_down.toml", [*changes, "simulation.step=1e-3"])
+    motion = simulate(build(lies.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    assert np.abs(motion.v).max() < 1e-7
+    assert all(contact.lies and not contact.slips for contacts in motion.contacts for contact in contacts)
