@@ -705,6 +705,8 @@ def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
 def _timed(search: _Search) -> TimedHistory:
     """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
     level = search.last
+    if search.scene.rubs_exactly and search.simulation.step is None:
+        return level.simulator.halved(_allowed(search, level.history), level.history)
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
     return level.simulator.tightened(level.history, search.step_tolerance, partial(_allowed, search))

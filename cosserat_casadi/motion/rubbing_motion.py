@@ -246,7 +246,7 @@ def rubbing_history(
         stopped = _integrate(told, pieces, settings.size, kernels, after_step, stops)
     except KeyboardInterrupt:
         # What was computed stands: whoever stops a long motion wants to see it.
-        told.close(StepOutcome.INTERRUPTED)
+        told.close(StepOutcome.INTERRUPTED, settings.size)
     return History(model, tuple(told.legs), radau(STAGES), settings, FreeFlight(model, None, None), stopped)
 
 

@@ -324,7 +324,7 @@ class Simulator:
         if self.simulation.step is not None:
             return self._with_given_step(self.simulation.step)
         if self.has_equal_steps:
-            return self._with_halved_steps(tolerance)
+            return self.halved(tolerance)
         return self.tightened(self.controlled(first), first, lambda _: tolerance)
 
     def tightened(self, coarse: History, first: float, tolerance_of_paths: Callable[[History], float]) -> TimedHistory:
@@ -408,11 +408,20 @@ class Simulator:
             return HALVED
         return HALVED_WHERE_STRUCK if is_struck(history) else HALVED_WHERE_RUBBING
 
-    def _with_halved_steps(self, tolerance: float) -> TimedHistory:
-        size = self.simulation.duration / FIRST_EQUAL_STEPS
-        history = self.stepped(size)
+    def halved(self, tolerance: float, begun: History | None = None) -> TimedHistory:
+        """The motion with equal steps that are halved until the paths of two motions agree to a tolerance.
+
+        Args:
+            tolerance: of the paths, over the length.
+            begun: a motion with equal steps to begin with, which are short enough on other modes; by default a motion
+                with a few steps.
+        """
+        history = begun or self.stepped(self.simulation.duration / FIRST_EQUAL_STEPS)
+        assert history.settings.size is not None, "its steps are equal"
+        size = history.settings.size
         history_paths = self.paths(history)
-        error = distance = float("nan")
+        error = float("nan")
+        distance = 0.0 if begun else float("nan")
         companion = None
         apart = 0
         if history.outcome is StepOutcome.INTERRUPTED:
