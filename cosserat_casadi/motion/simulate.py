@@ -131,8 +131,11 @@ HALVED_WHERE_RUBBING = 2.0
 What breaks loose or lifts off in a step may leave its first power; where nothing does it leaves the second one.
 """
 
-HALVED_WHERE_STRUCK = 3.4
-"""Error over the same distance where impacts strike: errors then go with the root of the step."""
+HALVED_WHERE_STRUCK = 4.85
+"""Error over the same distance where impacts strike: errors are then taken to go with the cube root of the step.
+
+Of ten rods that were let fall, with the root, one erred by 1.4 times as much as was told.
+"""
 
 FIRST_EQUAL_STEPS = 50
 """Steps that a motion without a tolerance of a step is first divided into; they are halved until motions agree."""
