@@ -17,6 +17,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
+from cosserat_casadi.motion.contact_checks import refuse_going_on
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     UNKNOWN_ORDER,
@@ -99,6 +100,7 @@ def go_on(
     """
     given = subject.at() if isinstance(subject, Model) else None
     scene = given.scene if given is not None else _moving(subject, simulation)
+    refuse_going_on(scene)
     asked = simulation or scene.simulation
     first = checkpoint.strands[0]
     model = _model_of(scene, given, first, checkpoint)

@@ -124,7 +124,7 @@ class Energies:
         kinetic: of rods and bodies.
         elastic: of the rods.
         potential: of dead forces, gravity and smooth contact.
-        dissipated: by the damping of rods and of smooth contact since the start.
+        dissipated: by the damping of rods and of smooth contact, and by friction, since the start.
         work: done since the start by all other loads, by actuators, and by moving bases and lengths.
         impacts: lost since the start where cables snapped taut, joints met stops or rods obstacles without a width.
         imbalance: error of the balance of the other six, relative to the largest energy; without unit.

@@ -1,4 +1,4 @@
-"""Functions of what rubs in exact contact, for steps in C: how the point that touches slides along the surface.
+"""Functions of what rubs in exact contact in motion: how the point that touches slides along the surface.
 
 A section of the radius ρ touches at −ρ n from its centre, n the normal of the obstacle, and that point of its material
 has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes;
@@ -16,8 +16,10 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.contact_layer import STANDING
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_sections import facings
 
 
 @dataclass(frozen=True)
@@ -117,3 +119,14 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> tuple[Matrix, Matr
     world = quaternion_to_matrix(base.quaternion)
     directors = [world @ (director @ weights) for director in shape.directors]
     return base.position + world @ (shape.position @ weights), ca.horzcat(*directors)
+
+
+def functions_of_sliding(model: Model) -> list[ca.Function]:
+    """How all pairs that may touch slide, each as :attr:`SurfaceSliding.function` with its results in one column."""
+    found = []
+    for number, facing in enumerate(facings(model)):
+        function = SurfaceSliding(facing).function
+        arguments = function.mx_in()
+        results = [ca.vec(result) for result in function.call(arguments)]
+        found.append(ca.Function(f"rubbing_{number}", arguments, [ca.vertcat(*results)]))
+    return found
