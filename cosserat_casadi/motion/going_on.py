@@ -7,6 +7,7 @@ steps stay as they were.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -154,7 +155,8 @@ def go_on(
     # An error that is not known makes that of the whole unknown.
     total = float(np.maximum(error, checkpoint.error))
     bound = bound_of(scene, asked, tolerance_of(model, asked))
-    return judged(simulator, history, total, bound, companions)
+    motion = judged(simulator, history, total, bound, companions)
+    return motion if given is None else replace(motion, tolerance=None)
 
 
 def _factor_after_impacts(first: Strand, strand: Strand, history: History, told: History) -> float:

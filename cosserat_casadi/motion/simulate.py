@@ -627,12 +627,20 @@ def simulate(
         return ended_early(simulator, timed.history)
     bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
     motion = judged(simulator, timed.history, timed.error, bound, [timed.companion])
-    return replace(motion, message=f"{motion.message} {STEPS_ALONE}")
+    # What its modes leave of the paths is not estimated, so that no tolerance of the paths is met.
+    return replace(motion, message=f"{motion.message} {STEPS_ALONE}", tolerance=None)
 
 
 def bound_of(scene: Scene, simulation: Simulation, tolerance: float) -> float:
     """Error up to which a motion of a scene is the one that was asked for: what the user fixed need but resolve it."""
     return LARGEST_SHAPE_ERROR if scene.accuracy.fixed or simulation.step is not None else tolerance
+
+
+def asked_of(scene: Scene, simulation: Simulation) -> float | None:
+    """Error of the paths that somebody asks for; None where a scene fixes modes and no tolerance is written."""
+    if simulation.tolerance is not None:
+        return simulation.tolerance
+    return scene.motion_tolerance if scene.accuracy.binds else None
 
 
 def tolerance_of(model: Model, simulation: Simulation) -> float:
@@ -815,6 +823,7 @@ def motion_of(
         contacts=tuple(history.touching(float(time)) for time in times),
         events=tuple(sorted([*history.events, *simulator.watch.crossings(history)], key=lambda event: event.time)),
         impacts_spread=spread,
+        tolerance=asked_of(model.scene, simulator.simulation),
     )
 
 

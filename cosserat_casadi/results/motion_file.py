@@ -175,6 +175,7 @@ def _head(motion: Motion) -> dict[str, Any]:
         "message": motion.message,
         "warnings": list(motion.warnings),
         "error_estimate": motion.error_estimate,
+        "within_tolerance": motion.within_tolerance,
         "start": motion.start,
         "steps": motion.statistics.steps,
         "statistics": asdict(motion.statistics),
