@@ -1,7 +1,7 @@
-"""Steps in C of motions with friction of exact contact: steps of exported libraries, with functions that Python gives.
+"""Steps in C of motions with friction of exact contact: steps of exported libraries, with functions from Python.
 
-An exported library has the equations of one model in it, which takes a compiler seconds; here they are programs, or
-functions in machine code of the motion. One library serves all models with as many unknowns and inputs.
+An exported library contains the equations of its model, whose compilation takes seconds. Here the equations are
+programs, or functions in machine code; one library serves all models of a size (unknowns, inputs, points and pairs).
 """
 
 from __future__ import annotations
@@ -46,33 +46,33 @@ from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.scene.accuracy import MOST_NODES
 
 NAME = "rubbing_steps"
-"""Name of the library in the cache."""
+"""Name of the library in the cache of compiled code."""
 
 INCLUDED = (
     *("solver.h", "motion.h", "python_kernels.c", "elimination.c", "contact_gaps.c", "contact_ways.c", "step.c"),
     *("contact_steps.c", "contact_friction.c", "square_systems.c", "least_pushes.c", "stage_newton.c", "motion.c"),
 )
-"""Files that the library's own file includes."""
+"""Files that ``rubbing_steps.c`` includes."""
 
 STATUSES = ("DONE", "NOT_SOLVED", "NOT_FINITE", "SINGULAR", "BAD_STEP", "INCONSISTENT", "NO_ACCELERATION")
-"""Ends of a step in C, in the order of their numbers."""
+"""Statuses of a step in C, in the order of their numbers."""
 
 OUTCOMES = {
     STATUSES.index("DONE"): None,
     STATUSES.index("NOT_FINITE"): StepOutcome.NOT_FINITE,
     STATUSES.index("SINGULAR"): StepOutcome.SINGULAR,
 }
-"""Outcomes of steps by these numbers; of others a step was not solved."""
+"""Outcome for each status number; a step with another status was not solved."""
 
 HEAD = 4
-"""Numbers of a stretch that is told before its begin; as in ``rubbing_steps.c``."""
+"""Numbers at the head of a stretch's row, before the state at its begin; as in ``rubbing_steps.c``."""
 
 _ONE_AT_A_TIME = threading.RLock()
-"""Held by the motion that steps."""
+"""Lock of the motion that takes a step: C has one present model."""
 
 
 class PointKernelsRecord(ctypes.Structure):
-    """Functions of the points of a rod or a body; as in ``rubbing_steps.c``, like the records below."""
+    """Functions of the points of a rod or a body. ``rubbing_steps.c`` has this record and the next two."""
 
     _fields_ = [
         ("count", ctypes.c_int),
@@ -81,7 +81,7 @@ class PointKernelsRecord(ctypes.Structure):
 
 
 class RubbingFacingRecord(ctypes.Structure):
-    """A rod or a body, and an obstacle."""
+    """A pair of a rod or a body and an obstacle, with numbers and functions."""
 
     _fields_ = [
         *((name, ctypes.c_int) for name in ("points", "is_body", "elements", "nodes")),
@@ -95,7 +95,7 @@ class RubbingFacingRecord(ctypes.Structure):
 
 
 class RubbingModelRecord(ctypes.Structure):
-    """A model and its motion."""
+    """A model with its functions, and the stretches of its last step."""
 
     _fields_ = [
         *((name, ctypes.c_int) for name in ("points_count", "facing_count")),
@@ -107,7 +107,7 @@ class RubbingModelRecord(ctypes.Structure):
 
 
 class Sizes(NamedTuple):
-    """Sizes that the library tells, of memory in bytes and of rows of numbers."""
+    """Sizes from C: bytes of memory and workspace; most rows; numbers of a row and its parts; most contacts."""
 
     memory: int
     workspace: int
@@ -123,17 +123,17 @@ class RubbingTouch(NamedTuple):
 
     Attributes:
         facing: index of the pair of a rod or body and an obstacle.
-        slides: whether it is where the gap is least, or one section all along, or a body.
+        slides: whether the place follows the least gap along the rod; else it is a fixed section, or a body.
         presses: whether a force acts.
-        slips: whether it slips in the stretch; else it sticks.
-        is_struck: whether the stretch begins with a blow on it.
+        slips: whether the point slips in the stretch; else it sticks.
+        is_struck: whether it begins to touch in a blow, at the begin of the stretch.
         place: abscissa X at the begin.
         end_place: abscissa X at the end.
-        height: gap that it keeps, over the length.
-        forces: along the normal at the stages, shape (2,), in the unit of the pair.
-        axis: whose part along the surface is the first tangent, shape (3,).
-        friction: along both tangents at the stages, shape (2, 2), in the unit of the pair.
-        impulse: of the blow, along the normal, N s.
+        height: gap that the contact keeps, over the length.
+        forces: normal force at both stages, shape (2,), in the force unit of the pair.
+        axis: axis whose part along the surface is the first tangent, shape (3,).
+        friction: friction at each stage along both tangents, shape (2, 2), in the force unit of the pair.
+        impulse: normal impulse of the blow, N s.
     """
 
     facing: int
@@ -154,15 +154,15 @@ class ToldStretch(NamedTuple):
     """A part of a step in which the same sections touch, with one polynomial.
 
     Attributes:
-        size: s.
-        taken: energy that the blow at its begin took, J; zero without one.
+        size: duration, s.
+        taken: energy that a blow at the begin took, J; zero without a blow.
         x: unknowns at the begin, shape (n,).
-        v: rates of the unknowns there, after the blow, shape (n,), 1/s.
-        unknowns: of the stages, shape (2, n).
+        v: rates of the unknowns at the begin, after the blow, shape (n,), 1/s.
+        unknowns: unknowns of the method at the stages, shape (2, n): accelerations, or algebraic unknowns.
         end: x, v and a at the end, shape (3, n).
-        power: power of friction at the stages, taken from the motion, shape (2,), W.
+        power: power that friction takes from the motion at the stages, shape (2,), W.
         put_in: power of moving inputs against friction at the stages, shape (2,), W.
-        touches: what touches.
+        touches: sections and bodies that touch.
     """
 
     size: float
@@ -204,7 +204,7 @@ class RubbingSteps:
         self._memory, self._workspace = (ctypes.create_string_buffer(count) for count in counts_of_bytes)
 
     def begin(self, at: Instant, touches: Touches) -> None:
-        """Begin a motion in which these contacts press at an instant."""
+        """Clear the memory, and begin a motion at an instant at which the contacts ``touches`` press."""
         given = [[touch.facing, touch.slides, touch.place, touch.height] for touch in touches]
         known = np.array(given, dtype=float).reshape(-1, 4)
         accelerations = np.ascontiguousarray(at.a)
@@ -212,7 +212,7 @@ class RubbingSteps:
         self._library.rubbing_begin(self._memory, *addresses)
 
     def _record(self) -> Held:
-        """The model as C has it, without its functions."""
+        """The record of the model for C, without its functions."""
         model = self.model
         held = Held(RubbingModelRecord(len(self._points), len(self.facings)))
         differential = model.discrete.unknowns.differential
@@ -222,7 +222,7 @@ class RubbingSteps:
         return held
 
     def use(self, kernels: StepKernels) -> None:
-        """Have steps call these kernels from now on; functions without machine code are programs, if they can be."""
+        """Make steps call these kernels; functions without machine code become programs where they can."""
         if kernels.libraries != self._libraries:
             self._libraries = kernels.libraries
             self._share_functions(kernels.libraries)
@@ -234,7 +234,7 @@ class RubbingSteps:
         self._held.point("matrices", self._matrices(kernels.jacobians))
 
     def _share_functions(self, libraries: Libraries) -> None:
-        """Have the record point at the functions of points, surfaces and what slides."""
+        """Write the functions of points, surfaces and sliding into the record of the model."""
         of_points = (PointKernelsRecord * len(self._points))()
         for record, own in zip(of_points, self._points, strict=True):
             record.count = own.count
@@ -274,12 +274,12 @@ class RubbingSteps:
         """Take a step.
 
         Args:
-            at: where it begins.
-            inputs: at the begin, their rates there, and their accelerations in the step, shape (m,) each.
-            size: s.
+            at: instant at which the step begins.
+            inputs: inputs and their rates at the begin, and their accelerations in the step, shape (k,) each.
+            size: duration of the step, s.
 
         Returns:
-            how the motion ends, None where it goes on; the stretches of the step; iterations and Jacobians.
+            outcome of a failed step, else None; the stretches of the step; numbers of iterations and Jacobians.
         """
         state = np.concatenate([at.x, at.v, at.a])
         given = [np.ascontiguousarray(values, dtype=float) for values in inputs]
@@ -315,7 +315,7 @@ def _touch(numbers: FloatArray) -> RubbingTouch:
 
 
 def _facing_record(record: RubbingFacingRecord, facing: Facing, points: int) -> Held:
-    """Write a rod or a body, and an obstacle, into a record."""
+    """Fill the record of a pair; ``points`` is the index of its points."""
     held = Held(record)
     record.points, record.is_body = points, facing.of_body
     record.length, record.force_unit = facing.length, facing.force_unit
@@ -331,14 +331,14 @@ def _facing_record(record: RubbingFacingRecord, facing: Facing, points: int) -> 
 
 
 def _function_record(function: ca.Function, library: str | None) -> Held:
-    """A function from a shared object; without one as a program, where it can be."""
+    """Record of a function from a shared object; without a shared object, of a program."""
     if library is not None:
         return function_record(repeated(function, library))
     return program_record(function if chooses(function) else function.expand())
 
 
 def _room(count: int) -> int:
-    """Room for so many numbers, of which libraries have few sizes."""
+    """The least power of two that holds a count: rooms have few sizes, so that few libraries are compiled."""
     return 1 << (count - 1).bit_length()
 
 
@@ -346,7 +346,7 @@ def _room(count: int) -> int:
 def _library(
     unknowns: int, inputs: int, points: int, pairs: int, most_points: int, most_looks: int
 ) -> tuple[ctypes.CDLL, Sizes]:
-    """The library for models of a size, compiled once in a process; the cache keeps it for others."""
+    """The library for models of a size, loaded once in a process; the cache keeps it for other processes."""
     texts = {file: resource("c", file) for file in (f"{NAME}.c", *INCLUDED)}
     texts[f"{NAME}.h"] = render(f"{NAME}.h.in", _words(unknowns, inputs, most_points, most_looks))
     texts["rubbing_tables.h"] = _tables(points, pairs)
@@ -364,7 +364,7 @@ def _library(
 
 
 def _tables(points: int, pairs: int) -> str:
-    """Functions that know the number of their points, or of their pair, in C."""
+    """C text: numbered functions, one for each set of points and each pair, and tables of them."""
     lines = []
     for word, kind, name, count in (("POINTS", "moving_points", "POINTS", points), ("FACING", "", "RUBBING", pairs)):
         numbered = "\n".join(f"{word}_NUMBERED({k})" for k in range(count))
@@ -375,7 +375,7 @@ def _tables(points: int, pairs: int) -> str:
 
 
 RUBBING = "real *, real *, real *, workspace *"
-"""Arguments of a function of what rubs, in C, behind the first."""
+"""C types of the arguments of a sliding function, after the first."""
 
 
 def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """A motion with friction of exact contact: equal steps, each divided where something strikes, stops or turns back.
 
-Friction asks for steps that decide by themselves what sticks and what slips, which event after event would be without
-end where a rod lies on many sections. The law is in C, see :mod:`~cosserat_casadi.motion.rubbing_library`; here its
-stretches become the legs of a history, and their changes its events.
+A rod that lies on many sections would change between sticking and slipping without end, one event after the other.
+Steps with friction therefore decide for all sections at once. C code has this law, and cuts a step into stretches, see
+:mod:`~cosserat_casadi.motion.rubbing_library`. This module makes legs of a history from stretches, and events.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from cosserat_casadi.numerics.integration import (
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 SHORTEST = 2.0**-12
-"""Shortest step over the step of the motion, before it ends where its equations are not solved."""
+"""Shortest step tried, over the step of the motion; if its equations are not solved, the motion ends."""
 
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
@@ -54,7 +54,7 @@ ROUNDED = 1e-12
 NO_COST = IntegrationCost(0, 0, 0, 0, 0)
 
 UNSETTLED = (
-    "At t = {time:.6g} s no forces that push and rub were found for what touches, in a step of {size:.3g} s: damp the "
+    "At t = {time:.6g} s no forces of contact and friction were found that solve a step of {size:.3g} s: damp the "
     "rods, or allow more modes."
 )
 
@@ -65,14 +65,14 @@ class _Told:
 
     Attributes:
         steps: the steps in C.
-        piece: of the inputs.
-        plain: equations of motion in this piece, without what makes contacts push.
-        restart: begin of the leg at hand.
-        legs: stretches with the same contacts.
-        taken: steps of the leg at hand.
-        touches: what presses at the end, with its places there.
-        stuck: pairs of which something touches and nothing slips.
-        cost: numbers of the steps of the leg at hand.
+        piece: the present piece of the inputs.
+        plain: equations of motion in this piece, without contact forces.
+        restart: begin of the present leg.
+        legs: the finished legs; the contacts do not change within a leg.
+        taken: steps of the present leg.
+        touches: contacts that press in the last stretch, with their places at its end.
+        stuck: indices of the pairs with a contact, but no contact that slips.
+        cost: counts of steps, iterations and Jacobians in the present leg.
     """
 
     steps: RubbingSteps
@@ -91,7 +91,7 @@ class _Told:
         return self.steps.model
 
     def add(self, stretch: ToldStretch, before: Instant, end: float) -> RubbingStep:
-        """Take a stretch into the motion, from the state before a blow at its begin up to a time, s."""
+        """Append a stretch, from the state before a blow at its begin up to the time ``end``, s, as a step."""
         pressing = tuple(touch for touch in stretch.touches if touch.presses)
         step = self._step(stretch, pressing, before.time, end)
         events = tuple(self._events(stretch, pressing, before.time))
@@ -105,14 +105,14 @@ class _Told:
         return step
 
     def close(self, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan) -> None:
-        """End the leg at hand, with the size of the next step, s; one without steps ends the motion."""
+        """End the present leg, with the size of the next step, s. A leg without steps is kept if it ends the motion."""
         if self.taken or outcome is not StepOutcome.GUARDED:
             integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
             self.legs.append(Leg(self.piece, self.restart, integration, self.plain))
             self.taken, self.cost = [], NO_COST
 
     def stall(self, at: Instant, size: float) -> None:
-        """End the motion where the equations of a step of a size, s, are not solved."""
+        """End the motion at an instant from which a step of the size, s, could not be solved."""
         self.close()
         sentence = UNSETTLED.format(time=at.time, size=size)
         start = ConsistentStart(at, 0.0, 0.0, 0.0, 0)
@@ -120,14 +120,14 @@ class _Told:
         self.close(StepOutcome.STALLED)
 
     def count(self, taken: int, outcome: StepOutcome | None, iterations: int, jacobians: int) -> None:
-        """Count a step that was tried."""
+        """Count a tried step: its stretches, its failure, its iterations and its Jacobians."""
         more = (taken, outcome is not None, iterations, jacobians, jacobians)
         self.cost = IntegrationCost(*(int(a + b) for a, b in zip(astuple(self.cost), more, strict=True)))
 
     def _step(
         self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float, end_time: float
     ) -> RubbingStep:
-        """The stretch as a step, with forces along normals, then along the tangents, behind the unknowns."""
+        """The stretch as a step; behind the n unknowns stand m forces along normals, then 2 m along the tangents."""
         method = radau(STAGES)
         differential = self.model.discrete.unknowns.differential
         normal = np.array([touch.forces for touch in pressing]).reshape(-1, STAGES).T
@@ -163,12 +163,12 @@ class _Told:
         return ContactPhase(touches, self._laid(pressing), Follower(self.steps.facings, touches))
 
     def _laid(self, touches: Sequence[RubbingTouch]) -> frozenset[int]:
-        """Pairs in which a rod lies."""
+        """Indices of the pairs in which a rod lies."""
         facings = self.steps.facings
         return frozenset(own.facing for own in touches if not own.slides and not facings[own.facing].of_body)
 
     def _lost(self, stretch: ToldStretch, before: Instant) -> tuple[float, float]:
-        """Energy that a blow at the begin of a stretch took, and work that moving inputs did in it, J."""
+        """Energy that a blow at the begin of a stretch took, and work of moving inputs in this blow, J; else zeros."""
         if np.array_equal(stretch.v, before.v):
             return 0.0, 0.0
         value, rate, _ = self.piece.at(before.time)
@@ -177,7 +177,7 @@ class _Told:
         return (stretch.taken, stretch.taken - lost) if np.any(rate) else (lost, 0.0)
 
     def _events(self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float) -> Iterator[ContactEvent]:
-        """Changes of contact from the stretch before to this one."""
+        """Changes of contact from the last stretch to this one, as events at a time, s."""
         facings = self.steps.facings
         struck = [own for own in stretch.touches if own.is_struck]
         total = sum(own.impulse for own in struck)
@@ -222,13 +222,13 @@ def rubbing_history(
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
     Args:
-        steps: of the model in C.
+        steps: the steps of the model in C.
         pieces: pieces of its inputs, one after the other.
-        start: unknowns and their rates at the start, shape (n,) each.
-        touches: what presses there; other contacts are looked for.
-        settings: with the size of steps.
+        start: unknowns and their rates at the start, shape (n,) each; the rates in 1/s.
+        touches: contacts that press at the start; steps look for others.
+        settings: settings of steps, with their size, s.
         kernels: inverse dynamics and its derivatives.
-        after_step: told of every step.
+        after_step: function that is called after every step, with its end time and its size, s.
         stops: makes the values at whose zeros the motion stops.
 
     Raises:
@@ -253,7 +253,7 @@ def rubbing_history(
 def _begin(
     steps: RubbingSteps, pieces: Sequence[Piece], start: tuple[FloatArray, FloatArray], plain: MotionEquations
 ) -> ConsistentStart:
-    """The start, with the accelerations that it has where nothing touches.
+    """The start with its accelerations, as if nothing touched.
 
     Raises:
         SceneError: the start contradicts the constraints, or is inside an obstacle.
@@ -278,9 +278,9 @@ def _integrate(
     after_step: AfterStep | None,
     stops: Stops | None,
 ) -> int | None:
-    """Take all steps; returns the number of the value that stops the motion, None where none does.
+    """Take all steps; returns the index of the value of ``stops`` that stops the motion, or None.
 
-    Arguments are those of :func:`rubbing_history`, with the size of steps, s.
+    :func:`rubbing_history` describes the arguments; ``size`` is the size of steps, s.
     """
     at = told.restart.start.instant
     for piece in pieces:
@@ -319,25 +319,25 @@ def _integrate(
 
 
 def _ends(piece: Piece, size: float) -> Iterator[float]:
-    """Ends of the steps of a piece: equal ones between its kinks."""
+    """End times, s, of the steps of a piece; steps between two kinks are equal."""
     for begin, end in pairwise([piece.start, *piece.kinks, piece.end]):
         count = max(1, int(np.ceil((end - begin) / size * (1.0 - ROUNDED))))
         yield from np.linspace(begin, end, count + 1)[1:].tolist()
 
 
 def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:
-    """Inputs and their rates at the begin of a step, and the accelerations that bring the rates to those at its end."""
+    """Inputs and rates at the begin of a step, and constant accelerations that lead to the rates at its end."""
     begin, end = piece.at(time), piece.at(time + size)
     return [begin.value, begin.rate, (end.rate - begin.rate) / size]
 
 
 def _is_same(old: RubbingTouch, own: RubbingTouch) -> bool:
-    """Whether a contact at the end of a stretch is one at the begin of the next."""
+    """Whether a contact at the end of a stretch goes on as ``own`` at the begin of the next stretch."""
     return old.facing == own.facing and abs(old.end_place - own.place) <= SAME_PLACE
 
 
 def _go_on(before: Sequence[RubbingTouch], now: Sequence[RubbingTouch]) -> bool:
-    """Whether the contacts of a stretch are those of the stretch before."""
+    """Whether the contacts of the last stretch go on unchanged in this one."""
     return len(before) == len(now) and all(
         _is_same(old, own) and (old.slides, old.height) == (own.slides, own.height)
         for old, own in zip(before, now, strict=True)

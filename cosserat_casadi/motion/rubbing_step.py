@@ -1,4 +1,4 @@
-"""A step of a motion with friction of exact contact: forces of contacts are behind the unknowns of the model."""
+"""A step of a motion with friction of exact contact; contact forces stand behind the unknowns of the model."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from cosserat_casadi.numerics.step import TimeStep, restricted
 
 @dataclass(frozen=True)
 class RubbingStep(TimeStep):
-    """A step in which m contacts press; behind the unknowns stand m forces along normals and 2 m along the surfaces.
+    """A step with m pressing contacts; behind the unknowns stand m forces along normals, then 2 m along tangents.
 
     Attributes:
-        axes: whose parts along the surfaces are the first tangents, shape (m, 3).
-        slips: whether each slips in the step; else it sticks.
-        power: power of friction at the stages, taken from the motion, shape (s,), W.
+        axes: axis of each contact, whose part along the surface is the first tangent, shape (m, 3).
+        slips: whether each contact slips in the step; else it sticks.
+        power: power that friction takes from the motion at the stages, shape (s,), W.
         put_in: power of moving inputs against friction at the stages, shape (s,), W.
     """
 
@@ -27,7 +27,7 @@ class RubbingStep(TimeStep):
     put_in: FloatArray
 
     def until(self, time: float) -> RubbingStep:
-        """The part up to a time in it, with the powers of the whole interpolated."""
+        """The part of the step up to a time in it, s; its powers are interpolated between those of the whole step."""
         share = (time - self.start.time) / self.size
         at = self.method.values_at(share * self.method.nodes)
         shorter = restricted(self, time)
@@ -36,12 +36,12 @@ class RubbingStep(TimeStep):
 
 
 def along_tangents(normal: FloatArray, axis: FloatArray, forces: FloatArray) -> FloatArray:
-    """A vector of the world from its parts along both tangents of a surface, as C has them, shape (3,).
+    """A vector in world axes from its parts along the two tangents that C uses, shape (3,).
 
     Args:
-        normal: of the surface, shape (3,).
-        axis: whose part along the surface is the first tangent, shape (3,).
-        forces: the parts, shape (2,).
+        normal: unit normal of the surface, shape (3,).
+        axis: axis whose part along the surface is the first tangent, shape (3,).
+        forces: parts of the vector along both tangents, shape (2,).
     """
     first = axis - (axis @ normal) * normal
     first = first / np.linalg.norm(first)

@@ -1,4 +1,4 @@
-"""Words of the templates of steps in C, exported or of motions with friction: limits, and the method's numbers."""
+"""Words for the templates of steps in C, exported or of motions with friction: limits, and numbers of the method."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
 STEP_TOLERANCE = 1e-11
-"""Displacement over the length that Newton's method may leave in a step: joints are open by no more."""
+"""Displacement over the length that Newton's method may leave in a step; joints open by no more."""
 
 STEP_ITERATIONS, MOST_STEP_ITERATIONS = 12, 20
-"""Corrections of one attempt at a step: where the caller names none, and at most."""
+"""Newton corrections of one attempt at a step: by default, and at most."""
 
 STEP_PARTS, MOST_STEP_PARTS = 8, 32
-"""Parts that a step may be cut into: where the caller names none, and at most."""
+"""Parts that a step may be cut into: by default, and at most."""
 
 STAGES = 2
-"""Stages of the method, which step.c is written for."""
+"""Stages of the Radau method; ``step.c`` is written for this number."""
 
 CONSISTENT = 1e-8
-"""Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
+"""Largest constraint residual, and rate of it times the duration, of a consistent start, without unit."""
 
 
 def limits_of_steps() -> dict[str, Any]:
-    """Limits of a step."""
+    """Limits of a step in C, by the words of the templates."""
     return {
         "step_tolerance": STEP_TOLERANCE,
         "step_iterations": STEP_ITERATIONS,
@@ -44,7 +44,7 @@ def limits_of_steps() -> dict[str, Any]:
 
 
 def words_of_method() -> dict[str, str]:
-    """The method as initialisers, with its first eigenvalue."""
+    """Matrices of the method and its first eigenvalue, as initialisers in C, by the words of the templates."""
     method = radau(STAGES)
     eigenvalue = complex(method.eigenvalues[0])
     return {
