@@ -1,28 +1,29 @@
 /* Functions of a model that C calls over and over: in machine code, as a program, or in Python. Libraries of simulated
-   motions include it; cosserat_casadi/motion/contact_law.py has the same record. Uses: KERNEL_ARGUMENTS. */
+   motions include this file; KernelRecord in cosserat_casadi/motion/contact_law.py has the layout of kernel. Uses:
+   KERNEL_ARGUMENTS. */
 
 /* A function in machine code, as CasADi calls it. */
 typedef int (*casadi_kernel)(const real **arguments, real **results, long long *integers, real *scratch, int memory);
 
-/* A function of the model. Its arguments and its result, in this memory, are those of the last call. */
+/* A function of the model. The caller writes the arguments into this memory, and reads the result from it. */
 typedef struct {
-  int counts[KERNEL_ARGUMENTS]; /* of numbers */
+  int counts[KERNEL_ARGUMENTS]; /* numbers of each argument */
   real *arguments[KERNEL_ARGUMENTS];
   real *result;
-  casadi_kernel code; /* null where there is none */
+  casadi_kernel code; /* machine code; null without it */
   const real **code_arguments;
   real **code_results;
   long long *integers;
   real *scratch;
-  const int *program; /* on slots of four lanes; null where there is none */
+  const int *program; /* lines that work on slots of four lanes; null without a program */
   real *slots;
   int lines;
-  int size; /* of the result of the program */
+  int size; /* numbers of the program's result */
   void (*run)(const int *program, int lines, real *slots);
-  int (*evaluate)(void); /* in Python; not zero where it was interrupted */
+  int (*evaluate)(void); /* calls Python; not zero if Python raised an exception */
 } kernel;
 
-/* Zero where Python has raised something: no value counts then. */
+/* Calls a function. Returns 0 if Python raised an exception, which leaves the result without meaning. */
 static int call(kernel *function) {
   if (function->code) {
     function->code(function->code_arguments, function->code_results, function->integers, function->scratch, 0);

@@ -1,9 +1,10 @@
-/* Steps of a simulated motion with friction of exact contact. They are those of exported libraries, step.c with
-   contact_steps.c and contact_friction.c; functions and tables of the model come from Python,
-   cosserat_casadi/motion/rubbing_library.py, so that one library serves all models with as many unknowns and inputs. Each
-   stretch of a step, between two blows or turns of what slides, is told. One motion steps at a time. */
+/* Steps of a simulated motion with friction of exact contact. Exported libraries have the same steps: step.c with
+   contact_steps.c and contact_friction.c. Functions and tables of the model come from Python,
+   cosserat_casadi/motion/rubbing_library.py, so one library serves all models of a size. A step is a sequence of
+   stretches, cut at blows and where sliding stops or turns back; each stretch is written for Python. One motion steps at
+   a time. */
 
-/* What is compiled for speed waits for it: functions of the model, which take most of the time, are elsewhere. */
+/* Low optimisation: the user waits for this compilation, and most time of a step goes into functions of the model. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic")
 #endif
@@ -18,7 +19,8 @@
 
 /* ---- The model ---- */
 
-/* A section that touches: weights of the nodes, its abscissa behind them, and the axis of its first tangent. */
+/* A touching section in a state. section holds the weights of the nodes, then the abscissa X; the part of axis along the
+   surface is the first tangent. */
 typedef struct {
   const real *x;
   const real *inputs;
@@ -28,7 +30,7 @@ typedef struct {
   const real *axis;
 } rubbed;
 
-/* Nodes of a rod, or the origin of a body, as in exported libraries. */
+/* Nodes of a rod, or the origin of a body; exported libraries have this type too. */
 typedef struct {
   int count;
   void (*positions)(const real *x, const real *inputs, real *positions, workspace *work);
@@ -36,10 +38,10 @@ typedef struct {
   void (*gradient)(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work);
   void (*hessian)(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work);
   void (*by_inputs)(const real *x, const real *inputs, const real *weights, real *by_inputs, real *of_gradient,
-                    workspace *work); /* of derivatives of steps alone, which no one asks for here */
+                    workspace *work); /* null: only derivatives of steps need it */
 } moving_points;
 
-/* Functions of such points. */
+/* Functions of moving_points, from Python. */
 typedef struct {
   int count;
   kernel *positions;
@@ -48,7 +50,7 @@ typedef struct {
   kernel *hessian;
 } point_kernels;
 
-/* A rod or the ball of a body, and an obstacle that it may touch; rubbing is written here. */
+/* A pair of a rod, or the ball of a body, and an obstacle that it may touch. Python writes all members but rubbing. */
 typedef struct {
   int points;
   int is_body;
@@ -68,13 +70,13 @@ typedef struct {
   real restitution;
   real stride;
   real coefficients[3];
-  kernel *surface;  /* point to distance, normal, curvature */
-  kernel *distance; /* point to distance */
-  kernel *slide;    /* null where nothing rubs */
+  kernel *surface;  /* point -> distance, normal, curvature */
+  kernel *distance; /* point -> distance */
+  kernel *slide;    /* null for an obstacle without friction */
   void (*rubbing)(const rubbed *at, real *sliding, real *by_velocity, real *along, workspace *work);
 } facing;
 
-/* A model and its motion. */
+/* A model, and the stretches of its last step. */
 typedef struct {
   int points_count;
   int facing_count;
@@ -85,12 +87,12 @@ typedef struct {
   kernel *residual;
   kernel *matrices; /* stiffness, damping and mass */
   real deepest;
-  real *told; /* rows of MOST_TOLD stretches */
-  int told_count;
-  int was_raised; /* whether Python has raised something */
+  real *told;     /* MOST_TOLD rows of TOLD_ROW numbers */
+  int told_count; /* rows that the last step wrote */
+  int was_raised; /* whether Python raised an exception */
 } model;
 
-static model *AT;
+static model *AT; /* the model of the present step */
 
 #define FACINGS AT->facing_count
 #define FACING AT->facings
@@ -98,13 +100,14 @@ static model *AT;
 #define DISPLACEMENTS AT->displacements
 #define DEEPEST AT->deepest
 
-/* Writes numbers behind those that were written, from one argument on to the next. */
+/* The place behind the last number that was written into the arguments of a function. */
 typedef struct {
   kernel *function;
   int argument;
   int filled;
 } writing;
 
+/* Writes numbers at this place; where an argument is full, they go on in the next one. */
 static void put(writing *to, const real *values, int count) {
   kernel *own = to->function;
   while (count > 0) {
@@ -121,7 +124,7 @@ static void put(writing *to, const real *values, int count) {
   }
 }
 
-/* The result of a function whose arguments are written; no number where Python has raised something. */
+/* Calls a function whose arguments are written. The result is NaN if Python raised an exception. */
 static const real *result_of(kernel *function, int count) {
   if (!call(function)) {
     AT->was_raised = 1;
@@ -175,7 +178,7 @@ static void rubbing_of(int k, const rubbed *at, real *sliding, real *by_velocity
   memcpy(along, found + 2 + 2 * N, 2 * sizeof *found);
 }
 
-/* The same as the functions of tables, which know their number. */
+/* Functions for tables: each calls one of the functions above with its own number K. */
 #define POINTS_NUMBERED(K)                                                                                              \
   static void positions_of_##K(const real *x, const real *inputs, real *positions, workspace *work) {                   \
     (void)work;                                                                                                         \
@@ -222,7 +225,7 @@ static real distance_at(const facing *own, const real *point, workspace *work) {
   return *result_of(own->distance, 1);
 }
 
-/* ---- Tables of a step: one block, whose entries stand column after column ---- */
+/* ---- Tables of a step: one dense block, column after column ---- */
 
 #include "motion.h"
 
@@ -271,24 +274,27 @@ static const int FEELS_ACCELERATION[INPUTS + 1] = {0};
 
 enum {
   MOST_TOLD = CUTS,
-  /* Of each: size, energy that its blow took, whether it has one, how many touch; state at the begin, unknowns of the
-     stages, state at the end; powers of friction at the stages, and what moving inputs put in there. */
+  /* Head of a stretch: size, s; energy that its blow took, J; whether it has a blow; number of contacts. */
   HEAD = 4,
+  /* Then x and v at the begin, unknowns of the stages, x, v and a at the end; powers that friction takes at the stages,
+     and powers that moving inputs put in there, W. */
   OF_STRETCH = HEAD + 2 * N + STAGED + 3 * N + 2 * STAGES,
-  /* Then of each that touches: facing, whether it slides, presses, slips, is struck; place, place at the end,
-     gap that it keeps, forces at the stages, axis of the tangents, friction along both at the stages, impulse. */
+  /* Then each contact: facing; whether it slides, presses, slips, is struck; places at the begin and at the end; gap that
+     it keeps; forces at the stages; axis of the tangents; friction at each stage along both tangents; impulse, N s. */
   OF_TOUCH = 18,
   TOLD_ROW = OF_STRETCH + OF_TOUCH * TOUCHES
 };
 
-/* Way in a stretch at the speed of a section, over the length, up to which it counts as at rest. */
+/* Speed of a section times the size of the stretch, over the length, up to which the section counts as at rest. */
 static const real AT_REST = (real)1e-10;
 
+/* The blow at the begin of the present stretch: its energy, J, and impulses, N s. */
 static real BLOW_TAKES;
 static int IS_STRUCK;
 static real IMPULSES[TOUCHES];
 static int ARE_STRUCK[TOUCHES];
 
+/* Keeps a blow for the row of the stretch that begins with it. */
 static void tell_blow(real taken, const workspace *work) {
   BLOW_TAKES = taken;
   IS_STRUCK = 1;
@@ -298,7 +304,7 @@ static void tell_blow(real taken, const workspace *work) {
   }
 }
 
-/* Whether a section slips in a stretch: it moves at its begin, or at its end. */
+/* Whether a section slips in a stretch: it moves at the begin or the end, or has no friction. */
 static int slips_in(int k, real size, const workspace *work) {
   const real *ends[2] = {work->start_slides[k], work->stage_slides[STAGES - 1][k]};
   if (!rubs(work->touches + k)) return 1;
@@ -310,6 +316,7 @@ static real *tell(real *to, const real *values, int count) {
   return to + count;
 }
 
+/* Writes the row of a solved stretch. */
 static void tell_stretch(const step_start *start, workspace *work) {
   if (AT->told_count == MOST_TOLD) return;
   const real *unknowns = work->iterate;
@@ -334,7 +341,7 @@ static void tell_stretch(const step_start *start, workspace *work) {
       for (int a = 0; a < 2; a++) {
         const real push = force[a] * faces->force_unit * faces->length;
         const real slide = work->stage_slides[stage][k][a];
-        /* What sticks does not move, but for rounding. */
+        /* A sticking point moves by rounding alone. */
         if (own->slips[stage]) powers[stage] -= push * slide;
         put_in[stage] -= push * (slide - dot(work->stage_slide_rows[stage][k][a], work->at.state + N));
       }
@@ -374,15 +381,16 @@ static void tell_stretch(const step_start *start, workspace *work) {
 
 /* ---- For Python ---- */
 
-/* Sizes: of the memory and the workspace of a motion in bytes; of a row, and its columns. */
+/* Writes 11 sizes: bytes of memory and workspace; MOST_TOLD; numbers of a row, a stretch, a contact; most contacts; bytes
+   of the four records. */
 void rubbing_sizes(long long *sizes) {
   const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW, OF_STRETCH, OF_TOUCH,
                              TOUCHES,  sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
   memcpy(sizes, found, sizeof found);
 }
 
-/* Has a motion that begins with accelerations know so many contacts, which press: facing, whether it slides, place, gap that
-   it keeps of each. */
+/* Begins a motion with accelerations, of N numbers, and contacts that press. known has four numbers for each contact:
+   facing, whether it slides, place, gap that it keeps. */
 void rubbing_begin(solver_step_memory *memory, const real *accelerations, int count, const real *known) {
   memset(memory, 0, sizeof *memory);
   memcpy(memory->unknowns + N, accelerations, N * sizeof *accelerations);
@@ -397,7 +405,8 @@ void rubbing_begin(solver_step_memory *memory, const real *accelerations, int co
   }
 }
 
-/* One step of a motion, in one part: as solver_step, with the stretches that are told. */
+/* Takes one step of the given size, s, as solver_step does, and writes its stretches into the model's rows. counts takes
+   the numbers of iterations and Jacobians. */
 int rubbing_step(model *of, const real *inputs, const real *rates, const real *accelerations, real size,
                  solver_state *state, solver_step_memory *memory, workspace *work, int *counts) {
   AT = of;
