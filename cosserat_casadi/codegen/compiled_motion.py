@@ -13,10 +13,10 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.input_values import ArgumentValues
 from cosserat_casadi.codegen.loaded_library import LoadedLibrary, room
-from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.codegen.status import MOTION_STATUSES, MotionStatus
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.step_words import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,6 @@ from cosserat_casadi.codegen.kernels import kernel
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.motion_parts import check_motion
-from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.compiling.c_tables import numbers
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
@@ -29,6 +28,7 @@ from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.step_words import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.numerics.progress import StageProgress
 
 SUFFIX = ".fmu"

@@ -13,28 +13,21 @@ from cosserat_casadi.codegen.contact.moving import contact_reals, described_cont
 from cosserat_casadi.codegen.motion_parts import MATRICES, MotionInC
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import motion_status_words
-from cosserat_casadi.compiling.c_tables import initialiser, method_words, numbers, pairs, table
+from cosserat_casadi.compiling.c_tables import numbers, table
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.history import CONSISTENT
-from cosserat_casadi.numerics import consistent_start, stage_newton, step_matrices
+from cosserat_casadi.motion.step_words import (
+    MOST_STEP_ITERATIONS,
+    MOST_STEP_PARTS,
+    STAGES,
+    STEP_TOLERANCE,
+    limits_of_steps,
+    words_of_method,
+)
 from cosserat_casadi.numerics.collocation import radau
-from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
 MOTION_FILES = ("motion.h", "elimination.c", "stage_newton.c", "step.c", "step_sensitivity.c", "motion.c")
 """Files of the folder ``c`` that a library with motions includes."""
-
-STEP_TOLERANCE = 1e-11
-"""Displacement over the length that Newton's method may leave in a step: joints are open by no more."""
-
-STEP_ITERATIONS, MOST_STEP_ITERATIONS = 12, 20
-"""Corrections of one attempt at a step: where the caller names none, and at most."""
-
-STEP_PARTS, MOST_STEP_PARTS = 8, 32
-"""Parts that a step may be cut into: where the caller names none, and at most."""
-
-STAGES = 2
-"""Stages of the method, which step.c is written for."""
 
 
 def motion_words(basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
@@ -50,8 +43,8 @@ def motion_words(basics: Words, model: Model, names: Names, motion: MotionInC) -
     lengths = np.where(model.discrete.unknowns.differential, displacements(model.at()), 0.0)
     words = {
         "in_motion": True,
-        **_limits(),
-        **_method(),
+        **limits_of_steps(),
+        **words_of_method(),
         **motion_status_words(names, may_lie_apart=basics["apart"]),
         "stage_entries": motion.blocks.pattern.nnz(),
         "stage_matrix": max(fronts.size, whole.size),
@@ -100,36 +93,6 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
     rooms = 8 * (words["front_room"] + words["interface_room"] + 2 * size)
     return int(entries + matrices + vectors + remembered + rooms + contact_reals(size, room, words))
-
-
-def _limits() -> Words:
-    return {
-        "step_tolerance": STEP_TOLERANCE,
-        "step_iterations": STEP_ITERATIONS,
-        "most_step_iterations": MOST_STEP_ITERATIONS,
-        "step_parts": STEP_PARTS,
-        "most_step_parts": MOST_STEP_PARTS,
-        "few_iterations": FEW_ITERATIONS,
-        "stage_rounding": repr(stage_newton.ROUNDING),
-        "stage_singular": 1.0 / step_matrices.SINGULAR,
-        "least_contraction": stage_newton.LEAST_CONTRACTION,
-        "diverging": stage_newton.DIVERGING,
-        "massless": consistent_start.RANK,
-        "closed": CONSISTENT,
-    }
-
-
-def _method() -> dict[str, str]:
-    """The method as initialisers, with its first eigenvalue."""
-    method = radau(STAGES)
-    eigenvalue = complex(method.eigenvalues[0])
-    return {
-        **method_words(method),
-        "rate": initialiser(pairs([1.0 / eigenvalue])[0]),
-        "share": initialiser(pairs([1.0 / eigenvalue**2])[0]),
-        "to_eigenvector": initialiser(pairs(method.to_eigenvectors[0])),
-        "from_eigenvector": initialiser(pairs(method.from_eigenvectors[:, 0])),
-    }
 
 
 def _entry_tables(motion: MotionInC) -> str:

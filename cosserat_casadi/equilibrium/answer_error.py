@@ -157,7 +157,7 @@ FRICTION_OF_JOINTS = " Friction of joints acts in motion alone, and is left out.
 FRICTION_OF_BODIES = " Friction of bodies and disks acts in motion alone, and is left out."
 """A sentence on equilibria and paths of scenes in which bodies or disks rub on obstacles."""
 
-FRICTION_IN_STEPS = " Friction of exact contact acts in steps of motions in C alone, and is left out."
+FRICTION_IN_MOTION = " Friction of exact contact acts in motion alone, and is left out."
 """A sentence on equilibria and paths of scenes that rub on obstacles without a width."""
 
 
@@ -169,7 +169,7 @@ def left_out_friction(scene: Scene) -> str:
 def left_out_on_paths(scene: Scene) -> str:
     """Sentences on friction that paths leave out, of joints, bodies and disks; empty where there is none."""
     if scene.rubs_exactly:
-        return FRICTION_IN_STEPS + left_out_friction(scene)
+        return FRICTION_IN_MOTION + left_out_friction(scene)
     of_bodies = any(obstacle.rubs and (obstacle.bodies or obstacle.disks) for obstacle in scene.obstacles)
     return left_out_friction(scene) + (FRICTION_OF_BODIES if of_bodies else "")
 

@@ -24,7 +24,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
-from cosserat_casadi.motion.contact_checks import RUBS_IN_C
+from cosserat_casadi.motion.contact_checks import RUBS_IN_STEPS
 from cosserat_casadi.motion.motion_checks import immovable
 from cosserat_casadi.motion.section_pairs import SECTIONS, TouchingPairs
 from cosserat_casadi.numerics.collocation import STAGES, Collocation, radau
@@ -350,7 +350,7 @@ def motion_stage(
         problems.append(Problem("method", what, "take radau(1), or give each obstacle a width, m"))
     if model.scene.rubs_exactly:
         remedy = "give each obstacle a width, m, for a contact that is smooth; or leave friction out"
-        problems.append(Problem("obstacles", RUBS_IN_C, remedy))
+        problems.append(Problem("obstacles", RUBS_IN_STEPS, remedy))
     if sections < 1:
         problems.append(Problem("sections", f"must be 1 or more, got {sections}", f"take {SECTIONS}"))
     refuse(problems)

@@ -9,12 +9,14 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
-from cosserat_casadi.errors import Problem
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.event_restart import LAID_DOWN
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.tip_paths import watched_states
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
 THINNEST = 1e-3
@@ -31,8 +33,8 @@ CLOSER = 17
 """Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
 
 
-RUBS_IN_C = "friction of exact contact acts in steps of motions in C alone"
-"""The problem of other motions of scenes that rub on obstacles without a width."""
+RUBS_IN_STEPS = "friction of exact contact acts in motions of simulate and in steps in C, not in stages of motions"
+"""The problem of stages of scenes that rub on obstacles without a width."""
 
 
 def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem]:
@@ -46,7 +48,10 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     if simulation is not None and model.scene.rubs_exactly:
-        yield Problem("obstacles", RUBS_IN_C, f"export with --dynamics, or {remedy}; or leave friction out")
+        for pair in OneSided(model).pairs:
+            if pair.rigid:
+                what = "a rigid stop or cable strikes, for which steps with friction of exact contact have no blow"
+                yield Problem(pair.name, what, f"give it a stiffness, or {remedy}; or leave friction out")
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]
@@ -62,6 +67,18 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
             f"exact contact in motion is with obstacles that stand still, not with those on bodies: {', '.join(moving)}"
         )
         yield Problem("obstacles", what, remedy)
+
+
+def refuse_going_on(scene: Scene) -> None:
+    """Refuse that a motion with friction of exact contact goes on from another, or is written in parts.
+
+    Raises:
+        SceneError: friction acts on an obstacle without a width.
+    """
+    if scene.rubs_exactly:
+        what = "a motion with friction of exact contact is computed at once, and none goes on from another"
+        remedy = "give the duration of the whole, or give each obstacle a width, m"
+        raise SceneError(Problem("simulation.duration", what, remedy))
 
 
 def _too_thin(model: Model) -> Iterator[Problem]:

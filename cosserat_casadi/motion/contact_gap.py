@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
@@ -31,7 +32,7 @@ from cosserat_casadi.motion.contact_law import (
     FacingRecord,
     called,
     gap_size,
-    surface_record,
+    program_record,
 )
 from cosserat_casadi.motion.moving_points import MovingPoints
 
@@ -41,6 +42,13 @@ FLATTEST = 1e-3
 A rod that rolls loses nothing; one that is held at sections instead is a polygon, and each section strikes. From 2e-2
 on these blows took a twentieth of the energy of a rubber rod as it rolled onto its end, on 40 modes.
 """
+
+
+STRIDE = 0.25
+"""Longest way between two looks, over the radius of an obstacle and the rod: what passes deeper than 1/128 is seen."""
+
+NO_PASSAGE = 1e30
+"""Way, m, that nothing goes in a step: no obstacle is passed in it."""
 
 
 class Rows(NamedTuple):
@@ -149,6 +157,11 @@ class Facing(ABC):
         return self.points.positions(x, inputs)
 
     @property
+    def stride(self) -> float:
+        """Longest way between two looks for contact in steps of given length, m."""
+        return min(NO_PASSAGE, STRIDE * (float(self.obstacle.thickness) / 2.0 + min(self.radii)))
+
+    @property
     @abstractmethod
     def ends(self) -> Sequence[float]:
         """Abscissae between which the gap is smooth: ends of the elements, base to tip."""
@@ -162,6 +175,11 @@ class Facing(ABC):
     def describe(self, held: Held) -> None:
         """Write into the record how the sections follow from the points."""
 
+    @property
+    def surfaces(self) -> dict[str, ca.Function]:
+        """Functions of a point that tell where the obstacle is, by the names that records in C have for them."""
+        return {"surface": surface_at_once(self.obstacle), "distance": distance_from(self.obstacle)}
+
     @cached_property
     def in_law(self) -> Held:
         """The pair as the law in C has it."""
@@ -170,10 +188,11 @@ class Facing(ABC):
         held = Held(record)
         held.point("points", self.points.in_law)
         held.share("laid", np.ascontiguousarray(self.laid_at, dtype=float))
-        for name, function in (("surface", surface_at_once(self.obstacle)), ("distance", distance_from(self.obstacle))):
-            held.point(name, surface_record(function))
+        for name, function in self.surfaces.items():
+            held.point(name, program_record(function))
         self.describe(held)
         held.share("coefficients", np.zeros(3 * self.points.count))
+        held.share("gaps_along", np.zeros(LOOKS * record.elements + 1))
         return held
 
     def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:

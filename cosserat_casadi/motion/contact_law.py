@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any
 
@@ -25,8 +26,11 @@ from cosserat_casadi.scene.accuracy import MOST_NODES
 NAME = "moving_contacts"
 """Name of the library in the cache."""
 
-INCLUDED = ("contact_gaps.c", "square_systems.c", "least_pushes.c")
-"""Files that exported steps have too."""
+INCLUDED = ("contact_gaps.c", "square_systems.c", "least_pushes.c", "python_kernels.c")
+"""Files that other libraries include too."""
+
+MOST_TOUCHES = 64
+"""Sections that may touch at once in steps with friction and in exported ones; of more, a step is not solved."""
 
 LOOKS = 100
 """Sections of an element at which gaps are looked at first, in exported steps too.
@@ -52,14 +56,14 @@ OFF = 10.0
 NO_COMPILER = "a motion in exact contact is computed by C code, and {why}"
 REMEDY = "{remedy}; or give each obstacle a width, m: contact is smooth then"
 
-KERNEL_ARGUMENTS = 3
+KERNEL_ARGUMENTS = 6
 """Arguments of a function that the law asks for, at most."""
 
 CALL = ctypes.CFUNCTYPE(ctypes.c_int)
 
 
 class KernelRecord(ctypes.Structure):
-    """A function; as in ``moving_contacts.c``, like the records below."""
+    """A function, as in ``python_kernels.c``; the records below are as in ``moving_contacts.c``."""
 
     _fields_ = [
         ("counts", ctypes.c_int * KERNEL_ARGUMENTS),
@@ -157,14 +161,10 @@ def compiled_law() -> ctypes.CDLL:
     """
     texts = {file: resource("c", file) for file in (f"{NAME}.c", *INCLUDED)}
     texts[f"{NAME}.h"] = render(f"{NAME}.h.in", _words())
-    try:
+    with without_compiler():
         law = ctypes.CDLL(str(compiled_texts(NAME, texts, find_compiler(), INCLUDED)))
         # Surfaces are programs, which the steps run.
         steps_library()
-    except ExportError as error:
-        (problem,) = error.problems
-        why, remedy = problem.problem, problem.remedy
-        raise ExportError(Problem(problem.where, NO_COMPILER.format(why=why), REMEDY.format(remedy=remedy))) from None
     for name, (result, arguments) in ARGUMENTS.items():
         function = getattr(law, name)
         function.restype, function.argtypes = result, arguments
@@ -172,6 +172,17 @@ def compiled_law() -> ctypes.CDLL:
     for number, record in enumerate(records):
         assert law.contact_records(number) == ctypes.sizeof(record), record.__name__
     return law
+
+
+@contextmanager
+def without_compiler() -> Iterator[None]:
+    """Tell where there is no compiler, or it fails, that a motion in exact contact needs one."""
+    try:
+        yield
+    except ExportError as error:
+        (problem,) = error.problems
+        why, remedy = problem.problem, problem.remedy
+        raise ExportError(Problem(problem.where, NO_COMPILER.format(why=why), REMEDY.format(remedy=remedy))) from None
 
 
 def _words() -> dict[str, Any]:
@@ -228,7 +239,7 @@ def function_record(call: RepeatedCall) -> Held:
     """A function of a model as the law calls it: in machine code, or by CasADi's virtual machine."""
     held = Held(KernelRecord())
     record = held.record
-    _give_memory(held, call.arguments, call.results[0])
+    give_memory(held, call.arguments, call.results[0])
     if call.code is not None:
         record.code = call.code.address
         for name, array in (("code_arguments", call.code.arguments), ("code_results", call.code.results)):
@@ -240,15 +251,15 @@ def function_record(call: RepeatedCall) -> Held:
     return held
 
 
-def surface_record(function: ca.Function) -> Held:
-    """A small function of a point as the law calls it: as a program, or by CasADi's virtual machine."""
+def program_record(function: ca.Function) -> Held:
+    """A function with one result as C calls it: as a program, or by CasADi's virtual machine."""
     program = scalar_program(function)
     if program is None:
         return function_record(RepeatedCall(function))
     held = Held(KernelRecord())
     record = held.record
     lines, slots, _ = program
-    _give_memory(held, [np.zeros(function.nnz_in())], np.zeros(function.nnz_out()))
+    give_memory(held, [np.zeros(function.nnz_in())], np.zeros(function.nnz_out()))
     held.share("program", np.ascontiguousarray(lines))
     held.share("slots", np.repeat(slots, LANES))
     record.lines, record.size = len(lines), function.nnz_out()
@@ -256,7 +267,8 @@ def surface_record(function: ca.Function) -> Held:
     return held
 
 
-def _give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray) -> None:
+def give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray) -> None:
+    """Have the record of a function point at its arguments and its result."""
     record = held.record
     for number, array in enumerate(arguments):
         held.keep(array)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from cosserat_casadi.motion.contact_forces import Follower, Touches
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.rubbing_step import RubbingStep, along_tangents
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
 
@@ -27,9 +28,11 @@ class MotionContact:
         obstacle: name of the obstacle.
         owner: name of the rod, or of the body, that touches.
         at: abscissa X of the section; 0 of a body.
-        force: on the rod, world axes, shape (3,), N.
+        force: on the rod along the normal of the obstacle, world axes, shape (3,), N.
         lies: whether it is one of the sections of a rod that lies; else the section where the gap is least, or an end.
         of_body: whether it is a body that touches.
+        friction: on the rod along the surface, world axes, shape (3,), N; None without friction.
+        slips: whether it slips, as all does without friction; else it sticks.
     """
 
     obstacle: str
@@ -38,6 +41,8 @@ class MotionContact:
     force: FloatArray
     lies: bool = False
     of_body: bool = False
+    friction: FloatArray | None = None
+    slips: bool = True
 
 
 class Inside(NamedTuple):
@@ -98,17 +103,23 @@ class ContactRecord:
         """
         if not self._begins:
             return ()
-        stretch, touches = self._begins[number]
+        stretch, touches, step = self._begins[number]
         follower = Follower(self._facings, touches)
-        size = self.model.size
+        size, count = self.model.size, len(touches)
         places, gaps = follower.gaps(instant.x[:size], stretch.piece.at(instant.time).value)
+        forces = instant.x[size : size + count]
         found = []
-        for touch, place, gap, force in zip(touches, places, gaps, instant.x[size:], strict=True):
+        for k, (touch, place, gap, force) in enumerate(zip(touches, places, gaps, forces, strict=True)):
             facing = self._facings[touch.facing]
             total = force * facing.force_unit * gap.normal
             at = min(max(place, 0.0), 1.0)
             lies = touch.facing in stretch.laid
-            found.append(MotionContact(facing.obstacle.name, facing.owner, at, total, lies, facing.of_body))
+            contact = MotionContact(facing.obstacle.name, facing.owner, at, total, lies, facing.of_body)
+            if isinstance(step, RubbingStep):
+                along = facing.force_unit * instant.x[size + count :].reshape(-1, 2)[k]
+                friction = along_tangents(gap.normal, step.axes[k], along)
+                contact = replace(contact, friction=friction, slips=step.slips[k])
+            found.append(contact)
         return tuple(found)
 
     def powers(self, stages: Sequence[Instant]) -> FloatArray:
@@ -120,7 +131,7 @@ class ContactRecord:
         by_step = len(stages) // max(1, len(self._begins))
         size = self.model.size
         for number, instant in enumerate(stages):
-            stretch, touches = self._begins[number // by_step]
+            stretch, touches, _ = self._begins[number // by_step]
             inputs = stretch.piece.at(instant.time)
             if not touches or not np.any(inputs.rate):
                 continue
@@ -128,7 +139,8 @@ class ContactRecord:
             x = unknowns[:size]
             follower = Follower(self._facings, touches)
             _, gaps = follower.gaps(x, inputs.value)
-            for facing, gap, force in zip(follower.facings, gaps, unknowns[size:], strict=True):
+            forces = unknowns[size : size + len(touches)]
+            for facing, gap, force in zip(follower.facings, gaps, forces, strict=True):
                 powers[number] -= (
                     force * facing.energy_unit * float(facing.by_inputs(x, inputs.value, gap) @ inputs.rate)
                 )
@@ -147,8 +159,8 @@ class ContactRecord:
         return facings(self.model)
 
     @cached_property
-    def _begins(self) -> list[tuple[Stretch, Touches]]:
-        """The stretch of each step, and what touches where the step begins."""
+    def _begins(self) -> list[tuple[Stretch, Touches, TimeStep]]:
+        """The stretch of each step, what touches where the step begins, and the step."""
         size = self.model.size
         begins = []
         for stretch in self.stretches:
@@ -158,5 +170,5 @@ class ContactRecord:
                 followed = follower.follow(start.x[:size], stretch.piece.at(start.time).value)
                 both = zip(stretch.touches, followed.places, strict=True)
                 touches = [touch._replace(place=place) for touch, place in both]
-                begins.append((stretch, tuple(touches)))
+                begins.append((stretch, tuple(touches), step))
         return begins

@@ -70,7 +70,6 @@ class RodFacing(Facing):
         held.share("ends", np.array(self.ends))
         held.share("to_coefficients", np.ascontiguousarray(self.to_coefficients))
         held.share("looks", np.ascontiguousarray(self.looks))
-        held.share("gaps_along", np.zeros(LOOKS * record.elements + 1))
 
     @cached_property
     def _grid(self) -> Grid:

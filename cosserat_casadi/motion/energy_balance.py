@@ -14,6 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import EnergyAccount
 from cosserat_casadi.motion.history import History, Leg
+from cosserat_casadi.motion.rubbing_step import RubbingStep
 from cosserat_casadi.motion.trajectory import Energies
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import TimeStep
@@ -109,6 +110,9 @@ def _integrals(
         put_in = put_in + history.contacts.powers([instant for _, instant in places])
     powers = np.tile(np.stack([dissipated[0], put_in]), (1, count // len(places)))
     by_step = powers.reshape(2, len(history.steps), stages)
+    for number, (_, step) in enumerate(history.steps):
+        if isinstance(step, RubbingStep):
+            by_step[:, number] += step.power, step.put_in
     return _up_to(history, times, by_step, np.array([account.dissipated, account.work]))
 
 

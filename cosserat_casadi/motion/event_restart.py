@@ -32,6 +32,7 @@ class ContactEvent:
 
     Attributes:
         kind: "impact", "lift_off", "slide_to_end", "slide_from_end", "slide_over_joint", "lie_down" or "laid_down";
+            with friction "stick" or "slip";
             of a cable "taut" or "slack", of a joint "stop_hit" or "stop_left".
         time: s.
         owner: name of the rod, or of the body, that touches; or of the cable or the joint.

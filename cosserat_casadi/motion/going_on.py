@@ -7,6 +7,7 @@ steps stay as they were.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
+from cosserat_casadi.motion.contact_checks import refuse_going_on
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     UNKNOWN_ORDER,
@@ -99,6 +101,7 @@ def go_on(
     """
     given = subject.at() if isinstance(subject, Model) else None
     scene = given.scene if given is not None else _moving(subject, simulation)
+    refuse_going_on(scene)
     asked = simulation or scene.simulation
     first = checkpoint.strands[0]
     model = _model_of(scene, given, first, checkpoint)
@@ -152,7 +155,8 @@ def go_on(
     # An error that is not known makes that of the whole unknown.
     total = float(np.maximum(error, checkpoint.error))
     bound = bound_of(scene, asked, tolerance_of(model, asked))
-    return judged(simulator, history, total, bound, companions)
+    motion = judged(simulator, history, total, bound, companions)
+    return motion if given is None else replace(motion, tolerance=None)
 
 
 def _factor_after_impacts(first: Strand, strand: Strand, history: History, told: History) -> float:

@@ -29,6 +29,7 @@ from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall
 from cosserat_casadi.motion.sided_contacts import SidedContacts
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
+from cosserat_casadi.motion.step_words import CONSISTENT
 from cosserat_casadi.motion.time_between_events import time_between_events
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -38,9 +39,6 @@ from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle,
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
 from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
 from cosserat_casadi.numerics.time_steps import integrate
-
-CONSISTENT = 1e-8
-"""Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
 
 DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
@@ -501,7 +499,7 @@ def integrated(
             phases_now = restart.phases
             if not legs and resume is None and begun is None:
                 sags = sags_by_cable(model, at.x, piece.at(at.time).value, p) if flight.coordinates is None else {}
-                _check_start(model, piece, restart, sags, pieces[-1].end)
+                check_start(model, piece, restart, sags, pieces[-1].end)
             equations, guards = switching.arranged(plain, piece, phases_now)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
@@ -627,7 +625,7 @@ def _lengths_of_free_rods(model: Model) -> list[str]:
     return [f"{rod.name}.length" for rod in model.scene.rods if rod.base.free]
 
 
-def _check_start(
+def check_start(
     model: Model, piece: Piece, restart: Restart[object], sags: Mapping[str, float], duration: float
 ) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.

@@ -39,6 +39,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_residual,
 )
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
+from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.motion.tip_paths import function_of_paths
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import STAGES
@@ -357,6 +358,9 @@ def _residual(model: Model) -> list[ca.Function]:
     beside = [function_of_paths(model), function_of_displacements(model), *functions_of_flight(model)]
     for points in touching_points(model):
         beside += points.in_iterations
+    if model.scene.rubs_exactly:
+        beside += [points.velocities for points in touching_points(model)]
+        beside += functions_of_sliding(model)
     # With parameters no motion is computed, and rows have no parameters.
     rows = [] if model.parameters.size else [*functions_of_limits(model), *functions_of_closing(model)]
     return [residual, *beside, *rows]

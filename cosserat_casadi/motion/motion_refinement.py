@@ -24,6 +24,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.contact_checks import refuse_going_on
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     REST,
@@ -413,6 +414,7 @@ def simulate(
         return simulated(start, simulation, progress)
     refuse_tubes(subject)
     scene = subject.scene if isinstance(subject, Model) else subject
+    refuse_going_on(scene)
     whole = simulation or scene.simulation
     if whole is None:
         return simulated(start, simulation, progress)
@@ -476,7 +478,11 @@ def _with_fixed(search: _Search) -> Motion:
     space_error = float("inf")
     if witness.start.found:
         # Its steps are controlled in any case: those of the user may be too long for more modes.
-        history = witness.controlled(_step_tolerance(search, timed))
+        history = (
+            witness.stepped(timed.history.statistics.largest_step)
+            if scene.rubs_exactly
+            else witness.controlled(_step_tolerance(search, timed))
+        )
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         # After impacts, and with waves, errors fall as slowly with the modes as in a search.
@@ -667,7 +673,7 @@ def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[Histor
 
     The first level settles the size of given steps, or how exact the steps are to be.
     """
-    given = search.simulation.step is not None or search.simulation.integrator == "gauss"
+    given = search.simulation.step is not None or simulator.has_equal_steps
     if not search.levels and given:
         timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
         search.time_error = timed.error
@@ -725,6 +731,8 @@ def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
 def _timed(search: _Search) -> TimedHistory:
     """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
     level = search.last
+    if search.scene.rubs_exactly and search.simulation.step is None:
+        return level.simulator.halved(_allowed(search, level.history), level.history)
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
     allowed = partial(_allowed, search)

@@ -57,6 +57,14 @@ class MovingPoints:
         ]
 
     @property
+    def velocities(self) -> ca.Function:
+        """Velocities of the points, of (x, inputs, v, rate), which steps of given length ask for."""
+        x, inputs, _ = self._symbols
+        v, rate = ca.MX.sym("v", x.shape[0]), ca.MX.sym("rate", inputs.shape[0])
+        moved = ca.jtimes(self._written[0], x, v) + ca.jtimes(self._written[0], inputs, rate)
+        return ca.Function(f"{self._name}_velocities", [x, inputs, v, rate], [ca.densify(moved)])
+
+    @property
     def in_derivatives(self) -> list[ca.Function]:
         """Derivatives of the positions, and second derivatives of their weighted sum, column after column."""
         positions, _, gradient = self._written
@@ -89,16 +97,14 @@ class MovingPoints:
         """
         positions, gradient = self.in_iterations
         _, hessian = self.in_derivatives
-        x, inputs, _ = self._symbols
-        written, total, by_x = self._written
-        v, rate = ca.MX.sym("v", x.shape[0]), ca.MX.sym("rate", inputs.shape[0])
-        moved = ca.jtimes(written, x, v) + ca.jtimes(written, inputs, rate)
         functions = {
             "positions": positions,
-            "velocities": ca.Function("velocities", [x, inputs, v, rate], [ca.densify(moved)]),
+            "velocities": self.velocities,
             "gradient": gradient,
             "hessian": hessian,
         }
+        written, total, by_x = self._written
+        _, inputs, _ = self._symbols
         if ca.jacobian_sparsity(written, inputs).nnz():
             results = [ca.densify(ca.gradient(total, inputs)), ca.densify(ca.jacobian(by_x, inputs))]
             functions["by_inputs"] = ca.Function("by_inputs", self._symbols, results)

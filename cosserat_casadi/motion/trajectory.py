@@ -124,7 +124,7 @@ class Energies:
         kinetic: of rods and bodies.
         elastic: of the rods.
         potential: of dead forces, gravity and smooth contact.
-        dissipated: by the damping of rods and of smooth contact since the start.
+        dissipated: by the damping of rods and of smooth contact, and by friction, since the start.
         work: done since the start by all other loads, by actuators, and by moving bases and lengths.
         impacts: lost since the start where cables snapped taut, joints met stops or rods obstacles without a width.
         imbalance: error of the balance of the other six, relative to the largest energy; without unit.
@@ -188,6 +188,8 @@ class Motion(Result):
         account: gives the energies and the end, which few ask for and which take their time.
         impacts_spread: by how much the energy that impacts took since the motion began is another on the other modes
             and with the other steps that told the error, J; nan where there were no others.
+        tolerance: error of the paths that was asked for, relative to the rods' lengths; None where none was, and where
+            the error is of the time steps alone.
     """
 
     model: Model
@@ -207,6 +209,7 @@ class Motion(Result):
     contacts: tuple[tuple[MotionContact, ...], ...] = ()
     events: tuple[ContactEvent, ...] = ()
     impacts_spread: float = float("nan")
+    tolerance: float | None = None
 
     @property
     def energy(self) -> Energies:
@@ -226,6 +229,17 @@ class Motion(Result):
     def converged(self) -> bool:
         """Whether the motion was computed to its end, as asked."""
         return self.outcome is MotionOutcome.COMPLETED
+
+    @property
+    def within_tolerance(self) -> bool | None:
+        """Whether the estimated error is within the tolerance; None where no tolerance has a meaning.
+
+        What did not converge is not within any tolerance.
+        """
+        if self.tolerance is None:
+            return None
+        # Written so that an estimate which is not a number counts as too large.
+        return self.converged and self.error_estimate <= self.tolerance
 
     def tip(self, rod: str | None = None) -> Poses:
         """Poses of a rod's tip, shapes (T, 3) and (T, 4); the name may be left out where there is one rod.

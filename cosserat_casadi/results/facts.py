@@ -165,7 +165,7 @@ def motion_facts(motion: Motion) -> Titled:
     if scene.has_contact:
         facts.append(("events", str(len(motion.events))))
     facts += _rubbing(motion, len(motion.times))
-    facts.append(("error", _error(motion.error_estimate, scene.motion_tolerance)))
+    facts.append(("error", _error(motion.error_estimate, motion.tolerance)))
     return scene.title, facts
 
 

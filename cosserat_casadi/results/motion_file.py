@@ -142,6 +142,11 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         return entry | rubbing_entries(motion, len(motion.times))
     numbered = [(row, contact) for row, contacts in enumerate(motion.contacts) for contact in contacts]
     contacts = [contact for _, contact in numbered]
+    friction = {}
+    if motion.model.scene.rubs_exactly:
+        forces = [np.zeros(3) if contact.friction is None else contact.friction for contact in contacts]
+        slips = np.array([contact.slips for contact in contacts], dtype=bool)
+        friction = {"friction": np.array(forces).reshape(-1, 3), "slips": slips}
     return {
         "kind": "exact",
         "row": np.array([row for row, _ in numbered], dtype=int),
@@ -151,6 +156,7 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
         "lies": np.array([contact.lies for contact in contacts], dtype=bool),
+        **friction,
         "events": _events_entry(motion),
     }
 
@@ -169,6 +175,7 @@ def _head(motion: Motion) -> dict[str, Any]:
         "message": motion.message,
         "warnings": list(motion.warnings),
         "error_estimate": motion.error_estimate,
+        "within_tolerance": motion.within_tolerance,
         "start": motion.start,
         "steps": motion.statistics.steps,
         "statistics": asdict(motion.statistics),

@@ -127,8 +127,7 @@ class ObstacleRecord(Entry):
     friction: Coefficients = Field(
         0.0,
         description="coefficient μ of Coulomb's friction, without unit, or a table of coefficients along "
-        "a rod, back and "
-        "across it: with width in motion and along paths, without in exported steps of motions",
+        "a rod, back and across it: with width in motion and along paths, without in motion alone",
     )
     slip_speed: Positive = Field(
         1e-3,

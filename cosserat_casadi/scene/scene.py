@@ -241,7 +241,7 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def rubs_exactly(self) -> bool:
-        """Whether there is friction of exact contact, which acts in steps of motions in C."""
+        """Whether there is friction of exact contact, which acts in motion."""
         return any(obstacle.rubs and not obstacle.is_smooth for obstacle in self.obstacles)
 
     def in_proportion(self) -> Scene:

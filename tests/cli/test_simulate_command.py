@@ -108,6 +108,17 @@ def test_all_files_are_written_and_the_report_is_in_words(
         assert words in shown
 
 
+def test_an_error_above_the_tolerance_is_told(
+    folder: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    def coarse(scene: Scene, **options: Any) -> Motion:
+        return replace(swing(scene, **options), tolerance=1e-5)
+
+    assert command("wire.toml", "--output", "m.json", simulate=coarse) == 0
+    assert json.loads((folder / "m.json").read_text())["within_tolerance"] is False
+    assert "3.0e-05 of the length, above the tolerance of 1e-05" in " ".join(capsys.readouterr().out.split())
+
+
 def test_moving_meshes_are_written_at_a_speed(folder: Path, command: Callable[..., int]) -> None:
     assert command("wire.toml", "--animation", "m.usda", "--speed", "0.5") == 0
     assert new_files(folder) == ["m.usda"]

@@ -81,6 +81,7 @@ TOUCH = {"rods": ["rod", "other"], "width": 4e-3}
 CONTACTS: dict[str, dict[str, Any]] = {
     "exact, rods": {"obstacles": [FLOOR]},
     "exact, bodies": {"obstacles": [FLOOR | {"bodies": ["head"]}], **HEAD},
+    "exact with friction": {"obstacles": [FLOOR | {"friction": 0.3}]},
     "smooth": {"obstacles": [FLOOR | {"width": 8e-3}]},
     "smooth with friction": {"obstacles": [FLOOR | {"width": 8e-3, "friction": 0.3}]},
     "rods on rods": {"rods": [rod(), BELOW], "rod_contacts": [TOUCH]},

@@ -94,6 +94,30 @@ def test_dense_output_is_smooth_and_satisfies_the_equations() -> None:
         assert_allclose(residual, 0.0, rtol=0, atol=2e-3)
 
 
+@pytest.mark.parametrize(
+    ("accuracy", "tolerance", "within"),
+    [
+        ({"modes": 1, "nodes": 4}, 1e-5, False),
+        ({"modes": 1, "nodes": 4}, 0.1, True),
+        ({"modes": 1, "nodes": 4}, None, None),
+        ({"modes": 1, "nodes": 4, "tolerance": 1e-5}, None, False),
+    ],
+)
+def test_an_error_is_set_beside_a_tolerance_that_is_written(
+    accuracy: dict[str, Any], tolerance: float | None, within: bool | None
+) -> None:
+    simulation = {"duration": 0.02, "start": "unloaded"}
+    if tolerance is not None:
+        simulation["tolerance"] = tolerance
+    tables = falling(accuracy=accuracy, simulation=simulation)
+    motion = simulate(scene_from_dict(tables))
+    assert motion.converged, motion.message
+    assert 1e-5 < motion.error_estimate < 0.1
+    assert motion.within_tolerance is within
+    # A model has its modes, whose error no motion tells.
+    assert simulated(tables).within_tolerance is None
+
+
 def test_a_model_moves_as_its_scene_does() -> None:
     """On fixed modes both front doors give one motion, to the tolerance of the steps."""
     scene = falling()

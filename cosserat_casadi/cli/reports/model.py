@@ -36,7 +36,7 @@ TURNED = 1e-6
 """Angle between two orientations, rad, below which they count as one orientation."""
 
 
-def error_words(error: float, within: bool | None, tolerance: float) -> str:
+def error_words(error: float, within: bool | None, tolerance: float | None) -> str:
     """An estimated error with markup: beside the tolerance, told apart above it; alone where none has a meaning."""
     words = "not known" if error == UNKNOWN else f"{error:.1e} of the length"
     if within is None:

@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import print_outcome, print_written, table_of
+from cosserat_casadi.cli.reports.model import error_words
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.motion.vibration_modes import Mode, Modes
 from cosserat_casadi.results.facts import digits
@@ -19,11 +20,12 @@ from cosserat_casadi.spelling import counted
 
 def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> None:
     """Print the outcome, where rods and bodies end, the figures of merit, and the files that were written."""
-    print_outcome(console, motion.model.scene.title, motion.message, good=motion.converged)
+    missed = motion.within_tolerance is False
+    print_outcome(console, motion.model.scene.title, motion.message, good=motion.converged, doubtful=missed)
     if len(motion.times):
         console.print(_end_table(motion))
     for sentence in _merit_sentences(motion):
-        console.print(escape(sentence))
+        console.print(sentence)
     print_written(console, written)
 
 
@@ -53,15 +55,16 @@ OF_PAIRS = {"cables: taut": ("taut", "slack"), "joints: at a stop": ("stop_hit",
 
 
 def _merit_sentences(motion: Motion) -> Iterator[str]:
-    """The steps of the motion, its accuracy, and its discretisation."""
+    """The steps of the motion, its accuracy, and its discretisation, with markup."""
     # Why there was no start is told by the outcome.
     if motion.start and motion.start not in motion.message:
-        yield f"start: {motion.start}"
+        yield escape(f"start: {motion.start}")
     yield f"steps: {_step_words(motion)}"
     if np.isfinite(motion.error_estimate):
         longest = max(rod.properties.length for rod in motion.model.discrete.rods.values())
         metres = motion.error_estimate * longest
-        yield f"estimated error of the paths: {metres:.1e} m, {motion.error_estimate:.1e} of the length"
+        error = error_words(motion.error_estimate, motion.within_tolerance, motion.tolerance)
+        yield f"estimated error of the paths: {metres:.1e} m, {error}"
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
@@ -73,7 +76,7 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
             yield f"{words} {counted(len(hits), 'time')}, which took {taken}"
     if any(all(event.kind not in kinds for kinds in OF_PAIRS.values()) for event in motion.events):
         yield f"contact: {_contact_words(motion)}"
-    yield "; ".join(motion.model.resolution_words)
+    yield escape("; ".join(motion.model.resolution_words))
 
 
 def _contact_words(motion: Motion) -> str:

@@ -10,7 +10,6 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.codegen.block_sources import Words
-from cosserat_casadi.codegen.contact.rubbing import SurfaceSliding
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
 from cosserat_casadi.compiling.texts import render
@@ -19,9 +18,10 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_law import LOOKS
+from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
 from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing, facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
+from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
 CONTACT_FILES = (
     "contact_gaps.c",
@@ -36,17 +36,8 @@ CONTACT_FILES = (
 FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
 """Files of the folder ``c`` that such a library includes where something rubs."""
 
-MOST_TOUCHES = 64
-"""Sections that may touch at once, at most; of more a step says that it was not solved."""
-
 FEWEST_TOUCHES = 8
 """Sections of a rod that slide on an obstacle, at most."""
-
-STRIDE = 0.25
-"""Longest way between two looks, over the radius of an obstacle and the rod: what passes deeper than 1/128 is seen."""
-
-FAR = 1e30
-"""Way, m, that nothing goes in a step: no obstacle is passed in it."""
 
 
 def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
@@ -242,7 +233,7 @@ def _rod_fields(facing: RodFacing, number: int) -> dict[str, object]:
         "laid_count": len(facing.laid_at),
         "radius_at_base": _real(base),
         "radius_at_tip": _real(tip),
-        "stride": _stride(facing, min(base, tip)),
+        "stride": _real(facing.stride),
     }
 
 
@@ -253,12 +244,8 @@ def _ball_fields(facing: BodyFacing) -> dict[str, object]:
         "nodes": 1,
         "radius_at_base": _real(radius),
         "radius_at_tip": _real(radius),
-        "stride": _stride(facing, radius),
+        "stride": _real(facing.stride),
     }
-
-
-def _stride(facing: Facing, radius: float) -> str:
-    return _real(min(FAR, STRIDE * (float(facing.obstacle.thickness) / 2.0 + radius)))
 
 
 def _real(value: float) -> str:

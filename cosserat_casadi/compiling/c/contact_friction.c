@@ -36,10 +36,11 @@ static const real BEYOND_TURN = (real)1e-6;
 static const real LEAST_OF_A_TURN = (real)1e-4;
 
 /* The search for such an end: size of a stretch in which something turned, 0 before there is one; whether the size at hand
-   is such that it just does. */
+   is such that it just does; how often it was looked for. */
 typedef struct {
   real turned_after;
   int is_aimed;
+  int looks;
 } turn_search;
 
 enum {
@@ -47,12 +48,17 @@ enum {
   LAW_TURNS = 60,   /* iterations of the law */
   RELUCTANT = 60,   /* laws with drags that leave those at hand reluctantly, one after the other */
   HALVINGS = 8,     /* of a step of these */
-  TURNS = 6,        /* looks for the end of a stretch at which something comes to rest */
+  TURNS = SETS,     /* tries of a stretch after which the end at which something comes to rest is asked for */
+  LOOKS_FOR_A_TURN = 6,
   FAINTER = 8       /* halvings of the restitution of a blow that would give energy */
 };
 
 static real inner_of_two(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1]; }
 
+#ifdef STRETCHES_ARE_TOLD
+static void tell_blow(real taken, const workspace *work);
+static void tell_stretch(const step_start *start, workspace *work);
+#endif
 static void respond_to(const real *row, const stage_factors *factors, real *response, workspace *work);
 static real wanted_of(int k, real still, const workspace *work);
 
@@ -483,7 +489,7 @@ static real stops_after(const real shares[STAGES], real most) {
 /* By how much the size of a stretch that was solved is to change so that it ends where a section comes to rest or turns
    back, which is where the law changes: 1 where nothing does, or where it ends there. First it is made shorter until all
    slides on, then it is as long as that motion lasts, and no longer than the rest of the step. */
-static real to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
+static real size_to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
   int turned = 0;
   real shorter = MOST_OF_A_TURN, stops = search->turned_after / start->size;
   for (int k = 0; k < work->touch_count; k++) {
@@ -506,6 +512,15 @@ static real to_the_turn(const step_start *start, real whole, real rest, turn_sea
   if (search->is_aimed || start->size * shorter < LEAST_OF_A_TURN * whole) return 1;
   search->turned_after = start->size;
   return shorter;
+}
+
+/* The same, looked for so many times. A stretch that is not to change is taken. */
+static real to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
+  const real share = search->looks++ < LOOKS_FOR_A_TURN ? size_to_the_turn(start, whole, rest, search, work) : 1;
+#ifdef STRETCHES_ARE_TOLD
+  if (share == 1) tell_stretch(start, work);
+#endif
+  return share;
 }
 
 /* ---- In blows ---- */
@@ -558,8 +573,8 @@ static int settle_blow(const real *wanted, real still, workspace *work) {
   return 0;
 }
 
-/* Whether the impulses of a blow give energy, more than rounding: their work is that on the mean velocity. */
-static int gives_energy(const workspace *work) {
+/* Energy that the impulses of a blow give, their work on the mean velocity, J; 0 where it is rounding. */
+static real energy_given(const workspace *work) {
   const int all = ROWS * work->touch_count;
   real sum = 0, terms = 0;
   for (int i = 0; i < all; i++) {
@@ -571,7 +586,7 @@ static int gives_energy(const workspace *work) {
     sum += push * (before + change / 2);
     terms += ABSOLUTE(push * before) + ABSOLUTE(push * change);
   }
-  return sum > LAW_HOLDS * terms;
+  return ABSOLUTE(sum) > LAW_HOLDS * terms ? sum : 0;
 }
 
 /* A blow with friction: Newton's law of impact along normals, Coulomb's along tangents, of velocities after it. With friction
@@ -595,9 +610,12 @@ static int strike_with_friction(instant *at, real still, const stage_factors *fa
   for (int fainter = 0; fainter <= FAINTER + 1; fainter++) {
     for (int k = 0; k < count; k++) work->wanted[k] = share * wanted_of(k, still, work) + (1 - share) * work->rates[k];
     if (!settle_blow(work->wanted, still, work)) return 0;
-    if (!gives_energy(work) || share == 0) break;
+    if (!(energy_given(work) > 0) || share == 0) break;
     share = fainter < FAINTER ? share / 2 : 0;
   }
+#ifdef STRETCHES_ARE_TOLD
+  tell_blow(-energy_given(work), work);
+#endif
   for (int j = 0; j < all; j++) {
     const real *response = response_of(j / ROWS, j % ROWS, work);
     for (int i = 0; i < N; i++) v[i] += work->blow[j] * response[i];

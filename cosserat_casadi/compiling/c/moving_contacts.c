@@ -15,27 +15,7 @@ typedef double real;
 #define ABSOLUTE fabs
 #define SQUARE_ROOT sqrt
 
-/* A function in machine code, as CasADi calls it. */
-typedef int (*casadi_kernel)(const real **arguments, real **results, long long *integers, real *scratch, int memory);
-
-/* A function of the model; cosserat_casadi/motion/contact_law.py has the same record. Its arguments and its result, in this
-   memory, are those of the last call. */
-typedef struct {
-  int counts[KERNEL_ARGUMENTS]; /* of numbers */
-  real *arguments[KERNEL_ARGUMENTS];
-  real *result;
-  casadi_kernel code; /* null where there is none */
-  const real **code_arguments;
-  real **code_results;
-  long long *integers;
-  real *scratch;
-  const int *program; /* on slots of four lanes; null where there is none */
-  real *slots;
-  int lines;
-  int size; /* of the result of the program */
-  void (*run)(const int *program, int lines, real *slots);
-  int (*evaluate)(void); /* in Python; not zero where it was interrupted */
-} kernel;
+#include "python_kernels.c"
 
 /* The nodes of a rod, or the origin of a body. */
 typedef struct {
@@ -95,24 +75,6 @@ static int all_finite(const real *a, int count) {
   real sum = 0;
   for (int i = 0; i < count; i++) sum += a[i] * 0;
   return sum == 0;
-}
-
-/* Zero where Python has raised something: no value counts then. */
-static int call(kernel *function) {
-  if (function->code) {
-    function->code(function->code_arguments, function->code_results, function->integers, function->scratch, 0);
-  } else if (function->program) {
-    real *slot = function->slots;
-    for (int k = 0; k < KERNEL_ARGUMENTS; k++) {
-      const real *values = function->arguments[k];
-      for (int i = 0; i < function->counts[k]; i++, slot += 4) slot[0] = slot[1] = slot[2] = slot[3] = values[i];
-    }
-    function->run(function->program, function->lines, function->slots);
-    for (int i = 0; i < function->size; i++) function->result[i] = slot[4 * i];
-  } else {
-    return !function->evaluate();
-  }
-  return 1;
 }
 
 /* Writes an argument; whether it is another one than that of the last call. */

@@ -1,8 +1,8 @@
-"""Functions of what rubs in exact contact, for steps in C: how the point that touches slides along the surface.
+"""Functions for friction of exact contact in motion: how a touching point slides along the surface of an obstacle.
 
-A section of the radius ρ touches at −ρ n from its centre, n the normal of the obstacle, and that point of its material
-has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes;
-forces act by the transpose of the same derivatives, so that what friction takes is force times velocity to rounding.
+A section with the centre c and the radius ρ touches at c − ρ n, with n the normal of the obstacle. This material point
+has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes. Forces
+act by the transpose of the derivatives of sliding, so friction takes force times velocity, to rounding.
 """
 
 from __future__ import annotations
@@ -16,26 +16,28 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.contact_layer import STANDING
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.contact_gap import Facing
+from cosserat_casadi.motion.contact_sections import facings
 
 
 @dataclass(frozen=True)
 class SurfaceSliding:
-    """The velocity along the surface of a rod or a body before an obstacle, as functions of unknowns and rates.
+    """The velocity of a rod or a body along the surface of an obstacle, as functions of unknowns and rates.
 
     Attributes:
-        facing: the two.
+        facing: the pair of the rod or body and the obstacle.
     """
 
     facing: Facing
 
     @cached_property
     def _symbols(self) -> list[ca.MX]:
-        """Unknowns, inputs, their rates, the section, and an axis.
+        """Unknowns, n×1; inputs, k×1; rates of both, 1/s; the section, (M + 1)×1; an axis, 3×1.
 
-        The section is given by the weights of the nodes and by its abscissa behind them. The axis, 3×1, tells which two
-        tangents of the surface are taken: the first is its part along the surface.
+        The section consists of the weights of the M nodes and, behind them, its abscissa X. The axis sets the first
+        tangent of the surface: its part along the surface, normalised.
         """
         model = self.facing.model
         size, count = model.size, model.inputs.size
@@ -50,10 +52,10 @@ class SurfaceSliding:
         return [ca.MX.sym(name, rows) for name, rows in sizes.items()]
 
     def _sliding(self, section: Matrix) -> tuple[Matrix, Matrix]:
-        """Velocity along both tangents, in lengths per second, and the direction of the rod along them, 2×1 each.
+        """Velocity along both tangents, in lengths per second, and parts of the rod's direction along them, 2×1 each.
 
         Args:
-            section: weights and abscissa.
+            section: weights of the nodes, then the abscissa X, (M + 1)×1.
         """
         x, inputs, v, rate, _, axis = self._symbols
         facing = self.facing
@@ -70,22 +72,22 @@ class SurfaceSliding:
         first = first / ca.sqrt(ca.sumsqr(first))
         tangents = ca.horzcat(first, ca.cross(normal, first))
         along = tangents.T @ rotation[:, 2]
-        # A rod that stands on the surface slides in no direction of its own.
+        # A rod that stands upright on the surface has no direction along it.
         return tangents.T @ velocity / facing.length, along / ca.sqrt(ca.sumsqr(along) + STANDING**2)
 
     @cached_property
     def function(self) -> ca.Function:
-        """(x, inputs, v, rate, section, axis) ↦ sliding, its derivative with v, row after row, and the direction."""
+        """(x, inputs, v, rate, section, axis) ↦ velocity, 2×1; gradients by v, n×2; direction of the rod, 2×1."""
         sliding, along = self._sliding(self._symbols[4])
         by_v = ca.jacobian(sliding, self._symbols[2]).T
         return ca.Function("rubbing", self._symbols, [ca.densify(part) for part in (sliding, by_v, along)])
 
     @cached_property
     def derivatives(self) -> ca.Function:
-        """(…, axis, change of the section with X, force along the tangents) ↦ derivatives by x, by X and by inputs.
+        """(…, axis, change of the section with X, force along both tangents) ↦ derivatives by x, X, inputs and rates.
 
-        The first arguments are those of :attr:`function`. First stand derivatives of sliding, of the direction, and of
-        the force on the unknowns, 4 + n rows; then derivatives of sliding by the rates.
+        The first arguments are those of :attr:`function`. Derivatives by x, X and inputs have 4 + n rows: of the
+        velocity, the direction and the generalised force. Those by the rates of the inputs are of the velocity, 2×k.
         """
         x, inputs, v, rate, section, _ = self._symbols
         change, force, shift = ca.MX.sym("change", section.shape[0]), ca.MX.sym("force", 2), ca.MX.sym("shift")
@@ -98,18 +100,18 @@ class SurfaceSliding:
 
     @property
     def moving(self) -> list[int]:
-        """Numbers of the unknowns whose rates move what touches."""
+        """Indices of the unknowns whose rates move the touching point along the surface."""
         return sorted(set(ca.jacobian_sparsity(self.function(*self._symbols)[0], self._symbols[2]).get_col()))
 
 
 def _rate(quantity: Matrix, moved: list[tuple[ca.MX, ca.MX]]) -> Matrix:
-    """Rate of a quantity of arguments that have rates."""
+    """Rate of a quantity, stacked in one column, from pairs of an argument and its rate."""
     stacked = ca.vec(quantity)
     return sum((ca.jtimes(stacked, argument, rate) for argument, rate in moved), ca.MX(stacked.shape[0], 1))
 
 
 def _pose(facing: Facing, system: System, weights: Matrix) -> tuple[Matrix, Matrix]:
-    """Centre, 3×1, and rotation, 3×3, of a section of a rod, or of a body, in the world."""
+    """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the world."""
     if facing.of_body:
         pose = system.body(facing.owner)
         return ca.MX(pose.position), ca.MX(pose.rotation)
@@ -117,3 +119,14 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> tuple[Matrix, Matr
     world = quaternion_to_matrix(base.quaternion)
     directors = [world @ (director @ weights) for director in shape.directors]
     return base.position + world @ (shape.position @ weights), ca.horzcat(*directors)
+
+
+def functions_of_sliding(model: Model) -> list[ca.Function]:
+    """Functions of all pairs that may touch: :attr:`SurfaceSliding.function` with its results in one column."""
+    found = []
+    for number, facing in enumerate(facings(model)):
+        function = SurfaceSliding(facing).function
+        arguments = function.mx_in()
+        results = [ca.vec(result) for result in function.call(arguments)]
+        found.append(ca.Function(f"rubbing_{number}", arguments, [ca.vertcat(*results)]))
+    return found

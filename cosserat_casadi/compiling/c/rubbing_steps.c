@@ -1,0 +1,428 @@
+/* Steps of a simulated motion with friction of exact contact. Exported libraries have the same steps: step.c with
+   contact_steps.c and contact_friction.c. Functions and tables of the model come from Python,
+   cosserat_casadi/motion/rubbing_library.py, so one library serves all models of a size. A step is a sequence of
+   stretches, cut at blows and where sliding stops or turns back; each stretch is written for Python. One motion steps at
+   a time. */
+
+/* Low optimisation: the user waits for this compilation, and most time of a step goes into functions of the model. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O1", "tree-loop-vectorize", "tree-slp-vectorize", "vect-cost-model=dynamic")
+#endif
+
+#define STEPS_IN_CONTACT
+#define CONTACT_RUBS
+#define STRETCHES_ARE_TOLD
+
+#include "rubbing_steps.h"
+#include "solver.h"
+#include "python_kernels.c"
+
+/* ---- The model ---- */
+
+/* A touching section in a state. section holds the weights of the nodes, then the abscissa X; the part of axis along the
+   surface is the first tangent. */
+typedef struct {
+  const real *x;
+  const real *inputs;
+  const real *v;
+  const real *rate;
+  const real *section;
+  const real *axis;
+} rubbed;
+
+/* Nodes of a rod, or the origin of a body; exported libraries have this type too. */
+typedef struct {
+  int count;
+  void (*positions)(const real *x, const real *inputs, real *positions, workspace *work);
+  void (*velocities)(const real *x, const real *inputs, const real *v, const real *rate, real *velocities, workspace *work);
+  void (*gradient)(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work);
+  void (*hessian)(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work);
+  void (*by_inputs)(const real *x, const real *inputs, const real *weights, real *by_inputs, real *of_gradient,
+                    workspace *work); /* null: only derivatives of steps need it */
+} moving_points;
+
+/* Functions of moving_points, from Python. */
+typedef struct {
+  int count;
+  kernel *positions;
+  kernel *velocities;
+  kernel *gradient;
+  kernel *hessian;
+} point_kernels;
+
+/* A pair of a rod, or the ball of a body, and an obstacle that it may touch. Python writes all members but rubbing. */
+typedef struct {
+  int points;
+  int is_body;
+  int elements;
+  int nodes;
+  int watches_base;
+  int watches_tip;
+  int laid_count;
+  const real *ends;
+  const real *to_coefficients;
+  const real *looks;
+  const real *laid;
+  real length;
+  real force_unit;
+  real radius_at_base;
+  real radius_at_tip;
+  real restitution;
+  real stride;
+  real coefficients[3];
+  kernel *surface;  /* point -> distance, normal, curvature */
+  kernel *distance; /* point -> distance */
+  kernel *slide;    /* null for an obstacle without friction */
+  void (*rubbing)(const rubbed *at, real *sliding, real *by_velocity, real *along, workspace *work);
+} facing;
+
+/* A model, and the stretches of its last step. */
+typedef struct {
+  int points_count;
+  int facing_count;
+  const int *is_shape;
+  const real *displacements;
+  const point_kernels *points;
+  facing *facings;
+  kernel *residual;
+  kernel *matrices; /* stiffness, damping and mass */
+  real deepest;
+  real *told;     /* MOST_TOLD rows of TOLD_ROW numbers */
+  int told_count; /* rows that the last step wrote */
+  int was_raised; /* whether Python raised an exception */
+} model;
+
+static model *AT; /* the model of the present step */
+
+#define FACINGS AT->facing_count
+#define FACING AT->facings
+#define IS_SHAPE AT->is_shape
+#define DISPLACEMENTS AT->displacements
+#define DEEPEST AT->deepest
+
+/* The place behind the last number that was written into the arguments of a function. */
+typedef struct {
+  kernel *function;
+  int argument;
+  int filled;
+} writing;
+
+/* Writes numbers at this place; where an argument is full, they go on in the next one. */
+static void put(writing *to, const real *values, int count) {
+  kernel *own = to->function;
+  while (count > 0) {
+    const int room = own->counts[to->argument] - to->filled;
+    const int most = count < room ? count : room;
+    memcpy(own->arguments[to->argument] + to->filled, values, (size_t)most * sizeof *values);
+    values += most;
+    count -= most;
+    to->filled += most;
+    if (most == room) {
+      to->argument++;
+      to->filled = 0;
+    }
+  }
+}
+
+/* Calls a function whose arguments are written. The result is NaN if Python raised an exception. */
+static const real *result_of(kernel *function, int count) {
+  if (!call(function)) {
+    AT->was_raised = 1;
+    for (int i = 0; i < count; i++) function->result[i] = NAN;
+  }
+  return function->result;
+}
+
+static void answer(kernel *function, const real *x, const real *inputs, const real *third, int third_count,
+                   const real *rate, int count, real *result) {
+  writing to = {function, 0, 0};
+  put(&to, x, N);
+  put(&to, inputs, INPUTS);
+  put(&to, third, third_count);
+  if (rate) put(&to, rate, INPUTS);
+  memcpy(result, result_of(function, count), (size_t)count * sizeof *result);
+}
+
+static void positions_of(int k, const real *x, const real *inputs, real *positions) {
+  const point_kernels *own = AT->points + k;
+  answer(own->positions, x, inputs, 0, 0, 0, 3 * own->count, positions);
+}
+
+static void velocities_of(int k, const real *x, const real *inputs, const real *v, const real *rate, real *velocities) {
+  const point_kernels *own = AT->points + k;
+  answer(own->velocities, x, inputs, v, N, rate, 3 * own->count, velocities);
+}
+
+static void gradient_of(int k, const real *x, const real *inputs, const real *weights, real *by_x) {
+  const point_kernels *own = AT->points + k;
+  answer(own->gradient, x, inputs, weights, 3 * own->count, 0, N, by_x);
+}
+
+static void hessian_of(int k, const real *x, const real *inputs, const real *weights, real *by_x) {
+  const point_kernels *own = AT->points + k;
+  answer(own->hessian, x, inputs, weights, 3 * own->count, 0, N * N, by_x);
+}
+
+static void rubbing_of(int k, const rubbed *at, real *sliding, real *by_velocity, real *along) {
+  const facing *own = FACING + k;
+  writing to = {own->slide, 0, 0};
+  put(&to, at->x, N);
+  put(&to, at->inputs, INPUTS);
+  put(&to, at->v, N);
+  put(&to, at->rate, INPUTS);
+  put(&to, at->section, AT->points[own->points].count + 1);
+  put(&to, at->axis, 3);
+  const real *found = result_of(own->slide, 4 + 2 * N);
+  memcpy(sliding, found, 2 * sizeof *found);
+  memcpy(by_velocity, found + 2, 2 * N * sizeof *found);
+  memcpy(along, found + 2 + 2 * N, 2 * sizeof *found);
+}
+
+/* Functions for tables: each calls one of the functions above with its own number K. */
+#define POINTS_NUMBERED(K)                                                                                              \
+  static void positions_of_##K(const real *x, const real *inputs, real *positions, workspace *work) {                   \
+    (void)work;                                                                                                         \
+    positions_of(K, x, inputs, positions);                                                                              \
+  }                                                                                                                     \
+  static void velocities_of_##K(const real *x, const real *inputs, const real *v, const real *rate, real *velocities,   \
+                                workspace *work) {                                                                      \
+    (void)work;                                                                                                         \
+    velocities_of(K, x, inputs, v, rate, velocities);                                                                   \
+  }                                                                                                                     \
+  static void gradient_of_##K(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work) {    \
+    (void)work;                                                                                                         \
+    gradient_of(K, x, inputs, weights, by_x);                                                                           \
+  }                                                                                                                     \
+  static void hessian_of_##K(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work) {     \
+    (void)work;                                                                                                         \
+    hessian_of(K, x, inputs, weights, by_x);                                                                            \
+  }
+#define FACING_NUMBERED(K)                                                                                              \
+  static void rubbing_of_##K(const rubbed *at, real *sliding, real *by_velocity, real *along, workspace *work) {        \
+    (void)work;                                                                                                         \
+    rubbing_of(K, at, sliding, by_velocity, along);                                                                     \
+  }
+#define POINTS_ENTRY(K) {0, positions_of_##K, velocities_of_##K, gradient_of_##K, hessian_of_##K, 0},
+#define FACING_ENTRY(K) rubbing_of_##K,
+
+#include "rubbing_tables.h"
+
+static void surface_at(const facing *own, const real *point, real *distance, real *normal, real *curvature,
+                       workspace *work) {
+  writing to = {own->surface, 0, 0};
+  (void)work;
+  put(&to, point, 3);
+  const real *found = result_of(own->surface, 13);
+  *distance = found[0];
+  memcpy(normal, found + 1, 3 * sizeof *normal);
+  memcpy(curvature, found + 4, 9 * sizeof *curvature);
+}
+
+static real distance_at(const facing *own, const real *point, workspace *work) {
+  writing to = {own->distance, 0, 0};
+  (void)work;
+  put(&to, point, 3);
+  return *result_of(own->distance, 1);
+}
+
+/* ---- Tables of a step: one dense block, column after column ---- */
+
+#include "motion.h"
+
+static const real TOLERANCE = 0;
+static const real UNITS[N] = {0};
+
+static int NUMBERS[MATRICES * STAGE_ENTRIES + 3 * INPUTS + 3 * N];
+static int ENTRY_ROWS[STAGE_ENTRIES], ENTRY_COLUMNS[STAGE_ENTRIES], NO_FRONTS[STAGE_ENTRIES];
+static const stage_front FRONT = {NUMBERS, 0, N, 0, 0};
+static const elimination BY_FRONTS = {&FRONT, 0, NO_FRONTS, ENTRY_ROWS, ENTRY_COLUMNS, 1, 0, STAGE_ENTRIES};
+#define AS_A_WHOLE BY_FRONTS
+
+static void ask(kernel *function, const real *state, const real *inputs, int count, real *entries) {
+  writing to = {function, 0, 0};
+  put(&to, state, 3 * N);
+  put(&to, inputs, 3 * INPUTS);
+  memcpy(entries, result_of(function, count), (size_t)count * sizeof *entries);
+}
+
+static void residual_of(const real *state, const real *inputs, const real *factor, const real *constants, real *entries,
+                        workspace *work) {
+  (void)factor, (void)constants, (void)work;
+  ask(AT->residual, state, inputs, N, entries);
+}
+
+static void matrices_of(const real *state, const real *inputs, const real *factor, const real *constants, real *entries,
+                        workspace *work) {
+  (void)factor, (void)constants, (void)work;
+  ask(AT->matrices, state, inputs, MATRICES * STAGE_ENTRIES, entries);
+}
+
+static const motion_part MOTION_RESIDUAL_PARTS[] = {{residual_of, NUMBERS, NUMBERS, 0, NUMBERS, 3 * N, 3 * INPUTS, N}};
+static const motion_part MOTION_MATRIX_PARTS[] = {
+    {matrices_of, NUMBERS, NUMBERS, 0, NUMBERS, 3 * N, 3 * INPUTS, MATRICES *STAGE_ENTRIES}};
+#define MOTION_INPUT_PARTS MOTION_MATRIX_PARTS
+enum { MOTION_RESIDUAL_PART_COUNT = 1, MOTION_MATRIX_PART_COUNT = 1, MOTION_INPUT_PART_COUNT = 0 };
+static const int FEELS_ACCELERATION[INPUTS + 1] = {0};
+
+#include "elimination.c"
+#include "contact_gaps.c"
+#include "contact_ways.c"
+#include "step.c"
+#include "motion.c"
+
+/* ---- Stretches that are told ---- */
+
+enum {
+  MOST_TOLD = CUTS,
+  /* Head of a stretch: size, s; energy that its blow took, J; whether it has a blow; number of contacts. */
+  HEAD = 4,
+  /* Then x and v at the begin, unknowns of the stages, x, v and a at the end; powers that friction takes at the stages,
+     and powers that moving inputs put in there, W. */
+  OF_STRETCH = HEAD + 2 * N + STAGED + 3 * N + 2 * STAGES,
+  /* Then each contact: facing; whether it slides, presses, slips, is struck; places at the begin and at the end; gap that
+     it keeps; forces at the stages; axis of the tangents; friction at each stage along both tangents; impulse, N s. */
+  OF_TOUCH = 18,
+  TOLD_ROW = OF_STRETCH + OF_TOUCH * TOUCHES
+};
+
+/* Speed of a section times the size of the stretch, over the length, up to which the section counts as at rest. */
+static const real AT_REST = (real)1e-10;
+
+/* The blow at the begin of the present stretch: its energy, J, and impulses, N s. */
+static real BLOW_TAKES;
+static int IS_STRUCK;
+static real IMPULSES[TOUCHES];
+static int ARE_STRUCK[TOUCHES];
+
+/* Keeps a blow for the row of the stretch that begins with it. */
+static void tell_blow(real taken, const workspace *work) {
+  BLOW_TAKES = taken;
+  IS_STRUCK = 1;
+  for (int k = 0; k < work->touch_count; k++) {
+    IMPULSES[k] = work->blow[ROWS * k] * FACING[work->touches[k].facing].force_unit;
+    ARE_STRUCK[k] = !work->touches[k].presses && IMPULSES[k] > 0;
+  }
+}
+
+/* Whether a section slips in a stretch: it moves at the begin or the end, or has no friction. */
+static int slips_in(int k, real size, const workspace *work) {
+  const real *ends[2] = {work->start_slides[k], work->stage_slides[STAGES - 1][k]};
+  if (!rubs(work->touches + k)) return 1;
+  return SQUARE_ROOT(larger(inner_of_two(ends[0], ends[0]), inner_of_two(ends[1], ends[1]))) * size > AT_REST;
+}
+
+static real *tell(real *to, const real *values, int count) {
+  memcpy(to, values, (size_t)count * sizeof *values);
+  return to + count;
+}
+
+/* Writes the row of a solved stretch. */
+static void tell_stretch(const step_start *start, workspace *work) {
+  if (AT->told_count == MOST_TOLD) return;
+  const real *unknowns = work->iterate;
+  real *row = AT->told + AT->told_count++ * TOLD_ROW;
+  const real head[HEAD] = {start->size, IS_STRUCK ? BLOW_TAKES : 0, IS_STRUCK, work->touch_count};
+  real *to = tell(row, head, HEAD);
+  to = tell(to, start->x, N);
+  to = tell(to, start->v, N);
+  to = tell(to, unknowns, STAGED);
+  real *powers = to + 3 * N;
+  real *put_in = powers + STAGES;
+  for (int stage = 0; stage < STAGES; stage++) {
+    stage_at(start, stage, unknowns, &work->at);
+    push_in_stage(stage, &work->at, work->stage_residuals, work);
+    powers[stage] = put_in[stage] = 0;
+    for (int k = 0; k < work->touch_count; k++) {
+      const touch *own = work->touches + k;
+      const facing *faces = FACING + own->facing;
+      real force[2];
+      if (!own->presses || !rubs(own)) continue;
+      friction_of(own, work->stage_along[stage][k], own->drags[stage], force);
+      for (int a = 0; a < 2; a++) {
+        const real push = force[a] * faces->force_unit * faces->length;
+        const real slide = work->stage_slides[stage][k][a];
+        /* A sticking point moves by rounding alone. */
+        if (own->slips[stage]) powers[stage] -= push * slide;
+        put_in[stage] -= push * (slide - dot(work->stage_slide_rows[stage][k][a], work->at.state + N));
+      }
+    }
+  }
+  /* The last stage is the end. */
+  tell(to, work->at.state, 3 * N);
+  to = put_in + STAGES;
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    real friction[STAGES][2] = {{0}};
+    for (int stage = 0; stage < STAGES && own->presses && rubs(own); stage++) {
+      friction_of(own, work->stage_along[stage][k], own->drags[stage], friction[stage]);
+    }
+    const real of_touch[OF_TOUCH] = {own->facing,
+                                     own->slides,
+                                     own->presses,
+                                     slips_in(k, start->size, work),
+                                     IS_STRUCK && ARE_STRUCK[k],
+                                     own->place,
+                                     own->end_place,
+                                     own->height,
+                                     own->forces[0],
+                                     own->forces[1],
+                                     own->axis[0],
+                                     own->axis[1],
+                                     own->axis[2],
+                                     friction[0][0],
+                                     friction[0][1],
+                                     friction[1][0],
+                                     friction[1][1],
+                                     IS_STRUCK ? IMPULSES[k] : 0};
+    to = tell(to, of_touch, OF_TOUCH);
+  }
+  IS_STRUCK = 0;
+}
+
+/* ---- For Python ---- */
+
+/* Writes 11 sizes: bytes of memory and workspace; MOST_TOLD; numbers of a row, a stretch, a contact; most contacts; bytes
+   of the four records. */
+void rubbing_sizes(long long *sizes) {
+  const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW, OF_STRETCH, OF_TOUCH,
+                             TOUCHES,  sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
+  memcpy(sizes, found, sizeof found);
+}
+
+/* Begins a motion with accelerations, of N numbers, and contacts that press. known has four numbers for each contact:
+   facing, whether it slides, place, gap that it keeps. */
+void rubbing_begin(solver_step_memory *memory, const real *accelerations, int count, const real *known) {
+  memset(memory, 0, sizeof *memory);
+  memcpy(memory->unknowns + N, accelerations, N * sizeof *accelerations);
+  memory->touch_count = count < TOUCHES ? count : TOUCHES;
+  for (int k = 0; k < memory->touch_count; k++, known += 4) {
+    solver_touch *own = memory->touches + k;
+    own->facing = (int)known[0];
+    own->slides = known[1] != 0;
+    own->presses = 1;
+    own->place = own->end_place = known[2];
+    own->height = known[3];
+  }
+}
+
+/* Takes one step of the given size, s, as solver_step does, and writes its stretches into the model's rows. counts takes
+   the numbers of iterations and Jacobians. */
+int rubbing_step(model *of, const real *inputs, const real *rates, const real *accelerations, real size,
+                 solver_state *state, solver_step_memory *memory, workspace *work, int *counts) {
+  AT = of;
+  for (int i = 0; i < (int)(sizeof NUMBERS / sizeof *NUMBERS); i++) NUMBERS[i] = i;
+  for (int k = 0; k < STAGE_ENTRIES; k++) {
+    ENTRY_ROWS[k] = k % N;
+    ENTRY_COLUMNS[k] = k / N;
+  }
+  for (int k = 0; k < of->points_count; k++) POINTS[k].count = of->points[k].count;
+  for (int k = 0; k < of->facing_count; k++) of->facings[k].rubbing = of->facings[k].slide ? RUBBING[k] : 0;
+  const solver_step_options options = {STEP_TOLERANCE, STEP_ITERATIONS, 1, accelerations};
+  solver_step_info info;
+  of->told_count = 0;
+  IS_STRUCK = 0;
+  const solver_motion_status status = solver_step(inputs, rates, size, state, memory, &options, work, &info);
+  counts[0] = info.iterations;
+  counts[1] = info.jacobians;
+  return status;
+}

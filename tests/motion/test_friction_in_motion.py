@@ -1,0 +1,221 @@
+"""Motions with friction of exact contact: closed forms, the reference from event to event, energy, refusals."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import SceneError, build, read_scene, scene_from_dict, simulate
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.motion_event import MotionEvent
+from cosserat_casadi.motion.trajectory import Motion
+from tests.codegen.test_steps_in_contact import LENGTH, floor, rod, scene
+from tests.conftest import ROOT
+from tests.reference.falling_rods import FallingRod
+
+G = 9.81
+MASS = 0.2 * LENGTH
+FRICTION = 0.3
+FREE = {"position": [0, 0, 0], "tangent": [1, 0, 0], "free": True}
+SMALL = {"modes": 1, "nodes": 4, "tolerance": 1e-3}
+
+
+def weight(angle: float) -> dict[str, Any]:
+    """Weight on an incline that goes down along x."""
+    acceleration = (G * np.array([np.sin(angle), 0.0, -np.cos(angle)])).tolist()
+    return {"name": "weight", "kind": "gravity", "acceleration": acceleration}
+
+
+def block(angle: float, duration: float, frames: int = 11, **more: Any) -> dict[str, Any]:
+    """A straight rod on an incline, as stiff as a block."""
+    record = rod(base=FREE, stiffness={"bending_y": 0.5})
+    simulation = {"duration": duration, "frames": frames, "start": "unloaded", "tolerance": 1e-5}
+    tables = scene(floor(0.0, friction=FRICTION), record, accuracy=SMALL, loads=[weight(angle)], simulation=simulation)
+    return {**tables, **more}
+
+
+def moved(tables: dict[str, Any], **more: Any) -> Motion:
+    """The motion on the scene's own modes, with the error of its steps alone."""
+    motion = simulate(build(scene_from_dict(tables).with_motion_inputs(), moving=True), **more)
+    assert motion.converged, motion.message
+    return motion
+
+
+def along(motion: Motion) -> FloatArray:
+    """Way of the tip along the floor, m."""
+    ways: FloatArray = motion.tip().position[:, 0] - LENGTH
+    return ways
+
+
+def test_a_block_sticks_below_the_angle_of_friction_and_slides_above_it() -> None:
+    below, above = np.arctan(FRICTION) * np.array([0.999, 1.5])
+    rests = moved(block(below, 0.1))
+    assert np.abs(along(rests)).max() < 1e-12
+    assert [event.kind for event in rests.events] == ["lie_down", "stick"]
+    assert not any(contact.slips for contact in rests.contacts[-1])
+    held = sum(contact.friction for contact in rests.contacts[-1])
+    assert_allclose(held, [-MASS * G * np.sin(below), 0.0, 0.0], rtol=1e-9, atol=1e-12)
+    slides = moved(block(above, 0.1))
+    down = G * (np.sin(above) - FRICTION * np.cos(above))
+    assert_allclose(along(slides), down * slides.times**2 / 2.0, rtol=0, atol=1e-12)
+    assert all(contact.slips and contact.lies for contact in slides.contacts[-1])
+    # Friction takes the weight across the incline times its coefficient and the way.
+    taken = FRICTION * MASS * G * np.cos(above) * along(slides)
+    assert_allclose(slides.energy.dissipated, taken, rtol=1e-9, atol=1e-15)
+    assert np.abs(slides.energy.imbalance).max() < 1e-10
+
+
+def test_a_block_that_is_thrown_stops_and_stays() -> None:
+    speed = 0.3
+    thrown = {"velocities": [{"rod": "rod", "linear": [speed, 0, 0]}]}
+    motion = moved(block(0.0, 0.2, 41, **thrown))
+    stops = speed / (FRICTION * G)
+    times = np.minimum(motion.times, stops)
+    assert_allclose(along(motion), speed * times - FRICTION * G * times**2 / 2.0, rtol=0, atol=1e-9)
+    (stick,) = [event for event in motion.events if event.kind == "stick"]
+    assert_allclose(stick.time, stops, rtol=1e-5, atol=0)
+    assert np.abs(motion.v[-1]).max() < 1e-12
+    assert_allclose(motion.energy.dissipated[-1], MASS * speed**2 / 2.0, rtol=1e-6, atol=0)
+    # A motion that the user stops ends on the way.
+    goal = MotionEvent("there", lambda model, x, inputs: model.tip["rod"](x, inputs)[0][0] - LENGTH - 0.01, stop=True)
+    ends = moved(block(0.0, 0.2, 41, **thrown), events=[goal])
+    assert_allclose(along(ends)[-1], 0.01, rtol=0, atol=1e-9)
+    assert "An event stopped it" in ends.message
+
+
+def test_a_motion_that_rubs_neither_goes_on_nor_starts_inside() -> None:
+    tables = block(0.0, 0.02)
+    first = moved(tables)
+    with pytest.raises(SceneError, match="none goes on from another"):
+        simulate(scene_from_dict(tables), start=first)
+    with pytest.raises(SceneError, match="is computed at once"):
+        simulate(scene_from_dict(tables), part=0.01, output="parts.npz")
+    inside = {**tables, "rods": [rod(base=FREE | {"tangent": [4, 0, -3]})]}
+    with pytest.raises(SceneError, match="inside an obstacle by 0"):
+        simulate(scene_from_dict(inside))
+
+
+@pytest.mark.slow
+def test_a_rod_in_space_is_held_back_against_its_way() -> None:
+    speed, way = 0.4, np.array([0.6, 0.8, 0.0])
+    tables = block(0.0, 0.05, velocities=[{"rod": "rod", "linear": (speed * way).tolist()}])
+    stiff = {"bending_y": 5.0, "bending_x": 5.0, "torsion": 5.0}
+    tables["rods"] = [rod(base=FREE, strain="kirchhoff", stiffness=stiff)]
+    motion = moved(tables)
+    gone = motion.tip().position - motion.tip().position[0]
+    times = motion.times
+    assert_allclose(gone, np.outer(speed * times - FRICTION * G * times**2 / 2.0, way), rtol=0, atol=1e-8)
+    held = sum(contact.friction for contact in motion.contacts[-1])
+    assert_allclose(held, -FRICTION * MASS * G * way, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.1, 0.6])
+def test_a_block_that_strikes_askew_loses_what_friction_takes(friction: float) -> None:
+    drop, speed, restitution = 0.05, 0.8, 0.5
+    tables = block(0.0, 0.16, velocities=[{"rod": "rod", "linear": [speed, 0, 0]}])
+    tables["obstacles"] = [floor(-drop, friction=friction, restitution=restitution)]
+    motion = moved(tables)
+    hit = np.sqrt(2.0 * drop / G)
+    after = max(0.0, speed - friction * (1.0 + restitution) * G * hit)
+    assert_allclose(along(motion)[-1], speed * hit + after * (0.16 - hit), rtol=0, atol=1e-6)
+    across = (1.0 - restitution**2) * G * drop
+    lost = MASS * ((speed**2 - after**2) / 2.0 + across)
+    assert_allclose(motion.energy.impacts[-1], lost, rtol=1e-6, atol=0)
+    blows = [event for event in motion.events if event.kind == "impact"]
+    assert_allclose(sum(event.impulse for event in blows), MASS * (1.0 + restitution) * G * hit, rtol=1e-6, atol=0)
+    assert_allclose(sum(event.energy for event in blows), lost, rtol=1e-6, atol=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.5, 0.05])
+def test_a_ball_rolls_down_an_incline_or_slides(friction: float) -> None:
+    radius, mass, angle = 0.02, 0.5, np.radians(20)
+    ball = {"name": "ball", "mass": mass, "radius": radius, "inertia": [0.4 * mass * radius**2] * 3}
+    # The rod that carries it weighs next to nothing.
+    carrier = rod(length=0.05, base=FREE | {"position": [-0.05, 0, 0]}, linear_density=1e-3, rotary_inertia=[1e-12] * 3)
+    tables = scene(
+        floor(-radius, friction=friction, bodies=["ball"]),
+        carrier,
+        bodies=[ball],
+        joints=[{"body": "ball", "rod": "rod", "kind": "fixed"}],
+        accuracy=SMALL,
+        loads=[weight(angle)],
+        simulation={"duration": 0.1, "frames": 11, "start": "unloaded", "tolerance": 1e-4},
+    )
+    motion = moved(tables)
+    rolls = 5 / 7 * np.sin(angle)
+    slides = np.sin(angle) - friction * np.cos(angle)
+    (contact,) = motion.contacts[-1]
+    assert contact.of_body and contact.slips == (slides > rolls)
+    gone = np.diff(motion.body("ball").position[[0, -1], 0])
+    # To the share of the rod in the mass.
+    assert_allclose(gone, G * max(rolls, slides) * 0.1**2 / 2, rtol=1e-3, atol=0)
+    assert np.abs(motion.energy.imbalance).max() < 1e-6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("restitution", [0.0, 0.3])
+def test_a_rod_falls_as_from_event_to_event_within_the_error_that_is_told(restitution: float) -> None:
+    """Its end strikes and slides, it rolls over its length, sticks and breaks loose there, and its tip slaps down."""
+    height, slope = 0.05, 0.3
+    base = {"position": [0, 0, height], "tangent": [1, 0, slope], "free": True}
+    tables = scene(
+        floor(0.0, restitution=restitution, friction=FRICTION),
+        rod(base=base, damping={"retardation_time": 5e-3}),
+        accuracy={"modes": 3, "nodes": 12, "tolerance": 1e-4},
+        simulation={"duration": 0.2, "frames": 401, "start": "unloaded", "tolerance": 1e-3},
+    )
+    motion = moved(tables)
+    falling = FallingRod(LENGTH, 0.016, 0.2, 1e-7, 5e-3, modes=3, friction=FRICTION, restitution=restitution)
+    wanted = falling.motion(np.array([0.0, height, np.arctan(slope), 0.0, 0.0, 0.0]), motion.times)
+    ends = np.array([falling.positions(q, np.array([1.0]))[0] for q in wanted])
+    off = np.abs(motion.tip().position[:, [0, 2]] - ends).max() / LENGTH
+    assert off < motion.error_estimate < 1e-3
+    energy = motion.energy
+    assert np.abs(energy.imbalance).max() < 2e-3
+    total = energy.kinetic + energy.elastic + energy.potential
+    assert np.diff(total).max() < 1e-9 * np.abs(total).max()
+
+
+@pytest.mark.slow
+def test_a_rod_that_is_thrown_comes_to_rest() -> None:
+    changes = ["floor.friction=0.3", "simulation.duration=1", "simulation.step=2.5e-3"]
+    thrown = read_scene(ROOT / "examples" / "rod_hits_floor.toml", changes)
+    motion = simulate(build(thrown.with_motion_inputs(), moving=True))
+    # Which end strikes next hangs on little: the error is told, and large.
+    assert motion.error_estimate > 1e-4
+    assert motion.energy.kinetic[-1] < 1e-12
+    assert motion.contacts[-1] and not any(contact.slips for contact in motion.contacts[-1])
+    # Of what the hand gave and the fall, all is lost.
+    assert np.abs(motion.energy.imbalance).max() < 5e-2
+
+
+@pytest.mark.slow
+def test_a_base_that_drags_its_rod_along_does_the_work_that_friction_takes() -> None:
+    path = {"times": [0, 0.1, 0.3], "values": [[0, 0, 0], [0, 0, 0], [0.03, 0, 0]], "interpolation": "cubic"}
+    tables = scene(
+        floor(-0.1, friction=0.4),
+        rod(base={"position": [0, 0, 0], "tangent": [1, 0, -0.2]}),
+        accuracy={"modes": 3, "nodes": 12, "tolerance": 1e-3},
+        simulation={"duration": 0.3, "frames": 31, "start": "unloaded", "step": 5e-4},
+        inputs=["rod.base.position"],
+        motions=[{"input": "rod.base.position", **path}],
+    )
+    motion = moved(tables)
+    assert any(contact.slips for contacts in motion.contacts for contact in contacts)
+    assert motion.energy.work[-1] > 3e-3
+    assert np.abs(motion.energy.imbalance).max() < 2e-4
+
+
+@pytest.mark.slow
+def test_a_rod_that_lies_in_equilibrium_stays() -> None:
+    changes = ["table.friction=0.3", 'simulation.start="equilibrium"', "simulation.duration=0.02"]
+    lies = read_scene(ROOT / "examples" / "rod_lies_down.toml", [*changes, "simulation.step=1e-3"])
+    motion = simulate(build(lies.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    assert np.abs(motion.v).max() < 1e-7
+    assert all(contact.lies and not contact.slips for contacts in motion.contacts for contact in contacts)
