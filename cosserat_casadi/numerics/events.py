@@ -103,7 +103,8 @@ def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], 
         last: an argument with its value, of the other sign.
 
     Returns:
-        the argument last evaluated, within LOCATED of the zero; not a number where the function is not.
+        an argument at which it was evaluated, within LOCATED of the zero; not a number where the function is not, or
+        where it has one sign at both arguments.
     """
     # Imported here, because a solve meets no event and needs none of SciPy.
     from scipy.optimize import brentq

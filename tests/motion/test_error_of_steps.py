@@ -26,13 +26,14 @@ from cosserat_casadi.motion.simulate import (
     LEAST_TIGHTENING,
     SLOPE_OF_THREE_ALIKE,
     TIGHTER,
+    Companion,
     Simulator,
     TimedHistory,
     are_struck_alike,
     left_by,
     started,
 )
-from cosserat_casadi.motion.tip_paths import path_distance
+from cosserat_casadi.motion.tip_paths import Paths, path_distance
 from cosserat_casadi.numerics.integration import StepOutcome
 from tests.families import mostly_slow
 from tests.motion import transients
@@ -225,6 +226,48 @@ def test_three_motions_that_are_struck_alike_tell_errors_closer(fallen: float, p
     assert_allclose(left_by(10.0, struck, struck, fallen) * (errors[1] - errors[0]), errors[0], rtol=1e-6, atol=0)
 
 
+@pytest.mark.parametrize(
+    ("first_steps", "first_place", "power"),
+    [(10, 0.5, SLOPE_OF_THREE_ALIKE), (400, 0.5, LEAST_SLOPE_OF_ALIKE), (10, 0.2, LEAST_SLOPE_OF_ALIKE)],
+    ids=["three", "the third has half the steps", "the third is struck elsewhere"],
+)
+def test_a_third_motion_is_one_of_less_exact_steps_that_is_struck_alike(
+    first_steps: int, first_place: float, power: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def struck(steps: int, place: float) -> History:
+        statistics = SimpleNamespace(steps=steps)
+        return cast(History, SimpleNamespace(events=[event(place)], statistics=statistics, completed=True))
+
+    third, coarse, fine = struck(first_steps, first_place), struck(200, 0.5), struck(10**8, 0.5)
+    monkeypatch.setattr(motion_simulate, "path_distance", lambda *_: 1.6e-3)
+    monkeypatch.setattr(motion_simulate, "has_shorter_steps_at_events", lambda _: False)
+    timed = TimedHistory(coarse, 1.0, 1e-3, Companion(third, 1.0), distance=1e-2)
+    simulator = SimpleNamespace(paths=lambda _: None)
+    told = Simulator.finer(cast(Simulator, simulator), timed, TIGHTER, fine)
+    expected = 1.6e-3 / (TIGHTER**power - 1)
+    if first_place != 0.5:
+        # Two motions may agree that both err as the third does.
+        expected = max(expected, 1e-2)
+    assert_allclose(told.error, expected, rtol=1e-6, atol=0)
+
+
+@pytest.mark.parametrize(("steps", "power"), [(10**8, LEAST_SLOPE), (100, 0.0)])
+def test_the_last_level_is_told_by_the_level_before(steps: int, power: float) -> None:
+    """Where its steps are no shorter ones nothing is told."""
+
+    def level(steps: int, tolerance: float, place: float) -> ResolvedMotion:
+        history = SimpleNamespace(events=[], statistics=SimpleNamespace(steps=steps))
+        found = Paths(np.full((3, 1, 3), [place, 0.0, 0.0]), np.tile(np.eye(3)[:, :2], (3, 1, 1, 1)))
+        return ResolvedMotion(cast(Simulator, None), cast(History, history), found, step_tolerance=tolerance)
+
+    levels = [level(100, 1e-3, 0.0), level(steps, 1e-3 / TIGHTER, 2e-3)]
+    search = cast(motion_refinement._Search, SimpleNamespace(levels=levels))
+    told = motion_refinement._told_by_level_before(search)
+    expected = 2e-3 / (TIGHTER**power - 1) if power else np.inf
+    assert_allclose(told.error, expected, rtol=1e-6, atol=0)
+    assert told.history is levels[1].history and told.tolerance == 1e-3 / TIGHTER
+
+
 def test_where_more_exact_steps_end_early_the_last_whole_motion_and_its_error_are_kept(
     simulator: Simulator, coarse: History, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -407,6 +450,8 @@ def test_modes_that_are_foreseen_to_be_enough_take_exact_steps_at_once(monkeypat
     assert len(sizes) == len(set(sizes)) == 2
     error = np.abs(motion.tip().position[:, [0, 2]] - transients.SUDDEN_WEIGHT_TIP).max()
     assert 3e-5 < error < motion.error_estimate
+    assert motion.end is not None
+    assert [strand.by_modes for strand in motion.end.strands] == [False, False, True]
 
 
 def test_a_steel_wire_is_not_buckled_by_what_newtons_method_leaves_of_its_stretch() -> None:

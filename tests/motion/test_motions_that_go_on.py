@@ -186,6 +186,7 @@ def test_blows_count_in_the_error_of_a_motion_that_goes_on_to_them(
     assert not first.events
     assert any(event.kind == "impact" for event in second.events)
     assert first.end is not None and second.end is not None
+    assert [strand.by_modes for strand in second.end.strands] == [False, False, True]
     (steps, modes), factors = ([strand.factor for strand in motion.end.strands[1:]] for motion in (first, second))
     assert larger * steps < factors[0]
     assert_allclose(modes, SAFETY, rtol=1e-12, atol=0)
