@@ -9,9 +9,18 @@ import pytest
 
 from cosserat_casadi import Scene, Solution, build, discretise, parse_scene, read_scene, solve
 from cosserat_casadi.accuracy.assess import Enough, NeedsFinerGrid, NeedsModes, NeedsNodes, NoEquilibrium, assess
-from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level, is_thin, layer_nodes
+from cosserat_casadi.accuracy.levels import (
+    GRID_FACTOR,
+    MOST_GRID_FACTOR,
+    REFERENCE_MODES,
+    Level,
+    is_thin,
+    layer_nodes,
+    layer_sections,
+)
 from cosserat_casadi.equilibrium.metrics import pose_distance, prolong
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.scene.accuracy import MOST_SECTIONS
 from tests.conftest import ROOT
 from tests.contact.test_smooth_contact import ON_A_BAR
 from tests.scenes import WEIGHT, push, scene
@@ -144,6 +153,27 @@ def test_levels_beside_a_thin_wire_that_rubs_see_its_layer() -> None:
     # Zeros: it is not let settle.
     coarse = solve(few, start=np.zeros(few.size), estimate_error=False)
     assert coarse.outcome is Outcome.LOAD_STALLED
+
+
+def test_sections_of_layers_follow_the_tolerance() -> None:
+    """On eleven elements of 45 mm: their error is 1.5e-3 a quarter of the stretch apart, and falls by the power four."""
+    half = np.sqrt(2 * 0.5 * (1 + 2))
+    for tolerance, closer in ((1e-2, 1), (1.5e-3, 1), (1.5e-3 / 2**4, 2), (1.5e-3 / 4**4, 4)):
+        wire = parse_scene(FREE_ON_A_BAR, WIRE)
+        assert layer_sections(wire, tolerance) == np.ceil(closer * 500 / 11 / (0.5 * half))
+    assert layer_sections(parse_scene(FREE_ON_A_BAR, [*WIRE, "bar.friction=0.1"]), 1e-6) == 0
+
+
+def test_finer_sums_are_given_up_at_the_most_sections() -> None:
+    level = Level.first(1e-4, sections=600)
+    finer = level.with_finer_sums(2.0)
+    assert finer is not None and finer == replace(level, sections=1200)
+    most = finer.with_finer_sums(2.0)
+    assert most is not None and most == replace(level, sections=MOST_SECTIONS)
+    assert most.with_finer_sums(2.0) is None
+    # What rubs is summed at the nodes.
+    at_nodes = Level.first(1e-4, layer_nodes=28)
+    assert at_nodes.with_finer_sums(2.0) == at_nodes.with_finer_grid()
 
 
 def test_the_layer_of_a_thin_wire_is_summed_between_nodes() -> None:

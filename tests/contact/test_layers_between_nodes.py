@@ -26,10 +26,13 @@ from cosserat_casadi import (
     simulate,
     solve,
 )
+from cosserat_casadi.accuracy.assess import NeedsFinerSums, assess
+from cosserat_casadi.accuracy.levels import Level
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.equilibrium.metrics import distance_of_poses, prolong
+from cosserat_casadi.equilibrium.strain_limits import within_limits
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.contact_layers import share_of_more_modes
@@ -38,6 +41,7 @@ from cosserat_casadi.model.strain_margins import VANISHED
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.motion.vibration_modes import ModesOutcome
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.scene.writing import scene_text
 from tests.contact.test_smooth_contact import ON_A_BAR
 from tests.families import mostly_slow
@@ -285,6 +289,18 @@ def test_sums_at_finer_sections_tell_the_error_of_sums() -> None:
     assert true < Resolution(Preview(found)).sum_error < 4 * true
 
 
+def test_a_reference_with_coarse_sums_asks_for_finer_ones() -> None:
+    scene = parse_scene(FREE, THIN)
+    uniform = discretise(scene, 8, 14)
+    found = solve(build(scene, summed_at(uniform, 30)), estimate_error=False)
+    verdict = assess(found, 1e-4)
+    assert isinstance(verdict, NeedsFinerSums)
+    finer = Level.first(1e-4, sections=30).with_finer_sums(verdict.factor)
+    assert finer is not None
+    better = solve(build(scene, summed_at(uniform, finer.sections)), start=found.x, estimate_error=False)
+    assert Resolution(Preview(better)).sum_error < 0.25 * 1e-4
+
+
 def test_what_modes_lack_of_a_push_at_a_point_falls_with_their_third_power() -> None:
     """The moment |s − p| in Legendre polynomials, over places p of the push: the work of the modes beyond n."""
     s, weights = np.polynomial.legendre.leggauss(600)
@@ -306,7 +322,7 @@ def test_a_tolerance_asks_for_sections_and_not_for_intervals() -> None:
     found = solve(scene)
     assert isinstance(found, Solution) and found.converged
     chosen = found.model.discretisation["rod"]
-    assert chosen.nodes <= 24 and chosen.sections >= 40
+    assert max(chosen.modes) < chosen.nodes <= 24 and chosen.sections >= 40
     finer = build(scene, summed_at(discretise(scene, 24, 50, "magnus8"), 500))
     exact = solve(finer, start=prolong(found, finer), estimate_error=False)
     true = distance_of_poses(found.tip(), exact.tip(), LENGTH)
@@ -327,6 +343,9 @@ def test_nodes_at_which_a_layer_rubs_may_lie_apart() -> None:
         assert (margins is not None) is apart
         if margins is not None:
             assert float(margins(resting.unloaded(), resting.pack())) <= VANISHED
+            # A motion may begin there: at rest the error is told.
+            told, _ = within_limits(resting.in_motion, resting.unloaded(), resting.pack(), Outcome.CONVERGED)
+            assert told is Outcome.CONVERGED
 
 
 @pytest.mark.slow
