@@ -33,9 +33,7 @@ class Value:
     @property
     def key(self) -> tuple[object, ...]:
         """Key that equal matrices share."""
-        pattern = self.pattern
-        places = () if pattern.is_dense() else (*pattern.colind(), *pattern.row())
-        return pattern.shape, places, self.numbers.tobytes()
+        return tuple(self.pattern.compress()), self.numbers.tobytes()
 
     @property
     def transposed(self) -> Value:

@@ -186,8 +186,11 @@ class _Reading:
         operation: int | None = None,
     ) -> list[Value]:
         """Results of a step, which is taken once for the same operands."""
-        # Neither a call nor an operation: a product of matrices.
-        key = (hash(function) if called else operation, *(operand.key for operand in operands))
+        what: object = hash(function)
+        if not called:
+            # A product of matrices has no operation; it may be asked for with more zeros, or fewer, than it has.
+            what = (operation, *function.sparsity_out(0).compress())
+        key = (what, *(operand.key for operand in operands))
         if key not in self._results_of:
             results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
             self.steps.append(Step(function, list(operands), results, instructions, called, operation))

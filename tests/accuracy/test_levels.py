@@ -156,7 +156,7 @@ def test_levels_beside_a_thin_wire_that_rubs_see_its_layer() -> None:
 
 
 def test_sections_of_layers_follow_the_tolerance() -> None:
-    """On eleven elements of 45 mm: their error is 1.5e-3 a quarter of the stretch apart, and falls by the power four."""
+    """On eleven elements of 45 mm: a quarter of the stretch apart their error is 1.5e-3; it falls by the power four."""
     half = np.sqrt(2 * 0.5 * (1 + 2))
     for tolerance, closer in ((1e-2, 1), (1.5e-3, 1), (1.5e-3 / 2**4, 2), (1.5e-3 / 4**4, 4)):
         wire = parse_scene(FREE_ON_A_BAR, WIRE)

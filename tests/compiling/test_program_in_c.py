@@ -100,6 +100,17 @@ def test_equal_steps_are_taken_once() -> None:
     assert_same(function_of(program_of(twice)), twice, 0.0)
 
 
+@pytest.mark.parametrize("dense_first", [True, False])
+def test_products_in_two_patterns_are_two_steps(dense_first: bool) -> None:
+    diagonal = ca.Sparsity.diag(6)
+    x = ca.MX.sym("x", diagonal)
+    y = ca.MX.sym("y", diagonal + ca.Sparsity.triplet(6, 6, [0, 1], [3, 4]))
+    patterns = [ca.Sparsity.dense(6, 6), diagonal]
+    products = [ca.mac(x, y, ca.MX(ca.DM(pattern, 0.0))) for pattern in patterns]
+    function = ca.Function("products", [x, y], products if dense_first else products[::-1])
+    assert_same(function_of(program_of(function)), function, 0.0)
+
+
 def test_steps_whose_entries_come_out_zero() -> None:
     """CasADi leaves them out where a factor is a constant zero: their places stay."""
     a, x = ca.MX.sym("a"), ca.MX.sym("x", 9)
