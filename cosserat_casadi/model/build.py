@@ -181,7 +181,8 @@ class Model(ModelFunctions, MotionFunctions, WithParameters, Shown):
         names: dict[str, list[str]] = {}
         for name, d in self.discretisation.items():
             elements = f" in {d.elements} elements" if d.elements > 1 else ""
-            names.setdefault(f"modes {list(d.modes)}, {d.nodes} intervals{elements}", []).append(name)
+            sums = f", layers summed at {d.sections} sections an element" if d.sections else ""
+            names.setdefault(f"modes {list(d.modes)}, {d.nodes} intervals{elements}{sums}", []).append(name)
         return [f"{', '.join(alike)}: {words}" for words, alike in names.items()]
 
     def element_ends(self, rod: str) -> tuple[float, ...]:

@@ -149,6 +149,9 @@ def moving_ends(
         symbol: p.
         names: parameters that move places, by rods.
     """
-    ends = {rod: moved_ends(nominal, scene, rod, element_ends(nominal, rod)) for rod in names}
-    functions = {rod: ca.Function("ends", [symbol], [as_vector(own)]) for rod, own in ends.items() if own is not None}
-    return tuple(MovingEnds(rod, names[rod], function) for rod, function in functions.items())
+    moving = []
+    for rod, own in names.items():
+        ends = moved_ends(nominal, scene, rod, element_ends(nominal, rod))
+        assert ends is not None, "parameters move them"
+        moving.append(MovingEnds(rod, own, ca.Function("ends", [symbol], [as_vector(ends)])))
+    return tuple(moving)

@@ -401,10 +401,9 @@ class Simulator:
         alike = are_struck_alike(fine, timed.history)
         earlier = timed.companion
         three_alike = alike and earlier is not None and are_struck_alike(timed.history, earlier.history)
-        # A motion by half the steps is no third motion with steps that are less exact than the steps of both.
+        # A motion by half the steps is no third one whose steps are less exact than the steps of both.
         is_coarser = earlier is not None and earlier.history.statistics.steps < timed.history.statistics.steps
-        is_told_by_three = three_alike and is_coarser and timed.distance > 0.0
-        fallen = distance / timed.distance if is_told_by_three else float("nan")
+        fallen = distance / timed.distance if three_alike and is_coarser and timed.distance > 0.0 else float("nan")
         left = left_by(factor, fine, timed.history, fallen)
         if earlier is not None and is_struck(fine) and not three_alike and distance > 0.0:
             # Which section strikes next may be decided by chance: two motions may agree that both err as others do.

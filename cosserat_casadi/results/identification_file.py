@@ -42,7 +42,7 @@ def identification_result(found: Identification) -> dict[str, Any]:
         ],
         "stable": not found.unstable if found.cases else None,
         "unstable": list(found.unstable),
-        "left_out": list(map(vars, found.left_out)),
+        "left_out": [{"where": case.where, "reason": case.reason} for case in found.left_out],
         "warnings": list(found.warnings),
         "error_estimate": found.error_estimate,
         "error_case": found.error_case,
@@ -118,7 +118,7 @@ def _residual(found: Identification) -> dict[str, Any]:
             "rms": found.rms(measurement=number),
             "held_out_rms": found.rms(held_out=True, measurement=number),
             "markers": [
-                {key: value for key, value in vars(marker).items() if key != "measurement"}
+                {key: getattr(marker, key) for key in ("at", "rows", "rms", "largest", "mean")}
                 for marker in found.distances
                 if marker.measurement == number
             ],
