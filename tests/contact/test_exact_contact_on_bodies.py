@@ -353,10 +353,10 @@ def test_a_path_touches_where_the_elastica_says(touching: Solution) -> None:
     assert (touch.kind, touch.contact.obstacle, touch.contact.owner) == ("touch", "disk", "pushed")
 
     def tip(push: float) -> FloatArray:
-        def bent(moment: float) -> FloatArray:
-            return Elasticas.bent(np.array([0.0, 0.0, 0.0, moment]), np.array([0.0, -push]), 0.5, 1.0)
+        def bent(curvature: float) -> FloatArray:
+            return elastica_end(1.0, [0.0, 0.0, 0.0, curvature], [0.0, -push], 0.5)
 
-        return bent(brentq(lambda moment: bent(moment)[3], 0.0, 1.0, xtol=1e-13))
+        return bent(brentq(lambda curvature: bent(curvature)[3], -2.0, 0.0, xtol=1e-13))
 
     push = brentq(lambda push: tip(push)[1] + 0.1 - RADIUS, 0.01, 0.4, xtol=1e-12)
     assert_allclose(touch.contact.start, (tip(push)[0] - 0.3) / 0.9, rtol=0, atol=1e-6)
