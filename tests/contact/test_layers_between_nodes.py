@@ -331,6 +331,8 @@ def test_a_tolerance_asks_for_sections_and_not_for_intervals() -> None:
     # A scene that is written with them is discretised alike.
     written = parse_scene(scene_text(with_discretisation(scene, found.model.discretisation)))
     assert discretise(written) == found.model.discretisation
+    (words,) = found.model.resolution_words
+    assert words.endswith(f", layers summed at {chosen.sections} sections an element")
 
 
 def test_nodes_at_which_a_layer_rubs_may_lie_apart() -> None:

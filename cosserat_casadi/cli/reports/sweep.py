@@ -101,9 +101,10 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
         return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."
     # Rows without an equilibrium say nothing of the discretisation.
     count = len(chosen["rows"])
-    sentence = escape(
-        f"Modes {discretisation['modes']}, {discretisation['nodes']} intervals, chosen on {counted(count, 'row')}"
-    )
+    sections = discretisation.get("sections")
+    sums = f", layers summed at {sections} sections an element" if sections else ""
+    words = f"Modes {discretisation['modes']}, {discretisation['nodes']} intervals{sums}"
+    sentence = escape(f"{words}, chosen on {counted(count, 'row')}")
     estimate = chosen["error_estimate"]
     if estimate is None:
         return f"{sentence}, [bold red]none of which has an equilibrium.[/]"
