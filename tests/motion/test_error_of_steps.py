@@ -366,7 +366,7 @@ STRUCK: dict[str, tuple[dict[str, Any], float, float]] = {
 """Scenes by name, with the step tolerances of the first of two motions and of a far more exact one."""
 
 
-REGULAR = ("soft rubber",)
+REGULAR = ("soft rubber", "bouncing")
 """Scenes whose errors fall as those of motions without impacts do: contacts come and go alike at all tolerances."""
 
 
