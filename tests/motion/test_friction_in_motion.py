@@ -86,6 +86,17 @@ def test_a_block_that_is_thrown_stops_and_stays() -> None:
     assert "An event stopped it" in ends.message
 
 
+def test_what_touches_an_obstacle_without_friction_beside_one_with_it_has_none() -> None:
+    angle = 0.2
+    post = {"name": "post", "kind": "sphere", "centre": [0, 0, 1.0], "radius": 0.1, "friction": FRICTION}
+    motion = moved(block(angle, 0.05, 6, obstacles=[floor(0.0), post]))
+    assert_allclose(along(motion), G * np.sin(angle) * motion.times**2 / 2.0, rtol=0, atol=1e-12)
+    contacts = [contact for contacts in motion.contacts for contact in contacts]
+    assert contacts and all(contact.friction is None and contact.slips for contact in contacts)
+    assert {event.kind for event in motion.events} == {"lie_down"}
+    assert not np.any(motion.to_dict()["contact"]["friction"])
+
+
 def test_a_motion_that_rubs_neither_goes_on_nor_starts_inside() -> None:
     tables = block(0.0, 0.02)
     first = moved(tables)

@@ -87,7 +87,6 @@ typedef struct {
   real deepest;
   real *told; /* rows of MOST_TOLD stretches */
   int told_count;
-  int was_raised; /* whether Python has raised something */
 } model;
 
 static model *AT;
@@ -124,7 +123,6 @@ static void put(writing *to, const real *values, int count) {
 /* The result of a function whose arguments are written; no number where Python has raised something. */
 static const real *result_of(kernel *function, int count) {
   if (!call(function)) {
-    AT->was_raised = 1;
     for (int i = 0; i < count; i++) function->result[i] = NAN;
   }
   return function->result;
