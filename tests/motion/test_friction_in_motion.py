@@ -110,7 +110,7 @@ def test_what_steps_lose_of_the_energy_tells_of_the_error_where_a_rod_slaps_down
     tables["obstacles"].append(wall | {"friction": 0.2, "restitution": 0.4})
     motion = moved(tables)
     assert motion.error_estimate > 2.9e-3
-    assert motion.error_estimate >= np.abs(motion.energy.imbalance).max()
+    assert motion.error_estimate >= 2.0 * np.abs(motion.energy.imbalance).max()
 
 
 def test_a_motion_that_rubs_neither_goes_on_nor_starts_inside() -> None:
