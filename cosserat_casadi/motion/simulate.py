@@ -143,7 +143,7 @@ Of ten rods that were let fall, with the root, one erred by 1.4 times as much as
 """
 
 UNBALANCED = 2.0
-"""Least error of the paths of a motion with friction, over the largest imbalance of its energy.
+"""Least error of the paths of free rods with friction, over the largest imbalance of their energy.
 
 Of 35 motions of five rods that were let fall, with hardly any friction, one erred by more than is told, 2.3 times as
 much as the distances and this tell; by the distances alone five did, by up to 8.6 times.
@@ -447,14 +447,16 @@ class Simulator:
         return HALVED_WHERE_STRUCK if is_struck(history) else HALVED_WHERE_RUBBING
 
     def _unbalanced(self, history: History, paths: Paths) -> float:
-        """Least error of the paths of a motion with friction, over the length, by the imbalance of its energy.
+        """Least error of the paths of free rods with friction, over the length, by the imbalance of their energy.
 
         It is no more than the way that it goes, over the length: what rests has no energy but rounding.
 
         Where a rod rolls out flat its place of contact runs along it within a step, and the step may lose energy there,
         more or less as it happens to begin: two motions that lose as much are near each other, and far from the true
-        one. What is missing of the energy tells it.
+        one. What is missing of the energy tells it. A rod that is held comes back, whatever its waves have lost.
         """
+        if not any(rod.base.free for rod in self.model.scene.rods):
+            return 0.0
         times = np.linspace(history.begin, history.end.time, TIMES_OF_ENERGY)
         moving = frozenset(motion.input for motion in self.model.scene.motions)
         energies, _ = energies_of(history, times, moving)
