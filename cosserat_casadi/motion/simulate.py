@@ -453,7 +453,7 @@ class Simulator:
 
         Where a rod rolls out flat its place of contact runs along it within a step, and the step may lose energy there,
         more or less as it happens to begin: two motions that lose as much are near each other, and far from the true
-        one. What is missing of the energy tells it. A rod that is held comes back, whatever its waves have lost.
+        one. The energy that is missing tells it. A rod that is held comes back, whatever its waves have lost.
         """
         if not any(rod.base.free for rod in self.model.scene.rods):
             return 0.0
