@@ -15,9 +15,11 @@ _RAISED: list[BaseException] = []
 
 
 def raise_what_was_raised() -> None:
-    """Raise what Python raised where C called it."""
+    """Raise what Python raised first where C called it; C may have called more before it ended."""
     if _RAISED:
-        raise _RAISED.pop()
+        first = _RAISED[0]
+        _RAISED.clear()
+        raise first
 
 
 def address_of(function: Any) -> int:

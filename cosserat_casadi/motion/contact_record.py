@@ -31,7 +31,7 @@ class MotionContact:
         force: on the rod along the normal of the obstacle, world axes, shape (3,), N.
         lies: whether it is one of the sections of a rod that lies; else the section where the gap is least, or an end.
         of_body: whether it is a body that touches.
-        friction: on the rod along the surface, world axes, shape (3,), N; None without friction.
+        friction: on the rod along the surface, world axes, shape (3,), N; None where the obstacle has no friction.
         slips: whether it slips, as all does without friction; else it sticks.
     """
 
@@ -115,7 +115,7 @@ class ContactRecord:
             at = min(max(place, 0.0), 1.0)
             lies = touch.facing in stretch.laid
             contact = MotionContact(facing.obstacle.name, facing.owner, at, total, lies, facing.of_body)
-            if isinstance(step, RubbingStep):
+            if isinstance(step, RubbingStep) and facing.obstacle.rubs:
                 along = facing.force_unit * instant.x[size + count :].reshape(-1, 2)[k]
                 friction = along_tangents(gap.normal, step.axes[k], along)
                 contact = replace(contact, friction=friction, slips=step.slips[k])

@@ -53,6 +53,7 @@ from cosserat_casadi.motion.simulate import (
     Simulator,
     Tell,
     TimedHistory,
+    asked_of,
     bound_of,
     ended_early,
     factor_for,
@@ -466,7 +467,7 @@ def _with_fixed(search: _Search) -> Motion:
     model = moving_model(scene, discretise(scene))
     simulator = _simulator(search, model, "on the scene's own modes")
     if not simulator.start.found:
-        return not_started(model, simulator.start)
+        return not_started(model, simulator.start, asked_of(scene, search.simulation))
     timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=_first_step_tolerance(search))
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
@@ -530,7 +531,7 @@ def _with_tolerance(search: _Search) -> Motion:
             if search.levels:
                 # What fewer modes have moved is judged as it is.
                 break
-            return not_started(model, simulator.start)
+            return not_started(model, simulator.start, asked_of(search.scene, search.simulation))
         without_start = 0
         history, step_tolerance = _on_level(search, simulator, modes)
         if history.outcome is StepOutcome.INTERRUPTED and search.levels:

@@ -102,7 +102,7 @@ class RubbingModelRecord(ctypes.Structure):
         *((name, POINTER) for name in ("is_shape", "displacements", "points", "facings", "residual", "matrices")),
         ("deepest", DOUBLE),
         ("told", POINTER),
-        *((name, ctypes.c_int) for name in ("told_count", "was_raised")),
+        ("told_count", ctypes.c_int),
     ]
 
 

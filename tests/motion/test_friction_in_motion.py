@@ -86,6 +86,33 @@ def test_a_block_that_is_thrown_stops_and_stays() -> None:
     assert "An event stopped it" in ends.message
 
 
+def test_what_touches_an_obstacle_without_friction_beside_one_with_it_has_none() -> None:
+    angle = 0.2
+    post = {"name": "post", "kind": "sphere", "centre": [0, 0, 1.0], "radius": 0.1, "friction": FRICTION}
+    motion = moved(block(angle, 0.05, 6, obstacles=[floor(0.0), post]))
+    assert_allclose(along(motion), G * np.sin(angle) * motion.times**2 / 2.0, rtol=0, atol=1e-12)
+    contacts = [contact for contacts in motion.contacts for contact in contacts]
+    assert contacts and all(contact.friction is None and contact.slips for contact in contacts)
+    assert {event.kind for event in motion.events} == {"lie_down"}
+    assert not np.any(motion.to_dict()["contact"]["friction"])
+
+
+def test_what_steps_lose_of_the_energy_tells_of_the_error_where_a_rod_slaps_down() -> None:
+    """Two motions that lose energy alike are near each other; one with steps of a 128th is 2.9e-3 away."""
+    wall = {"name": "wall", "kind": "plane", "point": [0.45, 0, 0], "normal": [-1, 0, 0]}
+    tables = scene(
+        floor(0.0, friction=0.4),
+        rod(base=FREE | {"position": [0, 0, 0.01], "tangent": [1, 0, 0.1]}),
+        accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-3},
+        loads=[{"name": "weight", "kind": "gravity", "acceleration": [4, 0, -9]}],
+        simulation={"duration": 0.2, "frames": 101, "start": "unloaded", "step": 2e-3},
+    )
+    tables["obstacles"].append(wall | {"friction": 0.2, "restitution": 0.4})
+    motion = moved(tables)
+    assert motion.error_estimate > 2.9e-3
+    assert motion.error_estimate >= 2.0 * np.abs(motion.energy.imbalance).max()
+
+
 def test_a_motion_that_rubs_neither_goes_on_nor_starts_inside() -> None:
     tables = block(0.0, 0.02)
     first = moved(tables)

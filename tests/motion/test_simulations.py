@@ -205,7 +205,9 @@ def test_base_that_starts_with_a_speed_is_refused_in_a_loop() -> None:
 def test_scene_without_equilibrium_has_no_start() -> None:
     """Three coordinates cannot meet six equations of a clamped tip."""
     clamp = {**PIN, "kind": "clamped", "quaternion": [1, 0, 0, 0]}
-    motion = simulated(held(supports=[clamp], accuracy={"modes": 1, "nodes": 4}))
+    tables = held(supports=[clamp], accuracy={"modes": 1, "nodes": 4})
+    assert simulate(scene_from_dict(tables)).within_tolerance is False
+    motion = simulated(tables)
     assert motion.outcome is MotionOutcome.NO_START
     assert motion.message.startswith(MotionOutcome.NO_START.value)
     assert motion.times.shape == (0,)

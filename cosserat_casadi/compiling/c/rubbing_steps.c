@@ -89,7 +89,6 @@ typedef struct {
   real deepest;
   real *told;     /* MOST_TOLD rows of TOLD_ROW numbers */
   int told_count; /* rows that the last step wrote */
-  int was_raised; /* whether Python raised an exception */
 } model;
 
 static model *AT; /* the model of the present step */
@@ -127,7 +126,6 @@ static void put(writing *to, const real *values, int count) {
 /* Calls a function whose arguments are written. The result is NaN if Python raised an exception. */
 static const real *result_of(kernel *function, int count) {
   if (!call(function)) {
-    AT->was_raised = 1;
     for (int i = 0; i < count; i++) function->result[i] = NAN;
   }
   return function->result;
