@@ -36,6 +36,6 @@ def test_parts_of_the_solver(library: Library, name: str, harness: str) -> None:
 
 @pytest.mark.parametrize("harness", ["units_misfit.c", "units_second_variation.c"])
 def test_algorithm_with_equations_of_the_test(harness: str, tmp_path: Path) -> None:
-    include = f"-I{ROOT / 'cosserat_casadi' / 'codegen' / 'c'}"
+    include = f"-I{ROOT / 'cosserat_casadi' / 'compiling' / 'c'}"
     gcc(*C99, *SANITIZED, include, HARNESS / harness, "-lm", "-o", tmp_path / "units")
     run(tmp_path / "units")
