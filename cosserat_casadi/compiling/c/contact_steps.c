@@ -752,7 +752,7 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
     if (cut > 0) guess_stages(0, 1, &work->end, unknowns);
     if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS
-    turn_search search = {0, 0};
+    turn_search search = {0, 0, 0};
     note_starts(work->end.x, work->end.v, work->stretch_inputs, work->stretch_rates, work);
 #endif
     for (int tries = 0;; tries++) {
