@@ -154,7 +154,7 @@ def go_on(
         error += lacking(history, asked.duration)
     # An error that is not known makes that of the whole unknown.
     total = float(np.maximum(error, checkpoint.error))
-    bound = bound_of(scene, asked, tolerance_of(model, asked))
+    bound = bound_of(scene, asked, tolerance_of(scene, asked))
     motion = judged(simulator, history, total, bound, companions)
     return motion if given is None else replace(motion, tolerance=None)
 

@@ -448,7 +448,7 @@ def _simulated(
     simulation = scene.simulation
     check_simulation(first, simulation)
     assert simulation is not None, "checked"
-    tolerance = tolerance_of(first, simulation)
+    tolerance = tolerance_of(scene, simulation)
     search = _Search(moving_scene, simulation, start, progress, source, events, tolerance, ladder)
     try:
         if scene.accuracy.fixed:

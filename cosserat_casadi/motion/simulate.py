@@ -451,11 +451,10 @@ class Simulator:
     def _unbalanced(self, history: History, paths: Paths) -> float:
         """Least error of the paths of free rods with friction, over the length, by the imbalance of their energy.
 
-        It is no more than the way that it goes, over the length: what rests has no energy but rounding.
-
-        Where a rod rolls out flat its place of contact runs along it within a step, and the step may lose energy there,
-        more or less as it happens to begin: two motions that lose as much are near each other, and far from the true
-        one. The energy that is missing tells it. A rod that is held comes back, whatever its waves have lost.
+        Where a rod rolls out flat, its place of contact runs along it within a step. Such a step may lose energy, and
+        two motions that lose alike are near each other and far from the true motion: the missing energy tells the
+        error. A rod that is held comes back, whatever energy its waves have lost. The error is no more than the
+        longest way of the paths: the energy of rods at rest is rounding.
         """
         if not any(rod.base.free for rod in self.model.scene.rods):
             return 0.0
@@ -655,7 +654,7 @@ def simulate(
     if not began.found:
         return not_started(model, began)
     simulator = Simulator(model, asked, began, tell=progress, source=source, events=events)
-    tolerance = tolerance_of(model, asked)
+    tolerance = tolerance_of(model.scene, asked)
     timed = simulator.to_tolerance(tolerance, first=tolerance)
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
@@ -672,16 +671,15 @@ def bound_of(scene: Scene, simulation: Simulation, tolerance: float) -> float:
 
 def asked_of(scene: Scene, simulation: Simulation) -> float | None:
     """Error of the paths that somebody asks for; None where a scene fixes modes and no tolerance is written."""
-    if simulation.tolerance is not None:
-        return simulation.tolerance
-    return scene.motion_tolerance if scene.accuracy.binds else None
+    is_written = simulation.tolerance is not None or scene.accuracy.binds
+    return tolerance_of(scene, simulation) if is_written else None
 
 
-def tolerance_of(model: Model, simulation: Simulation) -> float:
+def tolerance_of(scene: Scene, simulation: Simulation) -> float:
     """Wanted error of the paths over the length."""
     if simulation.tolerance is not None:
         return simulation.tolerance
-    return model.scene.motion_tolerance
+    return scene.motion_tolerance
 
 
 def moving_inputs(model: Model) -> MovingInputs:
@@ -775,7 +773,7 @@ def judged(
     message = message_of(history, outcome)
     duration = simulator.simulation.duration
     beyond = told_beyond(history, duration, simulator.library)
-    entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
+    entered = told_inside(history, duration, tolerance_of(history.model.scene, simulator.simulation))
     if unresolved(history, duration, simulator.library):
         outcome = MotionOutcome.UNRESOLVED
         deep = too_deep(history, duration)
@@ -805,7 +803,7 @@ def ended_early(simulator: Simulator, history: History) -> Motion:
     outcome = outcome_of(history)
     message = message_of(history, outcome)
     if outcome is not MotionOutcome.INTERRUPTED:
-        entered = told_inside(history, history.end.time, tolerance_of(history.model, simulator.simulation))
+        entered = told_inside(history, history.end.time, tolerance_of(history.model.scene, simulator.simulation))
         if entered:
             # What is pushed into an obstacle has no motion that goes on.
             outcome = MotionOutcome.CONTACT_UNSETTLED
@@ -886,8 +884,11 @@ def _nothing() -> Account:
 
 def _strand(one: Companion) -> Strand:
     """A motion as far as it has come; its impacts are counted up to there."""
-    told, stepped = one.history, (one.history.settings, not one.history.method.stiffly_accurate)
-    return Strand(told.model.discretisation, *stepped, one.factor, one.impacts, one.by_modes, told.resume)
+    history = one.history
+    by_gauss = not history.method.stiffly_accurate
+    return Strand(
+        history.model.discretisation, history.settings, by_gauss, one.factor, one.impacts, one.by_modes, history.resume
+    )
 
 
 def _tips(history: History, time: float) -> dict[str, list[float]]:
