@@ -36,7 +36,7 @@ LINES = {
     "plots": 3_940,
     "results": 2_045,
     "rod": 6_005,
-    "scene": 9_650,
+    "scene": 9_665,
     "sweeps": 3_725,
     "tubes": 3_260,
     "view": 1_120,

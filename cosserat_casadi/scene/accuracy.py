@@ -95,8 +95,8 @@ shape = true
     )
     sections: Sections | None = Field(
         None,
-        description="sections of an element at which the push of obstacles with a width is summed, a whole number; as "
-        "many as the intervals ask for when left out",
+        description="beside obstacles with a width and without friction: sections of an element at which their push is "
+        "summed, a whole number; as many as the intervals ask for when left out",
     )
     of_rods: tuple[RodDiscretisation, ...] = Field(
         (), description="modes, nodes and rotation of single rods, as `cosserat export` writes them where rods differ"

@@ -166,11 +166,14 @@ class ObstacleRecord(Entry):
         """Whether there is friction."""
         return max(self.coefficients) > 0.0
 
+    @property
+    def presses_rods(self) -> bool:
+        """Whether there may be rods that may not enter it: it names some, or neither bodies nor disks."""
+        return self.rods is not None or (self.bodies is None and self.disks is None)
+
     def concerns(self, rod: str) -> bool:
         """Whether the rod of this name may not enter it."""
-        if self.rods is None:
-            return self.bodies is None and self.disks is None
-        return rod in self.rods
+        return self.presses_rods if self.rods is None else rod in self.rods
 
     def concerns_body(self, body: str) -> bool:
         """Whether the body of this name may not enter it."""

@@ -255,6 +255,25 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
             return
 
 
+def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
+    """Sections at which layers are summed, where no obstacle presses a rod smoothly and without friction."""
+    if scene.tables("tubes"):
+        # Of keys beside tubes their own rules tell.
+        return
+    for i, table in scene.tables("obstacles"):
+        record = OBSTACLES.record_of(table)
+        obstacle = None if record is None else sound(record, table)
+        # A faulty obstacle has faults of its own.
+        if obstacle is None or (obstacle.is_smooth and not obstacle.rubs and obstacle.presses_rods):
+            return
+    accuracy = table_of(scene.get("accuracy"))
+    tables = {(): accuracy} | {("of_rods", i): table_of(own) for i, own in enumerate(list_of(accuracy.get("of_rods")))}
+    for path, table in tables.items():
+        if "sections" in table:
+            problem = "no obstacle with a width and without friction presses a rod: nothing is summed at sections"
+            yield Fault(("accuracy", *path, "sections"), problem, "leave it out, or give an obstacle a width, m")
+
+
 def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     """A parameter, or an unknown, names no number of the scene, or one that cannot be a parameter."""
     groups: list[tuple[list[Any], Path]] = []
@@ -331,6 +350,7 @@ RULES: tuple[Rule, ...] = (
     own_rules,
     miscounted_modes,
     discretised_rods_that_are_not,
+    sections_of_no_layer,
     tube_faults,
     inputs_that_are_not,
     parameters_that_are_not,

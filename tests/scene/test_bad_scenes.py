@@ -27,6 +27,10 @@ def scene(after="", *, rods=None, before=""):
     return f"schema = 1\n{before}\n{rod() if rods is None else rods}\n{after}\n"
 
 
+SUMMED = "[accuracy]\nmodes = 2\nnodes = 4\nsections = 8\n"
+BAR = '[[obstacles]]\nname = "bar"\nkind = "sphere"\ncentre = [0.1, 0.0, 0.1]\nradius = 0.01\n'
+
+
 def of_rods(name, modes, others='modes = 2\nnodes = 4\nrotation = "magnus4"'):
     own = f'{{ rod = "{name}", modes = {modes}, nodes = 4, rotation = "magnus4" }}'
     return f"[accuracy]\n{others}\nof_rods = [{own}]"
@@ -101,6 +105,20 @@ BAD = [
     ("of_rods_of_no_rod", scene(of_rods("x", 2)), "accuracy.of_rods[0].rod", "no rod is named 'x'"),
     ("of_rods_count", scene(of_rods("finger", [2, 2])), "accuracy.of_rods[0].modes", "got 2 where the rod admits 3"),
     ("of_rods_alone", scene(of_rods("finger", 2, "")), "accuracy.of_rods", "stands without modes, nodes and rotation"),
+    ("sections_without_layers", scene(SUMMED), "accuracy.sections", "nothing is summed at sections"),
+    ("sections_exact", scene(SUMMED + BAR), "accuracy.sections", "no obstacle with a width and without friction"),
+    (
+        "sections_rubbing",
+        scene(f"{SUMMED}{BAR}width = 1e-3\nfriction = 0.1"),
+        "accuracy.sections",
+        "no obstacle with a width and without friction",
+    ),
+    (
+        "sections_of_rod",
+        scene(of_rods("finger", "2, sections = 8")),
+        "accuracy.of_rods[0].sections",
+        "nothing is summed at sections",
+    ),
     ("modes_empty", scene("[accuracy]\nmodes = []"), "accuracy.modes", "at least one"),
     ("nodes_one", scene("[accuracy]\nnodes = 1"), "accuracy.nodes", "must be >= 2"),
     ("shape_one", scene("[accuracy]\nshape = 1"), "accuracy.shape", "must be true or false, got 1"),
