@@ -121,10 +121,9 @@ def model_of(scene: Scene) -> Model:
 
 def drawn(model: Model, count: int, rng: np.random.Generator) -> FloatArray:
     """What is felt in some cases, from the priors and within the bounds, shape (count, unknowns)."""
-    known = knowledge_of(unknown_layout(model))
-    felt = known.mean + rng.normal(size=(count, len(known.mean))) / known.weight
-    bounded: FloatArray = np.clip(felt, known.lower, known.upper)
-    return bounded
+    limits = knowledge_of(unknown_layout(model)).limits
+    felt = limits.mean + rng.normal(size=(count, len(limits.mean))) / limits.weight
+    return limits.clipped(felt)
 
 
 def shapes(model: Model, felt: FloatArray, rng: np.random.Generator) -> Columns:

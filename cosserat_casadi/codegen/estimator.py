@@ -22,6 +22,7 @@ from cosserat_casadi.compiling.cache import kept_texts
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arrow_least_squares import Limits
 
 NAME = "estimate"
 """Beginning of every symbol of the libraries that estimate."""
@@ -35,21 +36,31 @@ JUDGED = ("outcome", "iterations", "cost")
 
 @dataclass(frozen=True)
 class Knowledge:
-    """Prior knowledge of the unknowns, each of shape (unknowns,).
+    """Prior knowledge of the unknowns of a row.
 
     Attributes:
-        lower: least values.
-        upper: largest values.
-        mean: expected values; any where nothing is expected.
-        weight: one over the standard deviation of these; 0 where nothing is expected.
-        size: typical sizes.
+        limits: bounds and priors.
+        size: typical sizes, shape (unknowns,).
     """
 
-    lower: FloatArray
-    upper: FloatArray
-    mean: FloatArray
-    weight: FloatArray
+    limits: Limits
     size: FloatArray
+
+    @property
+    def vectors(self) -> tuple[FloatArray, ...]:
+        """Lower and upper bounds, means, weights and sizes, as functions in C take them."""
+        limits = self.limits
+        return limits.lower, limits.upper, limits.mean, limits.weight, self.size
+
+    def with_held(self, values: FloatArray) -> Knowledge:
+        """Knowledge of these unknowns, and of numbers behind them that are held at values, shape (q,).
+
+        The cost of priors of what all rows share is counted once, not for each row: held numbers have none.
+        """
+        nothing = np.zeros_like(values)
+        held = Limits(values, values, nothing, nothing, np.zeros(len(values), dtype=bool))
+        sizes = np.where(values != 0.0, np.abs(values), 1.0)
+        return Knowledge(self.limits.with_blocks(held, 1), np.concatenate([self.size, sizes]))
 
 
 @dataclass(frozen=True)
@@ -165,8 +176,7 @@ class EstimatorLibrary:
         count = len(cases.inputs)
         results = np.empty((count, len(JUDGED) + 2 * k + k * k + self.rows + self.size))
         tables = [cases.inputs, cases.at, cases.measured, cases.weights]
-        vectors = [known.lower, known.upper, known.mean, known.weight, known.size]
-        given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *vectors)]
+        given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *known.vectors)]
         function = loaded(NAME, self.files)[f"{NAME}_estimate"]
         if function(count, *map(pointer, given), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
@@ -191,8 +201,7 @@ class EstimatorLibrary:
         count, draws, _ = steps.shape
         results = np.empty((count, draws))
         tables = [inputs, x, cases.at, cases.measured, cases.weights]
-        vectors = [known.lower, known.upper, known.mean, known.weight, known.size]
-        given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *vectors, steps)]
+        given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *known.vectors, steps)]
         function = loaded(NAME, self.files)[f"{NAME}_costs"]
         if function(count, draws, *map(pointer, given), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")

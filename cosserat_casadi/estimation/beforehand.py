@@ -6,6 +6,7 @@ These numbers are stacked as the solver in C has them: inputs, and the parameter
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -130,31 +131,8 @@ def knowledge_of(layout: UnknownLayout) -> Knowledge:
     # What is known beforehand says best what is much and what is little.
     deviations = 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0)
     sizes = np.where(limits.weight > 0.0, deviations, typical)
-    return Knowledge(limits.lower, limits.upper, limits.mean, limits.weight, sizes)
-
-
-def with_shared(known: Knowledge, shared: FloatArray) -> Knowledge:
-    """Prior knowledge of a row's unknowns, and of the numbers that all rows share where these are held.
-
-    Args:
-        known: knowledge of the row's unknowns.
-        shared: values of the numbers that all rows share, shape (q,).
-    """
-    # The cost of their priors is counted once, not for each row.
-    nothing = np.zeros_like(shared)
-    sizes = np.where(shared != 0.0, np.abs(shared), 1.0)
-    return Knowledge(
-        lower=np.concatenate([known.lower, shared]),
-        upper=np.concatenate([known.upper, shared]),
-        mean=np.concatenate([known.mean, nothing]),
-        weight=np.concatenate([known.weight, nothing]),
-        size=np.concatenate([known.size, sizes]),
-    )
-
-
-def expected_values(known: Knowledge, values: FloatArray) -> FloatArray:
-    """Prior means of the unknowns, within their bounds; the values of the arguments where there is no prior."""
-    return np.clip(np.where(known.weight > 0.0, known.mean, values), known.lower, known.upper)
+    # Searches of rows step as far as they see fit: bounds of steps by ratio are for what all cases share.
+    return Knowledge(replace(limits, ratios=np.zeros_like(limits.ratios)), sizes)
 
 
 def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatArray) -> Iterator[dict[str, FloatArray]]:
@@ -168,7 +146,8 @@ def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatAr
     known = knowledge_of(layout)
     indices = stacked_indices(layout.own, cases.inputs.size)
     of_shared = stacked_indices(layout.shared, cases.inputs.size)
-    has_prior = known.weight > 0.0
+    limits = known.limits
+    has_prior = limits.weight > 0.0
     # Parameters have bounds, whatever is known of them.
     is_parameter = np.isin(np.arange(len(indices)), of_parameters(layout))
     rng = np.random.default_rng(SEED)
@@ -177,7 +156,6 @@ def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatAr
         row[: cases.inputs.size] = inputs[rng.integers(len(inputs))]
         row[of_shared] = layout.shared_limits.mean
         signs = rng.choice([-1.0, 1.0], len(indices)) if k else np.zeros(len(indices))
-        expected = expected_values(known, row[indices])
-        deviations = np.where(has_prior, known.size, np.where(is_parameter, known.upper - known.lower, 0.0))
-        row[indices] = np.clip(expected + REACH * signs * deviations, known.lower, known.upper)
+        deviations = np.where(has_prior, known.size, np.where(is_parameter, limits.upper - limits.lower, 0.0))
+        row[indices] = limits.clipped(limits.expected(row[indices]) + REACH * signs * deviations)
         yield cases.unpack(row)

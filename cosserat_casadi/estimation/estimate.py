@@ -27,12 +27,10 @@ from cosserat_casadi.estimation.beforehand import (
     cases_within_reach,
     check_ranges,
     check_unknowns,
-    expected_values,
     knowledge_of,
     of_parameters,
     stacked_indices,
     unknown_parameters,
-    with_shared,
     with_unknown_parameters,
 )
 from cosserat_casadi.estimation.consistency import Consistency, consistency
@@ -89,7 +87,7 @@ def estimate_model(
     sections = sections_of(model, cases)
     table = stacked(model, cases, sections)
     known = knowledge_of(layout)
-    table.inputs[:, indices[:own]] = expected_values(known, table.inputs[:, indices[:own]])
+    table.inputs[:, indices[:own]] = known.limits.expected(table.inputs[:, indices[:own]])
     solver: RowSolver
     if model.scene.touches_exactly:
         # Functions are built for contacts as they change, and CasADi may not build in several threads at once.
@@ -209,8 +207,7 @@ def _rows_and_shared(search: Search, layout: UnknownLayout) -> tuple[Searched, S
     """The rows; the shared numbers; and the share of the uncertainty of these in the rows' covariances."""
     if not layout.shared:
         return search.rows(np.zeros(0)), None, np.zeros(())
-    limits = (search.known.lower, search.known.upper)
-    shared = SharedSearch(search.rows, layout.shared_limits, limits)
+    shared = SharedSearch(search.rows, layout.shared_limits, search.known.limits)
     return shared.run(layout.shared_labels, _units(layout.shared))
 
 
@@ -265,11 +262,11 @@ class Search:
     @property
     def own(self) -> int:
         """How many numbers are found in each row."""
-        return len(self.known.mean)
+        return len(self.known.size)
 
     def rows(self, shared: FloatArray) -> Searched:
         """The best of each row where the shared numbers have these values, and what else was found."""
-        known = with_shared(self.known, shared)
+        known = self.known.with_held(shared)
         tables = [self._starting(table, shared) for table in self.tables]
         runs = _found(self.library, tables, known, self.cores, self.report)
         if len(runs) > 1:
@@ -310,7 +307,7 @@ class Search:
         inputs = table.inputs.copy()
         inputs[:, list(self.indices)] = unknowns
         # The shared numbers are the same in all rows.
-        known = with_shared(self.known, unknowns[0, self.own :])
+        known = self.known.with_held(unknowns[0, self.own :])
 
         def costs(steps: FloatArray) -> FloatArray:
             held = np.zeros((*steps.shape[:2], len(self.indices) - self.own))
@@ -440,7 +437,7 @@ def _remarks(result: Estimate, known: Knowledge, drawn: Sampled | None) -> Itera
         )
     for direction, count in list(result.unseen.items())[:FEW]:
         yield f"The data do not see {direction} in {count} of {seen} rows: there the prior alone speaks."
-    at_bound = (result.values <= known.lower) | (result.values >= known.upper)
+    at_bound = known.limits.at_end(result.values)
     for k in np.flatnonzero(at_bound.any(axis=0)):
         yield f"{result.labels[k]} is at a bound in {int(at_bound[:, k].sum())} rows: its deviation means little there."
     doubtful = [case for case, is_doubtful in zip(result.cases, result.doubtful, strict=True) if is_doubtful]

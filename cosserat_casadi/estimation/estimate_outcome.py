@@ -161,8 +161,8 @@ def information_of(
         directions that the data do not see, as in :class:`Estimate`.
     """
     cases, k = found.unknowns.shape
-    has_prior = known.weight > 0.0
-    sizes = np.where(has_prior, 1.0 / np.where(has_prior, known.weight, 1.0), known.size)
+    has_prior = known.limits.weight > 0.0
+    sizes = np.where(has_prior, 1.0 / np.where(has_prior, known.limits.weight, 1.0), known.size)
     covariance = np.full((cases, k, k), np.nan)
     determined = np.zeros(cases, dtype=bool)
     rows = np.flatnonzero(found.outcome == 0)

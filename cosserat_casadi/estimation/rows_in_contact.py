@@ -152,7 +152,7 @@ class RowsInContact:
             deviations = np.sqrt(np.maximum(squares, 0.0))[:, None] * axes.T
             for step in [*deviations, *-deviations]:
                 moved = numbers[i].copy()
-                moved[: len(step)] = np.clip(moved[: len(step)] + step, known.lower, known.upper)
+                moved[: len(step)] = known.limits.clipped(moved[: len(step)] + step)
                 beside = None if state is None else row.at(moved, np.zeros((1, 0)), state)
                 if state is not None and beside is not None and state.case.touches_otherwise(beside.case):
                     changes[i] = state.case.difference(beside.case)
@@ -161,13 +161,13 @@ class RowsInContact:
 
     def _estimated(self, table: MeasuredCases, known: Knowledge) -> Estimates:
         row = _Row(self, table)
-        numbers = np.clip(table.inputs[0, self.indices], known.lower, known.upper)
+        limits = known.limits
+        numbers = limits.clipped(table.inputs[0, self.indices])
         state = row.first(numbers)
         if state is None:
             return self._ended("no_equilibrium", table, numbers)
         if not np.all(np.isfinite(state.by_numbers)):
             return self._ended("singular", table, numbers)
-        limits = Limits(known.lower, known.upper, known.mean, known.weight, np.zeros(len(numbers), dtype=bool))
         none = np.zeros(0)
         nothing = Limits(none, none, none, none, np.zeros(0, dtype=bool))
         # Contacts, and with them derivatives, may differ between two states.
@@ -177,8 +177,8 @@ class RowsInContact:
         ended = self._ended(ending, table, fit.shared, fit.iterations)
         by_numbers, residual = fit.state.by_numbers, fit.state.residual
         ended.cost[0] = fit.cost
-        ended.information[0] = by_numbers.T @ by_numbers + np.diag(known.weight**2)
-        ended.gradient[0] = by_numbers.T @ residual + known.weight * limits.residual(fit.shared)
+        ended.information[0] = by_numbers.T @ by_numbers + np.diag(limits.weight**2)
+        ended.gradient[0] = by_numbers.T @ residual + limits.weight * limits.residual(fit.shared)
         ended.residuals[0] = residual
         ended.x[0] = projected(fit.state.case.found.solution, self.model.at())
         return ended
@@ -208,9 +208,9 @@ class RowsInContact:
             start = row.first(numbers)
             for k, step in enumerate(of_row):
                 drawn = numbers + step
-                inside = np.all((drawn >= known.lower) & (drawn <= known.upper))
+                inside = np.all(drawn == known.limits.clipped(drawn))
                 state = row.at(drawn, np.zeros((1, 0)), start) if start is not None and inside else None
                 if state is not None:
-                    prior = known.weight * (drawn - known.mean)
+                    prior = known.limits.residual(drawn)
                     costs[i, k] = float(state.residual @ state.residual + prior @ prior) / 2
         return costs

@@ -71,12 +71,12 @@ class SharedSearch:
     Attributes:
         search: shared numbers ↦ the rows with these held; their own numbers stand before the shared ones.
         limits: bounds and priors of the shared numbers; each has a prior.
-        own: least and largest values of the numbers of each row.
+        own: bounds and priors of the numbers of each row.
     """
 
     search: Callable[[FloatArray], Searched]
     limits: Limits
-    own: tuple[FloatArray, FloatArray]
+    own: Limits
 
     def run(self, labels: tuple[str, ...], units: tuple[str, ...]) -> tuple[Searched, SharedNumbers, FloatArray]:
         """Estimate the numbers that all rows share, and the rows with them.
@@ -144,11 +144,9 @@ class SharedSearch:
 
     def _of_own(self, found: Estimates) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
         """Information of rows with an estimate on their numbers, and which of these numbers are at no bound."""
-        k = len(self.own[0])
+        k = len(self.own.lower)
         rows = found.outcome == 0
-        lower, upper = self.own
-        values = found.unknowns[rows, :k]
-        free = ~((values <= lower) | (values >= upper))
+        free = ~self.own.at_end(found.unknowns[rows, :k])
         matrices = found.information[rows, :k, :k] * free[:, :, None] * free[:, None, :]
         return matrices + np.eye(k) * np.where(free, 0.0, 1.0)[:, :, None], free
 
@@ -166,7 +164,7 @@ class SharedSearch:
         """Costs and volumes of the rows that both have found, and the cost of the prior."""
         of_rows = one[0].cost + self._volumes(one[0])
         both = np.isfinite(of_rows) & np.isfinite(self._volumes(other[0]))
-        apart = self.limits.weight * (values - self.limits.mean)
+        apart = self.limits.residual(values)
         return float(of_rows[both].sum() + apart @ apart / 2)
 
     def _reduced(self, found: Estimates) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -176,7 +174,7 @@ class SharedSearch:
             slope, the sum of their derivatives, shape (q,); the sum of their second derivatives, shape (q, q); and how
             the numbers of each row move with the shared ones, shape (cases, k, q), 0 where not found.
         """
-        k = len(self.own[0])
+        k = len(self.own.lower)
         cases, numbers = found.unknowns.shape
         q = numbers - k
         rows = found.outcome == 0

@@ -124,6 +124,10 @@ class Limits:
         """Values brought into their range."""
         return np.clip(values, self.lower, self.upper)
 
+    def expected(self, values: FloatArray) -> FloatArray:
+        """Expected values within their bounds; these values, within the bounds too, where nothing is expected."""
+        return self.clipped(np.where(self.weight > 0.0, self.mean, values))
+
     def within_step(self, values: FloatArray) -> Limits:
         """Bounds and priors, narrowed to one step from these values."""
         lower = np.where(self.ratios, values / MOST_RATIO, -np.inf)

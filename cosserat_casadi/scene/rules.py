@@ -260,7 +260,7 @@ def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
     if scene.tables("tubes"):
         # Of keys beside tubes their own rules tell.
         return
-    for i, table in scene.tables("obstacles"):
+    for _, table in scene.tables("obstacles"):
         record = OBSTACLES.record_of(table)
         obstacle = None if record is None else sound(record, table)
         # A faulty obstacle has faults of its own.

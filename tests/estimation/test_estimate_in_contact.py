@@ -16,6 +16,7 @@ from cosserat_casadi.estimation.estimate_outcome import Estimate
 from cosserat_casadi.estimation.rows_in_contact import RowsInContact
 from cosserat_casadi.estimation.stacking import sections_of, stacked
 from cosserat_casadi.identification.measured_cases import read_cases
+from cosserat_casadi.numerics.arrow_least_squares import Limits
 from tests.identification.over_floor import MARKERS, MODULUS, WEIGHTS, markers, tables
 
 
@@ -62,8 +63,9 @@ def test_contacts_that_change_within_a_deviation_are_named() -> None:
     table = stacked(model, cases, sections)
     narrow, wide = ([[sigma**2]] for sigma in (1e-5, 5e-3))
     numbers, covariance = np.array([[-0.006], [np.nan], [-0.014]]), np.array([narrow, wide, wide])
-    known = Knowledge(*(np.array([number]) for number in (-0.5, 0.1, 0.0, 0.0, 1.0)))
+    limits = Limits(*(np.array([number]) for number in (-0.5, 0.1, 0.0, 0.0)), ratios=np.zeros(1, dtype=bool))
+    known = Knowledge(limits, np.ones(1))
     assert rows.contact_changes(table, numbers, covariance, known) == {2: "a point of 'rod' on 'floor'"}
     # Within bounds that are nearer than a deviation contacts stay.
-    bounded = replace(known, lower=np.array([-0.0141]), upper=np.array([-0.0139]))
+    bounded = replace(known, limits=replace(limits, lower=np.array([-0.0141]), upper=np.array([-0.0139])))
     assert rows.contact_changes(table, numbers[[1, 1, 2]], covariance, bounded) == {}

@@ -193,7 +193,7 @@ def test_a_shared_number_at_its_bound_stays_there_while_others_settle() -> None:
         )
         return found, None
 
-    own = (np.full(1, -np.inf), np.full(1, np.inf))
+    own = Limits(*(np.array([number]) for number in (-np.inf, np.inf, 0.0, 0.0)), ratios=np.zeros(1, dtype=bool))
     _, shared, _ = SharedSearch(search, limits, own).run(("p", "q"), ("1", "1"))
     with_priors = np.vstack([matrix, 0.1 * np.eye(3)[1:]])
     other = lsq_linear(with_priors, np.append(data, [0.0, 0.0]), (-np.inf, [np.inf, 1.5, np.inf]), tol=1e-14)
