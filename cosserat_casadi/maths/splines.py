@@ -55,8 +55,26 @@ def table_coefficients(knots: FloatArray, values: FloatArray, interpolation: Int
     if interpolation == "linear":
         coefficients[1:-1, 1] = np.diff(values, axis=0) / np.diff(knots)[:, None]
     elif interpolation == "cubic":
-        coefficients[1:-1] = _cubic_coefficients(knots, values)
+        coefficients[1:-1] = cubic_coefficients(knots, values)
     return coefficients
+
+
+def cubic_coefficients(knots: FloatArray, values: FloatArray, *, natural: bool = False) -> FloatArray:
+    """Coefficients of 1, s, s², s³ of the cubic spline through values, shape (k − 1, 4, entries).
+
+    Args:
+        knots: ascending, shape (k,).
+        values: at the knots, shape (k, entries).
+        natural: whether the spline has no curvature at its ends, in place of no slope.
+    """
+    spacing = np.diff(knots)[:, None]
+    chord = np.diff(values, axis=0) / spacing
+    slopes = _spline_slopes(spacing, chord, natural=natural)
+    left = slopes[:-1]
+    right = slopes[1:]
+    quadratic = (3 * chord - 2 * left - right) / spacing
+    cubic = (left + right - 2 * chord) / spacing**2
+    return np.stack([values[:-1], left, quadratic, cubic], axis=1)
 
 
 def table_values(
@@ -152,39 +170,32 @@ def _halves(points: FloatArray) -> FloatArray:
     return both.reshape(-1, *both.shape[2:])
 
 
-def _cubic_coefficients(knots: FloatArray, values: FloatArray) -> FloatArray:
-    """Coefficients of the cubic spline of zero slope at both ends, shape (k − 1, 4, entries)."""
-    spacing = np.diff(knots)[:, None]
-    chord = np.diff(values, axis=0) / spacing
-    slopes = _spline_slopes(spacing, chord)
-    left = slopes[:-1]
-    right = slopes[1:]
-    quadratic = (3 * chord - 2 * left - right) / spacing
-    cubic = (left + right - 2 * chord) / spacing**2
-    return np.stack([values[:-1], left, quadratic, cubic], axis=1)
-
-
-def _spline_slopes(spacing: FloatArray, chord: FloatArray) -> FloatArray:
-    """Slopes at the knots that make accelerations continuous, zero at both ends, shape (k, entries).
+def _spline_slopes(spacing: FloatArray, chord: FloatArray, *, natural: bool) -> FloatArray:
+    """Slopes at the knots that make accelerations continuous, shape (k, entries).
 
     The equation of an inner knot i is h_i m_(i−1) + 2 (h_(i−1) + h_i) m_i + h_(i−1) m_(i+1) = 3 (h_i d_(i−1) + h_(i−1)
     d_i) with spacings h and slopes of chords d. It is solved by elimination downwards, then upwards: its matrix is
-    diagonally dominant and needs no pivots.
+    diagonally dominant and needs no pivots. See C. de Boor, *A Practical Guide to Splines*, Springer 2001, chapter IV.
 
     Args:
-        spacing: h, shape (k − 1, 1), s.
-        chord: d, shape (k − 1, entries), units per s.
+        spacing: h, shape (k − 1, 1).
+        chord: d, shape (k − 1, entries).
+        natural: whether accelerations, 2 m_0 + m_1 − 3 d_0 and the like, are zero at the ends, in place of slopes.
     """
     before = spacing[:-1]
     after = spacing[1:]
-    diagonal = 2 * (before + after)
-    right_side = 3 * (after * chord[:-1] + before * chord[1:])
-    inner = len(right_side)
-    for i in range(1, inner):
-        factor = after[i] / diagonal[i - 1]
-        diagonal[i] -= factor * before[i - 1]
-        right_side[i] -= factor * right_side[i - 1]
-    slopes = np.zeros((len(chord) + 1, chord.shape[1]))
-    for i in reversed(range(inner)):
-        slopes[i + 1] = (right_side[i] - before[i] * slopes[i + 2]) / diagonal[i]
+    one = np.ones((1, 1))
+    beside = one if natural else 0.0 * one
+    # Row i is left_(i−1) m_(i−1) + diagonal_i m_i + right_i m_(i+1).
+    left = np.vstack([after, beside])
+    right = np.vstack([beside, before])
+    diagonal = np.vstack([one + beside, 2 * (before + after), one + beside])
+    slopes = np.vstack([3 * beside * chord[:1], 3 * (after * chord[:-1] + before * chord[1:]), 3 * beside * chord[-1:]])
+    for i in range(1, len(slopes)):
+        factor = left[i - 1] / diagonal[i - 1]
+        diagonal[i] -= factor * right[i - 1]
+        slopes[i] -= factor * slopes[i - 1]
+    slopes[-1] /= diagonal[-1]
+    for i in reversed(range(len(slopes) - 1)):
+        slopes[i] = (slopes[i] - right[i] * slopes[i + 1]) / diagonal[i]
     return slopes

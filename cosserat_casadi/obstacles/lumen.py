@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.splines import cubic_coefficients
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.obstacle import Obstacle, across, rounded_norm
 from cosserat_casadi.scene.obstacle_records import Lumen
@@ -29,66 +30,6 @@ SMALLEST_SLOPE = 0.1
 """Least rate of the stationarity that a Newton step divides by: no step runs away where balls nest."""
 
 
-class CubicSpline:
-    """A cubic spline with two continuous derivatives through k points, constant slopes or curvatures at its ends.
-
-    C. de Boor, *A Practical Guide to Splines*, Springer 2001, chapter IV.
-
-    Attributes:
-        knots: ascending abscissae, shape (k,).
-        values: at the knots, shape (k, d).
-        curvatures: second derivatives at the knots, shape (k, d).
-    """
-
-    def __init__(self, knots: FloatArray, values: FloatArray, *, flat_ends: bool) -> None:
-        """The spline whose ends have no slope, or no curvature."""
-        self.knots = knots
-        self.values = values
-        widths = np.diff(knots)
-        slopes = np.diff(values, axis=0) / widths[:, None]
-        count = len(knots)
-        matrix = np.eye(count)
-        right = np.zeros_like(values)
-        for i in range(1, count - 1):
-            # The first derivative is continuous.
-            matrix[i, i - 1 : i + 2] = [widths[i - 1], 2 * (widths[i - 1] + widths[i]), widths[i]]
-            right[i] = 6 * (slopes[i] - slopes[i - 1])
-        if flat_ends:
-            matrix[0, :2] = [2 * widths[0], widths[0]]
-            right[0] = 6 * slopes[0]
-            matrix[-1, -2:] = [widths[-1], 2 * widths[-1]]
-            right[-1] = -6 * slopes[-1]
-        self.curvatures = np.linalg.solve(matrix, right)
-
-    @property
-    def powers(self) -> FloatArray:
-        """Coefficients of 1, s − s₀, … (s − s₀)³ in the first piece, shape (4, d)."""
-        width = self.knots[1] - self.knots[0]
-        first, second = self.curvatures[:2]
-        slope = (self.values[1] - self.values[0]) / width - width * (2 * first + second) / 6
-        return np.array([self.values[0], slope, first / 2, (second - first) / (6 * width)])
-
-    @property
-    def end_slope(self) -> FloatArray:
-        """First derivative at the last knot, shape (d,)."""
-        width = self.knots[-1] - self.knots[-2]
-        chord = (self.values[-1] - self.values[-2]) / width
-        return np.asarray(chord + width * (self.curvatures[-2] + 2 * self.curvatures[-1]) / 6)
-
-    def written(self, s: Matrix) -> Matrix:
-        """The spline at one abscissa between its ends as an expression, d×1.
-
-        Its third derivative alone jumps at the knots: a cubic and truncated powers, c₀(s) + Σ j_i (s − s_i)₊³ / 6.
-        """
-        local = s - float(self.knots[0])
-        constant, linear, quadratic, cubic = (ca.DM(row) for row in self.powers)
-        value: Matrix = constant + local * (linear + local * (quadratic + local * cubic))
-        third = np.diff(self.curvatures, axis=0) / np.diff(self.knots)[:, None]
-        for knot, jump in zip(self.knots[1:-1], np.diff(third, axis=0), strict=True):
-            value = value + ca.DM(jump / 6) * ca.fmax(s - float(knot), 0.0) ** 3
-        return value
-
-
 class CentreLine:
     """Line and radius of a lumen over the abscissa s, m.
 
@@ -100,8 +41,9 @@ class CentreLine:
         points = np.asarray(lumen.points)
         chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
         self.knots = np.concatenate([[0.0], np.cumsum(chords)])
-        self._line = CubicSpline(self.knots, points, flat_ends=False)
-        self._radius = CubicSpline(self.knots, np.asarray(lumen.radii)[:, None], flat_ends=True)
+        # Without curvature at the ends, so that the straight parts beyond them meet smoothly.
+        self._line = cubic_coefficients(self.knots, points, natural=True)
+        self._radius = cubic_coefficients(self.knots, np.asarray(lumen.radii)[:, None])
         symbol = ca.SX.sym("s")
         self._function = ca.Function("line", [symbol], list(self.written(symbol)))
 
@@ -114,10 +56,24 @@ class CentreLine:
         """Point, 3×1, and radius, 1×1, of one abscissa as expressions."""
         start, end = float(self.knots[0]), float(self.knots[-1])
         inside = ca.fmin(ca.fmax(s, start), end)
-        # Without curvature at the ends, so that the straight parts beyond them meet smoothly.
-        at_start = ca.DM(self._line.powers[1]) * ca.fmin(s - start, 0.0)
-        at_end = ca.DM(self._line.end_slope) * ca.fmax(s - end, 0.0)
-        return self._line.written(inside) + at_start + at_end, self._radius.written(inside)
+        _, slope, quadratic, cubic = self._line[-1]
+        width = end - float(self.knots[-2])
+        at_start = ca.DM(self._line[0, 1]) * ca.fmin(s - start, 0.0)
+        at_end = ca.DM(slope + width * (2 * quadratic + width * 3 * cubic)) * ca.fmax(s - end, 0.0)
+        line, radius = (self._spline(coefficients, inside) for coefficients in (self._line, self._radius))
+        return line + at_start + at_end, radius
+
+    def _spline(self, coefficients: FloatArray, s: Matrix) -> Matrix:
+        """A spline of d entries at one abscissa between its ends, d×1.
+
+        Its third derivative alone jumps at the knots: a cubic and truncated powers, c₀(s) + Σ j_i (s − s_i)₊³.
+        """
+        local = s - float(self.knots[0])
+        constant, linear, quadratic, cubic = (ca.DM(row) for row in coefficients[0])
+        value: Matrix = constant + local * (linear + local * (quadratic + local * cubic))
+        for knot, jump in zip(self.knots[1:-1], np.diff(coefficients[:, 3], axis=0), strict=True):
+            value = value + ca.DM(jump) * ca.fmax(s - float(knot), 0.0) ** 3
+        return value
 
 
 @final

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline, interp1d
 
-from cosserat_casadi.maths.splines import Interpolation, least_norm, spline_basis, table_values
+from cosserat_casadi.maths.splines import Interpolation, cubic_coefficients, least_norm, spline_basis, table_values
 from cosserat_casadi.maths.typing import FloatArray
 
 KNOTS = np.array([0.1, 0.4, 0.5, 1.3])
@@ -50,6 +50,12 @@ def test_weights_of_values_at_knots_are_those_of_scipy() -> None:
     inside = CubicSpline(KNOTS, values, bc_type="clamped")(places, 1)
     wanted = np.where((places > KNOTS[0]) & (places < KNOTS[-1]), inside, 0.0)
     assert_allclose(slope.full()[0], wanted, rtol=0, atol=1e-13)
+
+
+def test_a_spline_may_have_no_curvature_at_its_ends() -> None:
+    values = drawn(3)
+    wanted = np.moveaxis(CubicSpline(KNOTS, values, bc_type="natural").c[::-1], 0, 1)
+    assert_allclose(cubic_coefficients(KNOTS, values, natural=True), wanted, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
