@@ -23,7 +23,7 @@ from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidu
 from cosserat_casadi.motion.repeated_call import MachineCode, RepeatedCall
 from cosserat_casadi.motion.steps_library import CALL, StepsRecord, steps_library
 from cosserat_casadi.numerics.collocation import STAGES, radau
-from cosserat_casadi.numerics.integration import StepOutcome
+from cosserat_casadi.numerics.integration import IntegrationCost, StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation
 from cosserat_casadi.numerics.step import CarriedStep, TimeStep
 from cosserat_casadi.numerics.step_control import StepControl
@@ -238,10 +238,12 @@ class CompiledSteps:
         outcome = OUTCOMES[self._library.steps_taken(ctypes.byref(record))]
         control.wanted, control.refused = record.wanted, bool(record.refused)
         control.last_size, control.last_error = record.last_size, record.last_error
-        run.rejected += record.rejected - counted[0]
-        run.iterations += record.iterations - counted[1]
-        run.jacobians += record.jacobians - counted[2]
-        run.factorisations += record.factorisations - counted[3]
+        run.cost += IntegrationCost(
+            rejected=record.rejected - counted[0],
+            iterations=record.iterations - counted[1],
+            jacobians=record.jacobians - counted[2],
+            factorisations=record.factorisations - counted[3],
+        )
         run.size = record.size
         self._taken(facts[: record.steps], ends, stages)
         raise_what_was_raised()

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from enum import Enum
 
 import numpy as np
@@ -70,11 +71,15 @@ class IntegrationCost:
         factorisations: times that the matrices of a step were factorised.
     """
 
-    steps: int
-    rejected: int
-    iterations: int
-    jacobians: int
-    factorisations: int
+    steps: int = 0
+    rejected: int = 0
+    iterations: int = 0
+    jacobians: int = 0
+    factorisations: int = 0
+
+    def __add__(self, other: IntegrationCost) -> IntegrationCost:
+        """Numbers of both integrations."""
+        return IntegrationCost(*map(operator.add, astuple(self), astuple(other)))
 
 
 @dataclass(frozen=True)
@@ -107,7 +112,7 @@ class Integration:
 
 def stalled_at(start: Instant) -> Integration:
     """A piece without a step: there are no equations to go on with."""
-    return Integration(start, (), StepOutcome.STALLED, float("nan"), IntegrationCost(0, 0, 0, 0, 0))
+    return Integration(start, (), StepOutcome.STALLED, float("nan"), IntegrationCost())
 
 
 AfterStep = Callable[[float, float], None]

@@ -68,10 +68,7 @@ class StepRun:
         linearisation: the Jacobian in use; None where the next step needs a new one.
         fresh: whether that Jacobian was evaluated after the last instant reached.
         matrices: the linear systems in use; None where there are none for the Jacobian.
-        rejected: steps refused.
-        iterations: Newton iterations.
-        jacobians: Jacobians evaluated.
-        factorisations: times that matrices were factorised.
+        cost: numbers so far, of steps refused too.
         longest: step taken so far, s.
         before: what the first step takes over from those up to the start; None where there are none.
         memory: what a next step would take over after the last one taken.
@@ -94,10 +91,7 @@ class StepRun:
     linearisation: Linearisation | None = None
     fresh: bool = False
     matrices: StepMatrices | None = None
-    rejected: int = 0
-    iterations: int = 0
-    jacobians: int = 0
-    factorisations: int = 0
+    cost: IntegrationCost = field(default_factory=IntegrationCost)
     longest: float = 0.0
     before: CarriedStep | None = None
     memory: CarriedStep | None = None
@@ -131,13 +125,7 @@ class StepRun:
 
     def result(self, outcome: StepOutcome) -> Integration:
         """The end of the integration."""
-        statistics = IntegrationCost(
-            steps=len(self.steps),
-            rejected=self.rejected,
-            iterations=self.iterations,
-            jacobians=self.jacobians,
-            factorisations=self.factorisations,
-        )
+        statistics = replace(self.cost, steps=len(self.steps))
         return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard, self.memory)
 
     def renew_jacobian(self) -> None:
@@ -165,9 +153,9 @@ class StepRun:
         """
         stages = CoupledStages(self.equations, self.method, self.now, self.size)
         solution = solve_coupled_stages(stages, guess, self.bounds)
-        self.iterations += solution.iterations
-        self.jacobians += solution.iterations * self.method.stages
-        self.factorisations += solution.iterations
+        count = solution.iterations
+        jacobians = count * self.method.stages
+        self.cost += IntegrationCost(iterations=count, jacobians=jacobians, factorisations=count)
         return solution if solution.outcome is StageOutcome.CONVERGED else None
 
     def _solve_with_jacobian(self) -> StageSolution | StepOutcome:
@@ -178,20 +166,20 @@ class StepRun:
             self.linearised_at = self._middle(guess)
             linearisation = self.equations.linearised(self.linearised_at)
             self.linearisation = linearisation
-            self.jacobians += 1
+            self.cost += IntegrationCost(jacobians=1)
             self.fresh = True
         if not linearisation.finite:
             return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE
         if self.matrices is None or self.matrices.step != self.size:
             of_unknowns = (self.equations.differential, self.equations.eliminated)
             self.matrices = step_matrices(self.method, self.size, linearisation, *of_unknowns)
-            self.factorisations += 1
+            self.cost += IntegrationCost(factorisations=1)
         if self.matrices is None:
             return StepOutcome.SINGULAR
         share = min(1.0, self.size / self.settings.drifting) if self.settings.drifting else 1.0
         bounds = replace(self.bounds, error=share * self.bounds.error)
         solution = solve_stages(self.equations, self.matrices, self.now, guess, bounds)
-        self.iterations += solution.iterations
+        self.cost += IntegrationCost(iterations=solution.iterations)
         if solution.outcome is StageOutcome.CONVERGED:
             return solution
         return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE

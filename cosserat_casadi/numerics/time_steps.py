@@ -17,7 +17,14 @@ import numpy as np
 from cosserat_casadi.numerics.collocation import STAGES, Collocation
 from cosserat_casadi.numerics.given_step import solve_given_step
 from cosserat_casadi.numerics.guards import Guards
-from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings
+from cosserat_casadi.numerics.integration import (
+    AfterStep,
+    Integration,
+    IntegrationCost,
+    Settle,
+    StepOutcome,
+    StepSettings,
+)
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import CarriedStep
 from cosserat_casadi.numerics.step_control import StepControl
@@ -219,12 +226,12 @@ def _controlled_steps(
             if after_step is not None:
                 after_step(end, run.steps[-1].size)
             if stepper_after is not None and run.now.time < run.stop:
-                stepper = stepper_after(run.iterations, (run.now.time - run.begun) / length)
+                stepper = stepper_after(run.cost.iterations, (run.now.time - run.begun) / length)
                 if stepper is not None:
                     return _steps_elsewhere(run, control, stepper(run, control, shortest), after_step)
             continue
         reason = refusal
-        run.rejected += 1
+        run.cost += IntegrationCost(rejected=1)
         if refusal is StepOutcome.SINGULAR:
             singular_steps += 1
     run.size = control.wanted
