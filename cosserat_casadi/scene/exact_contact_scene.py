@@ -21,6 +21,9 @@ def with_exact_contact(scene: Scene) -> Scene:
         for key in SMOOTH_KEYS:
             obstacle.pop(key, None)
             gone |= {f"{owner}.{key}" for owner in (obstacle["name"], f"obstacles.{number}", f"obstacles[{number}]")}
+    accuracy = tables.get("accuracy", {})
+    for discretisation in (accuracy, *accuracy.get("of_rods", [])):
+        discretisation.pop("sections", None)
     if scene.parameters:
         left = ([name for name in names_in(names) if name not in gone] for names in scene.parameters)
         tables["parameters"] = [names for names in left if names]

@@ -256,7 +256,7 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
 
 
 def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
-    """Sections at which layers are summed, where no obstacle presses a rod smoothly and without friction."""
+    """Sections at which layers are summed, where no obstacle presses a rod smoothly."""
     if scene.tables("tubes"):
         # Of keys beside tubes their own rules tell.
         return
@@ -264,13 +264,13 @@ def sections_of_no_layer(scene: SceneTables) -> Iterator[Fault]:
         record = OBSTACLES.record_of(table)
         obstacle = None if record is None else sound(record, table)
         # A faulty obstacle has faults of its own.
-        if obstacle is None or (obstacle.is_smooth and not obstacle.rubs and obstacle.presses_rods):
+        if obstacle is None or (obstacle.is_smooth and obstacle.presses_rods):
             return
     accuracy = table_of(scene.get("accuracy"))
     tables = {(): accuracy} | {("of_rods", i): table_of(own) for i, own in enumerate(list_of(accuracy.get("of_rods")))}
     for path, table in tables.items():
         if "sections" in table:
-            problem = "no obstacle with a width and without friction presses a rod: nothing is summed at sections"
+            problem = "no obstacle with a width presses a rod: nothing is summed at sections"
             yield Fault(("accuracy", *path, "sections"), problem, "leave it out, or give an obstacle a width, m")
 
 

@@ -511,6 +511,11 @@ def test_the_command_line_tells_that_contact_is_smooth(tmp_path: Path) -> None:
     assert "smooth plane" in checked.stdout
 
 
+def test_the_scene_with_exact_contact_has_no_layer_to_sum() -> None:
+    smooth = parse_scene(ROD + PUSH + TABLE, ["accuracy.sections=8"])
+    assert with_exact_contact(smooth).accuracy == parse_scene(ROD + PUSH).accuracy
+
+
 def test_the_scene_with_exact_contact_keeps_its_bodies() -> None:
     """Without its bodies the table would hold off the rod, which it does not concern."""
     body = '[[bodies]]\nname = "ball"\nradius = 0.02\n'

@@ -106,13 +106,7 @@ BAD = [
     ("of_rods_count", scene(of_rods("finger", [2, 2])), "accuracy.of_rods[0].modes", "got 2 where the rod admits 3"),
     ("of_rods_alone", scene(of_rods("finger", 2, "")), "accuracy.of_rods", "stands without modes, nodes and rotation"),
     ("sections_without_layers", scene(SUMMED), "accuracy.sections", "nothing is summed at sections"),
-    ("sections_exact", scene(SUMMED + BAR), "accuracy.sections", "no obstacle with a width and without friction"),
-    (
-        "sections_rubbing",
-        scene(f"{SUMMED}{BAR}width = 1e-3\nfriction = 0.1"),
-        "accuracy.sections",
-        "no obstacle with a width and without friction",
-    ),
+    ("sections_exact", scene(SUMMED + BAR), "accuracy.sections", "no obstacle with a width presses a rod"),
     (
         "sections_of_rod",
         scene(of_rods("finger", "2, sections = 8")),
