@@ -223,8 +223,8 @@ follower_reissner_status follower_reissner_solve_sensitivity(const follower_reis
    belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
-   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
-   once. options may be null for the defaults; info may be null. */
+   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
+   by the inputs once. options may be null for the defaults; info may be null. */
 follower_reissner_status follower_reissner_track(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
                              const follower_reissner_options *options, follower_reissner_real *d_x_d_inputs,
                              follower_reissner_real *d_poses_d_inputs, follower_reissner_workspace *workspace, follower_reissner_info *info);
@@ -236,8 +236,9 @@ follower_reissner_status follower_reissner_track(const follower_reissner_real *i
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    follower_reissner_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
-   at the end the index of resolution once. options and info may be null. */
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals,
+   m + c + 6 Jacobians and c + 1 rates, and at the end the index of resolution once. options and info may
+   be null. */
 follower_reissner_status follower_reissner_recover(const follower_reissner_real *inputs, follower_reissner_real *x, follower_reissner_memory *memory,
                                const follower_reissner_options *options, follower_reissner_workspace *workspace, follower_reissner_info *info);
 
@@ -260,8 +261,8 @@ void follower_reissner_input_jacobian(const follower_reissner_real *x, const fol
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of follower_reissner_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 31 unknowns.
-   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of
+   31 unknowns. NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 follower_reissner_status follower_reissner_error_estimate(const follower_reissner_real *inputs, const follower_reissner_real *x, follower_reissner_real *error_estimate,
                                       follower_reissner_workspace *workspace);
 

@@ -220,8 +220,8 @@ nitinol_wire_status nitinol_wire_solve_sensitivity(const nitinol_wire_real *inpu
    belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
-   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
-   once. options may be null for the defaults; info may be null. */
+   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
+   by the inputs once. options may be null for the defaults; info may be null. */
 nitinol_wire_status nitinol_wire_track(const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_memory *memory,
                              const nitinol_wire_options *options, nitinol_wire_real *d_x_d_inputs,
                              nitinol_wire_real *d_poses_d_inputs, nitinol_wire_workspace *workspace, nitinol_wire_info *info);
@@ -233,8 +233,9 @@ nitinol_wire_status nitinol_wire_track(const nitinol_wire_real *inputs, nitinol_
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    nitinol_wire_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
-   at the end the index of resolution once. options and info may be null. */
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals,
+   m + c + 6 Jacobians and c + 1 rates, and at the end the index of resolution once. options and info may
+   be null. */
 nitinol_wire_status nitinol_wire_recover(const nitinol_wire_real *inputs, nitinol_wire_real *x, nitinol_wire_memory *memory,
                                const nitinol_wire_options *options, nitinol_wire_workspace *workspace, nitinol_wire_info *info);
 
@@ -257,8 +258,8 @@ void nitinol_wire_input_jacobian(const nitinol_wire_real *x, const nitinol_wire_
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of nitinol_wire_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 16 unknowns.
-   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of
+   16 unknowns. NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 nitinol_wire_status nitinol_wire_error_estimate(const nitinol_wire_real *inputs, const nitinol_wire_real *x, nitinol_wire_real *error_estimate,
                                       nitinol_wire_workspace *workspace);
 

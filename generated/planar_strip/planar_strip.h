@@ -218,8 +218,8 @@ planar_strip_status planar_strip_solve_sensitivity(const planar_strip_real *inpu
    belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
-   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
-   once. options may be null for the defaults; info may be null. */
+   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
+   by the inputs once. options may be null for the defaults; info may be null. */
 planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_strip_real *x, planar_strip_memory *memory,
                              const planar_strip_options *options, planar_strip_real *d_x_d_inputs,
                              planar_strip_real *d_poses_d_inputs, planar_strip_workspace *workspace, planar_strip_info *info);
@@ -231,8 +231,9 @@ planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_s
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    planar_strip_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
-   at the end the index of resolution once. options and info may be null. */
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals,
+   m + c + 6 Jacobians and c + 1 rates, and at the end the index of resolution once. options and info may
+   be null. */
 planar_strip_status planar_strip_recover(const planar_strip_real *inputs, planar_strip_real *x, planar_strip_memory *memory,
                                const planar_strip_options *options, planar_strip_workspace *workspace, planar_strip_info *info);
 
@@ -255,8 +256,8 @@ void planar_strip_input_jacobian(const planar_strip_real *x, const planar_strip_
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of planar_strip_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 7 unknowns.
-   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of
+   7 unknowns. NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 planar_strip_status planar_strip_error_estimate(const planar_strip_real *inputs, const planar_strip_real *x, planar_strip_real *error_estimate,
                                       planar_strip_workspace *workspace);
 

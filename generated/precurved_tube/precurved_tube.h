@@ -220,8 +220,8 @@ precurved_tube_status precurved_tube_solve_sensitivity(const precurved_tube_real
    belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
-   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
-   once. options may be null for the defaults; info may be null. */
+   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
+   by the inputs once. options may be null for the defaults; info may be null. */
 precurved_tube_status precurved_tube_track(const precurved_tube_real *inputs, precurved_tube_real *x, precurved_tube_memory *memory,
                              const precurved_tube_options *options, precurved_tube_real *d_x_d_inputs,
                              precurved_tube_real *d_poses_d_inputs, precurved_tube_workspace *workspace, precurved_tube_info *info);
@@ -233,8 +233,9 @@ precurved_tube_status precurved_tube_track(const precurved_tube_real *inputs, pr
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    precurved_tube_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
-   at the end the index of resolution once. options and info may be null. */
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals,
+   m + c + 6 Jacobians and c + 1 rates, and at the end the index of resolution once. options and info may
+   be null. */
 precurved_tube_status precurved_tube_recover(const precurved_tube_real *inputs, precurved_tube_real *x, precurved_tube_memory *memory,
                                const precurved_tube_options *options, precurved_tube_workspace *workspace, precurved_tube_info *info);
 
@@ -257,8 +258,8 @@ void precurved_tube_input_jacobian(const precurved_tube_real *x, const precurved
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of precurved_tube_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 22 unknowns.
-   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of
+   22 unknowns. NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 precurved_tube_status precurved_tube_error_estimate(const precurved_tube_real *inputs, const precurved_tube_real *x, precurved_tube_real *error_estimate,
                                       precurved_tube_workspace *workspace);
 

@@ -297,8 +297,8 @@ six_rod_platform_status six_rod_platform_solve_sensitivity(const six_rod_platfor
    belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
-   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
-   once. options may be null for the defaults; info may be null. */
+   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
+   by the inputs once. options may be null for the defaults; info may be null. */
 six_rod_platform_status six_rod_platform_track(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
                              const six_rod_platform_options *options, six_rod_platform_real *d_x_d_inputs,
                              six_rod_platform_real *d_poses_d_inputs, six_rod_platform_workspace *workspace, six_rod_platform_info *info);
@@ -310,8 +310,9 @@ six_rod_platform_status six_rod_platform_track(const six_rod_platform_real *inpu
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    six_rod_platform_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
-   at the end the index of resolution once. options and info may be null. */
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals,
+   m + c + 6 Jacobians and c + 1 rates, and at the end the index of resolution once. options and info may
+   be null. */
 six_rod_platform_status six_rod_platform_recover(const six_rod_platform_real *inputs, six_rod_platform_real *x, six_rod_platform_memory *memory,
                                const six_rod_platform_options *options, six_rod_platform_workspace *workspace, six_rod_platform_info *info);
 
@@ -334,8 +335,8 @@ void six_rod_platform_input_jacobian(const six_rod_platform_real *x, const six_r
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of six_rod_platform_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 241 unknowns.
-   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of
+   241 unknowns. NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 six_rod_platform_status six_rod_platform_error_estimate(const six_rod_platform_real *inputs, const six_rod_platform_real *x, six_rod_platform_real *error_estimate,
                                       six_rod_platform_workspace *workspace);
 

@@ -240,8 +240,8 @@ tendon_robot_status tendon_robot_solve_sensitivity(const tendon_robot_real *inpu
    belongs to it; info->load_factor is 0 then, and the derivatives mean nothing.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
-   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs
-   once. options may be null for the defaults; info may be null. */
+   residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives
+   by the inputs once. options may be null for the defaults; info may be null. */
 tendon_robot_status tendon_robot_track(const tendon_robot_real *inputs, tendon_robot_real *x, tendon_robot_memory *memory,
                              const tendon_robot_options *options, tendon_robot_real *d_x_d_inputs,
                              tendon_robot_real *d_poses_d_inputs, tendon_robot_workspace *workspace, tendon_robot_info *info);
@@ -253,8 +253,9 @@ tendon_robot_status tendon_robot_track(const tendon_robot_real *inputs, tendon_r
    there, there may be a limit point, a buckling load, or an obstacle or a rod in the way; other inputs may, and
    tendon_robot_solve from all zeros. NOT_IN_EQUILIBRIUM: nothing was tracked yet, or x is not what it was.
 
-   The work of a call is bounded. It evaluates at most m + c + 6 residuals, m + c + 6 Jacobians and c + 1 rates, and
-   at the end the index of resolution once. options and info may be null. */
+   The work of a call is bounded. It evaluates at most m + c + 6 residuals,
+   m + c + 6 Jacobians and c + 1 rates, and at the end the index of resolution once. options and info may
+   be null. */
 tendon_robot_status tendon_robot_recover(const tendon_robot_real *inputs, tendon_robot_real *x, tendon_robot_memory *memory,
                                const tendon_robot_options *options, tendon_robot_workspace *workspace, tendon_robot_info *info);
 
@@ -277,8 +278,8 @@ void tendon_robot_input_jacobian(const tendon_robot_real *x, const tendon_robot_
 
 /* Estimated error of an equilibrium x for these inputs, as info->error_estimate of tendon_robot_solve, at any time and for any
    inputs: of the poses of tips and bodies, as distance over the length and as angle in rad, and of lengths of cables over
-   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of 36 unknowns.
-   NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
+   the length. It takes one Jacobian, and for each of at most 4 sweeps two residuals of a model of
+   36 unknowns. NOT_IN_EQUILIBRIUM where x is none; nothing is written then. */
 tendon_robot_status tendon_robot_error_estimate(const tendon_robot_real *inputs, const tendon_robot_real *x, tendon_robot_real *error_estimate,
                                       tendon_robot_workspace *workspace);
 
