@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,6 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import solve
 from cosserat_casadi.equilibrium.metrics import prolong
 from examples.carry_load import HOME, LEAST, arch, carry, draw, margins, place_of_load, robot
-from tests.conftest import ROOT
 
 pytestmark = pytest.mark.slow
 
@@ -54,15 +51,3 @@ def test_the_path_is_as_stable_with_more_modes() -> None:
         assert_allclose(place_of_load(again), place_of_load(solution), rtol=0, atol=2e-4)
         assert_allclose(margins([again]), margins([solution]), rtol=0, atol=5e-3)
     assert np.all(margins(held) >= LEAST - 1e-6)
-
-
-def test_the_program_draws_its_figure_and_its_animation(tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "examples" / "carry_load.py"), "--stages", "3", "--output", "c.png"]
-    done = subprocess.run(
-        [*command, "--animation", "c.gif"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    assert "feet stay: 2 of 3 stable" in done.stdout
-    assert "margin held: 3 of 3 stable" in done.stdout
-    assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
-    assert (tmp_path / "c.gif").read_bytes().startswith(b"GIF")

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import casadi as ca
 import numpy as np
 import pytest
@@ -28,7 +24,6 @@ from examples.design_finger import (
     tensions_around,
     volume_of,
 )
-from tests.conftest import ROOT
 from tests.derivatives import central_differences
 
 
@@ -104,13 +99,3 @@ def test_optimum_is_confirmed_by_solves() -> None:
 @pytest.mark.slow
 def test_full_example_is_confirmed_by_solves() -> None:
     judge(model_modes=3, cases=16, discretisation=1e-2)
-
-
-@pytest.mark.slow
-def test_the_program_draws_its_figure(tmp_path: Path) -> None:
-    program = ROOT / "examples" / "design_finger.py"
-    command = [sys.executable, str(program), "--cases", "4", "--output", "d.png"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "4 of 4 stable" in done.stdout
-    assert (tmp_path / "d.png").read_bytes().startswith(b"\x89PNG")

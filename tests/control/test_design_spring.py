@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -27,7 +23,6 @@ from examples.design_spring import (
     stacked,
     unloaded_shape,
 )
-from tests.conftest import ROOT
 from tests.derivatives import central_differences
 
 
@@ -89,13 +84,3 @@ def test_followed_forces_stay_on_the_branch_of_the_start(stroke: Stroke) -> None
     alone = equilibria_of(by_name(design), 1)[0]
     assert alone.stable
     assert abs(forces_of([alone])[0]) > 2 * abs(followed)
-
-
-@pytest.mark.slow
-def test_the_program_of_the_spring_draws_its_figure(tmp_path: Path) -> None:
-    program = ROOT / "examples" / "design_spring.py"
-    command = [sys.executable, str(program), "--output", "d.png"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.count("41 of 41 stable") == 2
-    assert (tmp_path / "d.png").read_bytes().startswith(b"\x89PNG")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,6 @@ from numpy.testing import assert_allclose
 from cosserat_casadi.codegen.stage import compiled_stage
 from examples.tendon_robot_mpc import BALANCED, LARGEST, LEAST, RATE, SOLVERS, STEP, Run, robots, simulate, summary
 from tests.codegen.test_load import cached, needs_compiler
-from tests.conftest import ROOT
 
 pytestmark = needs_compiler
 
@@ -39,16 +36,3 @@ def test_the_robot_follows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         assert run.gaps[-1] < run.gaps[3] / 10
     assert_allclose(runs["fatrop"].tensions, runs["ipopt"].tensions, rtol=0, atol=2e-3)
     assert summary("fatrop", runs["fatrop"]).startswith("| fatrop | ")
-
-
-@pytest.mark.slow
-def test_the_program_prints_its_table_and_draws(tmp_path: Path) -> None:
-    program = ROOT / "examples" / "tendon_robot_mpc.py"
-    files = ["--output", "run.png", "--animation", "run.gif"]
-    command = [sys.executable, str(program), "--steps", "4", "--repeats", "1", *files]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "| fatrop |" in done.stdout
-    assert "| ipopt |" in done.stdout
-    assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
-    assert (tmp_path / "run.gif").read_bytes().startswith(b"GIF89a")

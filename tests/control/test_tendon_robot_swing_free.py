@@ -4,8 +4,6 @@ model it swings."""
 from __future__ import annotations
 
 import dataclasses
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +18,6 @@ from cosserat_casadi.control import MotionStage
 from cosserat_casadi.numerics.integration import StepOutcome, stalled_at
 from examples import tendon_robot_swing_free as example
 from tests.codegen.test_load import cached, needs_compiler
-from tests.conftest import ROOT
 
 pytestmark = pytest.mark.slow
 
@@ -96,16 +93,3 @@ def test_only_the_plan_with_motion_stops(tmp_path: Path, monkeypatch: pytest.Mon
     resting = controllers["equilibria"]
     lost = resting.step(resting.begin(), nowhere, np.tile(task.START, (task.STAGES, 1)))
     assert lost.fault == "the equilibrium at the measured tensions was not found"
-
-
-@needs_compiler
-def test_the_program_prints_its_table_and_draws(tmp_path: Path) -> None:
-    program = ROOT / "examples" / "tendon_robot_swing_free.py"
-    files = ["--output", "run.png", "--animation", "run.gif"]
-    command = [sys.executable, str(program), "--steps", "30", "--repeats", "1", *files]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "| equilibria |" in done.stdout
-    assert "| motion |" in done.stdout
-    assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
-    assert (tmp_path / "run.gif").read_bytes().startswith(b"GIF89a")
