@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
 from cosserat_casadi import EquilibriumPath, Solution, follow, solve  # noqa: E402
-from cosserat_casadi.plots.figure import figure_class, save_figure  # noqa: E402
+from cosserat_casadi.plots.figure import figure_class, write_figure  # noqa: E402
 from tests.catalogue import cases  # noqa: E402
 from tests.catalogue.checks import (  # noqa: E402
     column_eigenvalue,
@@ -303,7 +303,7 @@ def main(only: Annotated[str | None, typer.Option(help=f"One of {', '.join(FAMIL
     for name, family in FAMILIES.items():
         if only in (None, name):
             figure, found = family()
-            save_figure(lambda figure=figure: figure, FIGURES / f"{name}.png")  # type: ignore[misc]
+            write_figure(figure, FIGURES / f"{name}.png")
             rows += found
             print(name, *found, sep="\n  ", flush=True)
     if only is None:

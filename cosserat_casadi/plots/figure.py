@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import io
 import textwrap
-from collections.abc import Callable
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -87,21 +86,6 @@ def panel_grid(
     for unused in panels[count:]:
         unused.set_visible(False)
     return figure, panels[:count]
-
-
-def save_figure(draw: Callable[[], Any], path: str | Path) -> None:
-    """Draw a figure into a file, whole or not at all; the same figure gives the same bytes.
-
-    Args:
-        draw: makes the matplotlib.figure.Figure.
-        path: the file; its suffix is one of FORMATS.
-
-    Raises:
-        SceneError: the suffix is none of FORMATS.
-        PlotUnavailableError: matplotlib is not installed.
-    """
-    check_plot_path(path)
-    write_figure(draw(), Path(path))
 
 
 def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:

@@ -276,8 +276,13 @@ def facts_of(shown: Any) -> tuple[str | None, list[tuple[str, str]]]:
     return title, facts
 
 
-def write(result: Any, path: str | Path) -> None:
+def write(result: Any, path: str | Path, **options: Any) -> None:
     """Write a result into a file, whole or not at all; the suffix says in which format.
+
+    Args:
+        result: the result.
+        path: the file.
+        options: of the figure, where the file holds one.
 
     Raises:
         SceneError: this kind of result has no file with that suffix.
@@ -294,8 +299,7 @@ def write(result: Any, path: str | Path) -> None:
     elif suffix == ".json":
         write_all(result, file)
     elif suffix in PICTURES:
-        figure = figure_of(result)
-        _function("plots.figure:write_figure")(figure, file)
+        _function("plots.figure:write_figure")(figure_of(result, **options), file)
     else:
         problem = f"{type(result).__name__} cannot be written to {file}"
         raise SceneError(Problem("path", problem, f"use one of {', '.join(presentation.suffixes)}"))

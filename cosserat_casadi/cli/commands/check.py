@@ -93,10 +93,10 @@ def _locking(model: Model) -> str:
 
 def _draw(scene: Scene, file: Path) -> None:
     # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.figure import save_figure
+    from cosserat_casadi.plots.figure import write_figure
     from cosserat_casadi.plots.material_plot import plot_materials
 
-    save_figure(lambda: plot_materials(scene), file)
+    write_figure(plot_materials(scene), file)
     print_written(Console(), [file])
 
 

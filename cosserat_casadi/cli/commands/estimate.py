@@ -10,7 +10,7 @@ from rich.markup import escape
 
 from cosserat_casadi import estimation
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_files, given_files, read_checked
+from cosserat_casadi.cli.options import SceneFile, Settings, check_files, read_checked
 from cosserat_casadi.cli.progress import RateColumn, count_display
 from cosserat_casadi.cli.reports.format import print_written, table_of, title_line
 from cosserat_casadi.cli.reports.model import error_words
@@ -18,9 +18,8 @@ from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import Problem, collect_problems
 from cosserat_casadi.estimation import Estimate
-from cosserat_casadi.files import check_writable, write_atomically
-from cosserat_casadi.results.json_text import json_text
-from cosserat_casadi.results.presentation import csv_of
+from cosserat_casadi.files import check_writable
+from cosserat_casadi.results.presentation import write_all
 from cosserat_casadi.spelling import counted
 
 FORMATS = (".json", ".csv")
@@ -43,18 +42,14 @@ def estimate(
     with collect_problems(problems):
         check_writable(output, "--output")
     check_files({"--output": output, "--plot": plot}, scene, settings, problems, output_suffix=None)
-    suffix = output.suffix.lower()
-    if suffix not in FORMATS:
+    if output.suffix.lower() not in FORMATS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))
     checked_scene = read_checked(scene, settings, problems)
     with count_display("Reading the table", RateColumn()) as show_count:
         found = estimation.estimate(checked_scene, cores=cores, progress=show_count)
-    text = csv_of(found) if suffix == ".csv" else json_text(found.to_dict())
-    write_atomically(output, text.encode())
-    if plot is not None:
-        found.write(plot)
+    written = write_all(found, None, output, plot)
     _print(Console(), found, checked_scene.title)
-    print_written(Console(), given_files(output, plot), soft_wrap=True)
+    print_written(Console(), written, soft_wrap=True)
     for warning in found.warnings:
         Console(stderr=True).print(f"[bold yellow]{escape(warning)}[/]", soft_wrap=True)
     if not found.holds:

@@ -41,7 +41,11 @@ def modes(
     with solve_display("Finding modes") as display:
         found = modes_of(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
     _check_mode_is_there(found, animation, mode)
-    print_modes(Console(), found, [*write_all(found, output), *_draw(found, plot, animation, mode)])
+    written = write_all(found, output, plot)
+    # Where there is no equilibrium nothing swings.
+    if animation is not None and found.modes:
+        written.append(found.animate(animation, mode=mode))
+    print_modes(Console(), found, written)
     if not found.converged:
         raise typer.Exit(NOT_FOUND)
 
@@ -55,15 +59,3 @@ def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> N
     count = len(found.modes)
     if animation is not None and 0 < count < number:
         raise SceneError(Problem("--mode", f"must be from 1 to {count}: the scene has no more modes; got {number}"))
-
-
-def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) -> list[Path]:
-    """Draw the figure and the animation that are asked for; returns the files that were written."""
-    written = []
-    if plot is not None:
-        found.write(plot)
-        written.append(plot)
-    # Where there is no equilibrium nothing swings.
-    if animation is not None and found.modes:
-        written.append(found.animate(animation, mode=number))
-    return written

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -17,9 +17,8 @@ from cosserat_casadi.cli.reports.sweep import print_shard, print_sobol, print_st
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.errors import Problem, SceneError, collect_problems
-from cosserat_casadi.files import write_atomically
 from cosserat_casadi.numerics.progress import StageProgress
-from cosserat_casadi.results.json_text import json_text
+from cosserat_casadi.results.presentation import write, write_all
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweeps.outcome_file import record_file
 from cosserat_casadi.sweeps.outcome_table import Sweep
@@ -136,7 +135,7 @@ def sweep(
         _write_sobol(swept, sobol, plot)
     else:
         if plot is not None:
-            _save(lambda: swept.plot(colour=colour), plot)
+            write(swept, plot, colour=colour)
         print_sweep(Console(), swept, output, plot, finished=finished_before)
     # The rows are written in any case; the exit code says whether they can be trusted.
     if not swept.holds:
@@ -197,17 +196,9 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
 def _write_sobol(swept: Sweep, file: Path, plot: Path | None) -> None:
     """Write, draw and print the indices of a sweep that was drawn for them."""
     indices = sobol_indices(swept)
-    write_atomically(file, json_text(indices.to_dict()).encode())
-    written = [file]
+    written = write_all(indices, file)
     if plot is not None:
-        _save(lambda: indices.plot(title=swept.record["title"]), plot)
+        write(indices, plot, title=swept.record["title"])
         written.append(plot)
     print_sobol(Console(), indices)
     print_written(Console(), written, soft_wrap=True)
-
-
-def _save(draw: Callable[[], Any], file: Path) -> None:
-    # Imported here, because matplotlib is an extra and takes long to load.
-    from cosserat_casadi.plots.figure import save_figure
-
-    save_figure(draw, file)
