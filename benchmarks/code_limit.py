@@ -25,6 +25,7 @@ from cosserat_casadi.codegen.columns import in_columns, on_path
 from cosserat_casadi.codegen.timed_program import Program, Times
 from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
+from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.model.build import Model
 
 ROOT = Path(__file__).parents[1]
@@ -83,7 +84,7 @@ def statements_of(model: Model) -> int:
     """Statements of the Jacobian by columns."""
     form = in_columns(on_path(model), "jacobian")
     assert form is not None, "rods that bend have such a form"
-    return columns_in_fours(form, kernels.dense(model.path_jacobian, "jacobian")).n_instructions()
+    return columns_in_fours(form, with_dense_results(model.path_jacobian, "jacobian")).n_instructions()
 
 
 def compiled(model: Model, most: int) -> tuple[Program, float]:

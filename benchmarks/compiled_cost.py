@@ -33,10 +33,10 @@ from cosserat_casadi.accuracy.cost import (
 )
 from cosserat_casadi.accuracy.refine import solve_rods
 from cosserat_casadi.codegen.columns import in_columns, on_path
-from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.codegen.timed_program import Program, Times
 from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
+from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -137,7 +137,7 @@ def statements_of(model: Model) -> int:
     form = in_columns(on_path(model), "jacobian")
     if form is None:
         return -1
-    return columns_in_fours(form, dense(model.path_jacobian, "jacobian")).n_instructions()
+    return columns_in_fours(form, with_dense_results(model.path_jacobian, "jacobian")).n_instructions()
 
 
 def sample(seed: int) -> Compiled | None:

@@ -17,8 +17,9 @@ import casadi as ca
 from growth import FOLLOWER, PUSH, WEIGHT, model_of
 from rich.progress import track
 
-from cosserat_casadi.codegen.kernels import dense, scalar
+from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.compiling.printed_files import external_sources
+from cosserat_casadi.maths.calls import with_dense_results
 
 MODELS = (
     ("kirchhoff", [PUSH], 4, 9),
@@ -101,14 +102,14 @@ def main() -> None:
         model = model_of(strain, 0.5e-3, loads, modes, nodes)
         straight = scalar(model.path_jacobian, "timed", ANY_LENGTH)
         assert straight is not None
-        one, other = compiled(straight), compiled(dense(model.path_jacobian, "timed"))
+        one, other = compiled(straight), compiled(with_dense_results(model.path_jacobian, "timed"))
         cells = [f"{c.us:.1f}, {c.compile_s:.1f}, {c.kilobytes:.0f}" for c in (one, other)]
         print(f"{strain}, {modes}, {nodes}: {straight.n_instructions()}; {'; '.join(cells)}; {other.us / one.us:.2f}")
     print("motion: operations; in loops µs, gcc s, kB; operations a nanosecond")
     for strain, modes, nodes in track(MOTIONS, transient=True):
         model = model_of(strain, 0.5e-3, [PUSH, WEIGHT], modes, nodes)
         count = model.operations(model.dynamics_jacobian)
-        c = compiled(dense(model.dynamics_jacobian, "timed"))
+        c = compiled(with_dense_results(model.dynamics_jacobian, "timed"))
         rate = count / c.us / 1000
         print(f"{strain}, {modes}, {nodes}: {count}; {c.us:.1f}, {c.compile_s:.1f}, {c.kilobytes:.0f}; {rate:.1f}")
 

@@ -16,7 +16,7 @@ from growth import PUSH, WEIGHT, model_of
 from loops import Compiled, compiled, compiled_sources
 
 from cosserat_casadi import Model, build, discretise, read_scene
-from cosserat_casadi.codegen.kernels import dense
+from cosserat_casadi.maths.calls import with_dense_results
 
 ROOT = Path(__file__).parents[1]
 BEGIN, END = "<!-- printers: written by benchmarks/printers.py -->", "<!-- end of printers -->"
@@ -53,8 +53,8 @@ def by_casadi(function: ca.Function) -> Compiled:
 
 def row(words: str, function: ca.Function) -> list[str]:
     """A row of the table."""
-    here = compiled(dense(function, "timed"))
-    there = by_casadi(dense(function, "timed"))
+    here = compiled(with_dense_results(function, "timed"))
+    there = by_casadi(with_dense_results(function, "timed"))
     sizes = [f"{one.kilobytes:.0f}" for one in (here, there)]
     return [words, *(f"{one.us:.3g}" for one in (here, there)), *sizes]
 

@@ -23,7 +23,7 @@ from cosserat_casadi.codegen.shared_values import with_shared_kernels
 from cosserat_casadi.compiling.listing import UnknownOperationError
 from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, with_dense_results
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import watched_owners
 
@@ -103,14 +103,14 @@ def _judging(model: Model, entry: FunctionInC, parts: Assembled) -> ca.Function:
     }[entry.spec.name]
     most = len(discrete.rods) * STRAIGHT_IN_SHARES
     if chooses(entry.function) or _literal(model) or scalar(entry.function, entry.kernel, most) is None:
-        return dense(entry.function, entry.kernel)
+        return with_dense_results(entry.function, entry.kernel)
     return _of_owners(entry.function, owners, entry.kernel, STRAIGHT)
 
 
 def _of_owners(function: ca.Function, owners: Sequence[int], name: str, most: int) -> ca.Function:
     """A column whose owners' entries share code where they are alike; in loops where the others are longer."""
     straight = in_one(function, owners, name, most)
-    return dense(function, name) if straight is None else straight
+    return with_dense_results(function, name) if straight is None else straight
 
 
 def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
@@ -154,7 +154,7 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
 def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Function | ColumnedFunction:
     """A function of a scene that has no parts: by columns, in straight-line code, or in loops."""
     if chooses(entry.function):
-        return dense(entry.function, entry.kernel)
+        return with_dense_results(entry.function, entry.kernel)
     if entry.spec.name == "path_jacobian":
         columned = by_columns(on_path(model), entry.function, entry.kernel, most_in_columns)
         if columned is not None:
@@ -166,7 +166,7 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     if straight is None or (
         straight.n_instructions() > STRAIGHT and isinstance(with_calls_in_fours(straight), ca.Function)
     ):
-        return dense(entry.function, entry.kernel)
+        return with_dense_results(entry.function, entry.kernel)
     if entry.spec.name in OF_SECTIONS:
         form = pose_in_columns(model, entry.spec, entry.owner or "", entry.kernel)
         columned = None if form is None else _within(form, straight, straight.n_instructions())
@@ -186,7 +186,7 @@ def by_columns(
         most: statements up to which it is wanted.
     """
     form = in_columns(written, name, most)
-    return None if form is None else _within(form, dense(function, name), most)
+    return None if form is None else _within(form, with_dense_results(function, name), most)
 
 
 def _within(form: ColumnForm, signature: ca.Function, most: int) -> ColumnedFunction | None:
@@ -209,14 +209,7 @@ def kernel(model: Model, function: ca.Function, name: str, straight_within: int 
         straight = scalar(function, name, straight_within)
         if straight is not None:
             return straight
-    return dense(function, name)
-
-
-def dense(function: ca.Function, name: str) -> ca.Function:
-    """A function under another name, with dense outputs."""
-    symbols = function.mx_in()
-    results = [ca.densify(result) for result in function.call(symbols)]
-    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    return with_dense_results(function, name)
 
 
 def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:

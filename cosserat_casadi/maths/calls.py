@@ -43,6 +43,13 @@ def in_scalars(function: ca.Function, name: str) -> ca.Function:
     return ca.Function(name, symbols, ca.cse(function.call(symbols)), function.name_in(), function.name_out())
 
 
+def with_dense_results(function: ca.Function, name: str) -> ca.Function:
+    """A function under another name, with dense results."""
+    symbols = function.mx_in()
+    results = [ca.densify(result) for result in function.call(symbols)]
+    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+
+
 def functions_within(function: ca.Function) -> list[ca.Function]:
     """The functions that a function calls, deep inside too, once each.
 

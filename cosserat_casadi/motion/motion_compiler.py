@@ -21,6 +21,7 @@ from cosserat_casadi.compiling.description import key_of
 from cosserat_casadi.compiling.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.files import sources_hash
+from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import kept_with
@@ -30,7 +31,7 @@ from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import function_of_displacements
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
-from cosserat_casadi.motion.repeated_call import RepeatedCall, external, renamed
+from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.motion.step_kernels import (
     MATRICES,
     StepKernels,
@@ -346,8 +347,8 @@ def _equations(model: Model) -> list[Any]:
 
 def functions_of_limits(model: Model) -> list[ca.Function]:
     """The functions that judge states of a model: its resolution index, and margins to states that no rod can be in."""
-    margins = [] if model.strain_margins is None else [renamed(model.strain_margins, MARGINS)]
-    return [renamed(model.resolution_index, RESOLUTION), *margins]
+    margins = [] if model.strain_margins is None else [with_dense_results(model.strain_margins, MARGINS)]
+    return [with_dense_results(model.resolution_index, RESOLUTION), *margins]
 
 
 def _residual(model: Model) -> list[ca.Function]:

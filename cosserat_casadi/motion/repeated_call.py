@@ -148,13 +148,6 @@ def _loaded(library: str) -> ctypes.CDLL:
     return ctypes.CDLL(library)
 
 
-def renamed(function: ca.Function, name: str) -> ca.Function:
-    """A function with dense results, under another name in C."""
-    arguments = function.mx_in()
-    results = [ca.densify(result) for result in function.call(arguments)]
-    return ca.Function(name, arguments, results, function.name_in(), function.name_out())
-
-
 def repeated(function: ca.Function, library: str | None, results: int = 1, *, as_scalars: bool = True) -> RepeatedCall:
     """A call of a function: by its name in a shared object, or, without one, in CasADi's virtual machine.
 

@@ -25,10 +25,10 @@ from cosserat_casadi.accuracy.cost import (
 from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.columns import in_columns, on_path
-from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.compiling.listing import LANES
 from cosserat_casadi.compiling.scalars_in_c import columns_in_fours
 from cosserat_casadi.equilibrium.metrics import pose_distance
+from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -184,7 +184,7 @@ def statements_of(model: Model) -> int:
     """Statements of the Jacobian by columns, however many."""
     form = in_columns(on_path(model), "jacobian")
     assert form is not None
-    return columns_in_fours(form, dense(model.path_jacobian, "jacobian")).n_instructions()
+    return columns_in_fours(form, with_dense_results(model.path_jacobian, "jacobian")).n_instructions()
 
 
 FOLLOWING = {**WIND, "force": [0.5, 0.0, 0.1]}

@@ -12,11 +12,11 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Model, build, discretise
 from cosserat_casadi.codegen.blocks import INTERFACE, blocks
 from cosserat_casadi.codegen.kernel_files import kernel_sources
-from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.codegen.programs import partial_program
 from cosserat_casadi.compiling.steps import program_of
+from cosserat_casadi.maths.calls import with_dense_results
 from tests.families import mostly_slow
 from tests.scenes import rod, scene
 
@@ -147,7 +147,7 @@ def test_budgets_of_the_equations_of_motion(name: str) -> None:
     assert model.size == 12
     assert model.operations(model.inverse_dynamics) <= of_residual
     assert model.operations(model.dynamics_jacobian) <= of_jacobian
-    kernel = dense(model.dynamics_jacobian, "of_motion")
+    kernel = with_dense_results(model.dynamics_jacobian, "of_motion")
     assert len(kernel_sources([kernel], scene_names("moving", wanted))["moving_kernels.c"]) <= size
 
 

@@ -22,6 +22,7 @@ from cosserat_casadi.compiling import scalars_in_c as printer
 from cosserat_casadi.compiling.listing import LANES, Listing, UnknownOperationError
 from cosserat_casadi.compiling.printed_kernels import PrintedKernel
 from cosserat_casadi.compiling.scalars_in_c import columns_in_fours, scalars_in_c, with_calls_in_fours
+from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.model_functions import ModelFunctions
 from cosserat_casadi.model.operations import operations
@@ -112,7 +113,7 @@ def test_rows_of_columns_that_are_zero(monkeypatch: pytest.MonkeyPatch) -> None:
     model = model_of("reissner", "dead at the tip, following within", elements=2)
     form = in_columns(on_path(model), "jacobian")
     assert form is not None
-    (columns,) = columns_in_fours(form, kernels.dense(model.path_jacobian, "jacobian")).columns.values()
+    (columns,) = columns_in_fours(form, with_dense_results(model.path_jacobian, "jacobian")).columns.values()
     assert "FILL(columns" in columns
 
 

@@ -13,8 +13,8 @@ from functools import cached_property
 
 import casadi as ca
 
-from cosserat_casadi.codegen.kernels import dense
 from cosserat_casadi.codegen.parameters import parameter_rate, with_parameters_behind_inputs
+from cosserat_casadi.maths.calls import with_dense_results
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.function_table import PARAMETERS
@@ -55,9 +55,9 @@ class TubeKernels:
         ]
         if self.model.parameters.size:
             lengths = ca.Function("lengths", given, [self.model.robot.numbers.length], ["inputs", PARAMETERS], ["m"])
-            functions.append(dense(with_parameters_behind_inputs(lengths), f"{self.name}_lengths"))
+            functions.append(with_dense_results(with_parameters_behind_inputs(lengths), f"{self.name}_lengths"))
             path_residual = self._written("residual", [residual], path)
-            functions.append(dense(parameter_rate(path_residual, "of_p"), f"{self.name}_parameter_rate"))
+            functions.append(with_dense_results(parameter_rate(path_residual, "of_p"), f"{self.name}_parameter_rate"))
         return functions
 
     @cached_property
@@ -132,7 +132,7 @@ class TubeKernels:
     ) -> ca.Function:
         """A kernel; parameters stand behind the inputs in one argument."""
         written = with_parameters_behind_inputs(self._written(word, results, further))
-        return dense(written, f"{self.name}_{word}")
+        return with_dense_results(written, f"{self.name}_{word}")
 
     def _written(self, word: str, results: Sequence[Matrix], further: Mapping[str, ca.MX] | None = None) -> ca.Function:
         """A function of the twist, of the inputs and the parameters, and of further arguments."""
