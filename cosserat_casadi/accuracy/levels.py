@@ -201,10 +201,6 @@ class Level:
             return None
         return replace(above, index=min(above.index, self.index + MOST_LEVELS))
 
-    def with_min_nodes(self, nodes: int) -> Level:
-        """This level on ``nodes`` intervals at least."""
-        return replace(self, min_nodes=nodes)
-
     def with_finer_sums(self, factor: float) -> Level | None:
         """This level with layers summed at so many times as many sections, at intervals where these alone are summed.
 

@@ -324,7 +324,7 @@ def _next_level(level: Level, verdict: Verdict) -> Level | None:
     """Where a verdict leads to; None where there is nothing finer to try."""
     match verdict:
         case NeedsNodes(nodes):
-            return level.with_min_nodes(nodes)
+            return replace(level, min_nodes=nodes)
         case NoEquilibrium():
             return level.with_modes(level.modes + 1)
         case NeedsModes(modes, extrapolated=True):

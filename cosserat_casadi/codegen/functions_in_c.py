@@ -160,7 +160,9 @@ class FunctionInC:
 
 def functions_in_c(model: Model, names: Names) -> list[FunctionInC]:
     """All functions with a kernel: of the scene, then rod by rod, actuator by actuator, body by body."""
-    specs = [spec for spec in names.functions if spec.kernel and _exists(model, spec)]
+    kernels = [spec for spec in names.functions if spec.kernel]
+    # Every rod, actuator and body has the functions of its kind.
+    specs = [spec for spec in kernels if spec.owner is not Owner.SCENE or spec.function_of(model) is not None]
     if model.parameters.size:
         # The unloaded scene depends on the parameters: the solver solves for its tangent.
         specs = [spec for spec in specs if spec.name != TANGENT]
@@ -183,11 +185,6 @@ def _functions(model: Model, names: Names, specs: Sequence[FunctionSpec]) -> lis
         for owner in owners(model.discrete, kind):
             functions += [FunctionInC(spec, owner or None, model, names) for spec in specs if spec.owner is kind]
     return functions
-
-
-def _exists(model: Model, spec: FunctionSpec) -> bool:
-    """Whether the scene has this function; every rod, actuator and body has the functions of its kind."""
-    return spec.owner is not Owner.SCENE or spec.function_of(model) is not None
 
 
 def _word(argument: str) -> str:

@@ -112,7 +112,7 @@ def model_names(name: str, model: Model, *, dynamics: bool = False, estimate_err
     functions = tuple(
         spec
         for spec in table(type(model))
-        if (dynamics or not spec.of_motion) and (estimate_errors or not spec.judges_answers)
+        if (dynamics or "v" not in spec.arguments) and (estimate_errors or not spec.judges_answers)
     )
     return scene_names(name, model.scene, functions)
 

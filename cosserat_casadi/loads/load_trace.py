@@ -68,19 +68,11 @@ class TracedLoad:
             raise ValueError(f"{self.load.name!r} depends on accelerations, and loads on bodies do not know them")
         return self.moving
 
-    @property
-    def _data_size(self) -> int:
-        """Numbers of :meth:`Load.data` at a section."""
-        return int(self.kernel.world_wrench.size1_in(3)) - sum(self.columns)
-
     def coefficients(self, values: Mapping[str, Matrix]) -> tuple[Matrix | None, Matrix | None]:
         """Force and moment of a load that is free of the pose, in its axes, 3×k each; None for one that is zero."""
         # No number would be right for the pose: should it be read after all, the result is not a number.
-        nowhere = Section(
-            position=ca.DM.nan(3, 1),
-            rotation=ca.DM.nan(3, 3),
-            data=ca.DM.nan(self._data_size, 1),
-        )
+        size = self.kernel.world_wrench.size1_in(3) - sum(self.columns)
+        nowhere = Section(position=ca.DM.nan(3, 1), rotation=ca.DM.nan(3, 3), data=ca.DM.nan(size, 1))
         force, moment = self.member.wrench(self.load, nowhere, values)
         # What vanishes by what it is multiplied with is read nevertheless: the symbols have found it to be zero.
         wrench = self.kernel.world_wrench

@@ -185,11 +185,6 @@ class FunctionSpec:
         """Whether the function is one of the header in C."""
         return bool(self.header)
 
-    @property
-    def of_motion(self) -> bool:
-        """Whether velocities enter it."""
-        return "v" in self.arguments
-
     def outputs_of(self, discrete: DiscreteScene, owner: str) -> tuple[Output, ...]:
         """Names of the results for one owner."""
         return self.outputs(discrete, owner) if callable(self.outputs) else self.outputs

@@ -54,11 +54,6 @@ class RobotSession(ABC):
         self._present = self.first
 
     @property
-    def input_count(self) -> int:
-        """Numbers in the stacked inputs."""
-        return int(self.model.inputs.size)
-
-    @property
     def pose_names(self) -> dict[str, list[str]]:
         """Names of what can be led to a point, by kind."""
         return {"rod": list(self.model.lengths), "body": [body.name for body in self.model.scene.bodies]}

@@ -97,7 +97,7 @@ class Desk:
             raise QuestionError("the page asks no such question")
         given: list[Any] = []
         if name in ("move", "reset", "refined"):
-            given = [question.all_inputs(session.input_count)]
+            given = [question.all_inputs(session.model.inputs.size)]
         elif name == "reach":
             given = [*question.point(session.pose_names)]
         # A motion and other modes may take a minute, in which the robot can be moved: they have models of their own.

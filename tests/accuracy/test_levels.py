@@ -93,7 +93,7 @@ def test_modes_beyond_the_finest_level_are_tried_where_a_level_has_what_is_extra
 
 
 def test_what_is_known_of_the_grid_is_kept_with_more_modes() -> None:
-    level = Level(2).with_min_nodes(90)
+    level = Level(2, min_nodes=90)
     finer = level.with_finer_grid()
     assert finer is not None
     above = finer.with_modes(finer.modes + 1)

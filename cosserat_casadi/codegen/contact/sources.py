@@ -168,7 +168,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "owners": len(tables.owners),
         "obstacles": len(tables.obstacles),
         "actuators": len(chosen.scene.actuators),
-        "pairs": tables.pair_count,
+        "pairs": len(tables.pairs),
         "arrangements": arrangements,
         "arrangement_lines": "\n".join(
             f"   {number}: {comment(described(own))}" for number, own in enumerate(chosen.equations)

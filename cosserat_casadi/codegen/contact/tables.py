@@ -69,15 +69,10 @@ class Tables:
         return [*self.rods, *(bodies if touches_bodies(self.chosen.scene) else [])]
 
     @property
-    def _pairs(self) -> list[tuple[str, ObstacleRecord]]:
+    def pairs(self) -> list[tuple[str, ObstacleRecord]]:
         """Each owner of contacts with each obstacle that it must not enter."""
         scene = self.chosen.scene
         return [*pairs(scene), *((body.name, obstacle) for body, obstacle in body_pairs(scene))]
-
-    @property
-    def pair_count(self) -> int:
-        """Number of pairs of a rod or a body and an obstacle that it must not enter."""
-        return len(self._pairs)
 
     def sizes(self, equations: ContactEquations) -> tuple[int, int, int]:
         """Numbers of unknowns, of forces and of places of an arrangement."""
@@ -238,7 +233,7 @@ class Tables:
 
     def _pair_table(self) -> str:
         entries = []
-        for owner, obstacle in self._pairs:
+        for owner, obstacle in self.pairs:
             number = self.obstacles.index(obstacle.name)
             fields = {
                 "rod": self.owners.index(owner),
