@@ -155,8 +155,8 @@ def _hooke(rod: scenes.Rod) -> Field:
     if rod.stiffness_matrix is not None:
         return _alike([row[i] for i, row in enumerate(rod.stiffness_matrix)])
     if rod.stiffness is not None:
-        # One that is not given is not admitted, and not read.
-        return _direct(rod.stiffness, np.nan)
+        # A stiffness that is not given belongs to no strain of the rod.
+        return _direct(rod.stiffness)
     assert rod.material is not None
     assert rod.section is not None
     youngs_modulus = rod.material.youngs_modulus
@@ -191,15 +191,10 @@ def shear_modulus(material: scenes.Material) -> Scalar:
     return material.youngs_modulus / (2 * (1 + poisson_ratio))
 
 
-def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
-    """Coefficients of the six strains, each constant or linear from base to tip, shape (k, 6).
-
-    Args:
-        given: coefficients by strain.
-        left_out: value of coefficients that the scene does not give.
-    """
+def _direct(given: scenes.Stiffness | scenes.Damping) -> Field:
+    """Coefficients of the six strains, each constant or linear from base to tip, shape (k, 6); 0 for a strain without."""
     fields = [getattr(given, name) for name in STRAINS]
-    coefficients = [linear(left_out if field is None else field) for field in fields]
+    coefficients = [linear(0.0 if field is None else field) for field in fields]
     return _shared(lambda X: side_by_side([along(coefficient, X) for coefficient in coefficients]), *fields)
 
 
@@ -257,7 +252,7 @@ def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
         return _shared(lambda X: time * hooke(X), *sizes)
     if all(getattr(rod.damping, name) is None for name in STRAINS):
         return None
-    return _direct(rod.damping, 0.0)
+    return _direct(rod.damping)
 
 
 def _branches(rod: scenes.Rod) -> tuple[MaxwellBranch, ...]:

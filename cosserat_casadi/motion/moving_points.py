@@ -36,9 +36,9 @@ class MovingPoints:
         self, model: Model, placed: Callable[[System], Matrix], name: str, libraries: Libraries = INTERPRETED
     ) -> None:
         x = ca.MX.sym("x", model.size)
-        inputs = ca.MX.sym("inputs", model.inputs.size)
-        system = System(model.discrete, Arguments(x, inputs))
-        positions = ca.densify(ca.vec(ca.MX(placed(system))))
+        inputs = ca.MX.sym("inputs", stacked_size(model))
+        written = in_stacked_inputs(model, x, inputs, lambda system: [placed(system)])
+        positions = ca.densify(ca.vec(ca.MX(*written)))
         weights = ca.MX.sym("weights", positions.shape[0])
         total = ca.dot(weights, positions)
         gradient = ca.densify(ca.gradient(total, x))
@@ -167,6 +167,31 @@ class MovingPoints:
     @cached_property
     def _jacobian(self) -> RepeatedCall:
         return repeated(self.in_derivatives[0], self._libraries.jacobians, as_scalars=False)
+
+
+def stacked_size(model: Model) -> int:
+    """Number of inputs and, behind them, parameters of a model."""
+    return model.inputs.size + model.parameters.size
+
+
+def in_stacked_inputs(
+    model: Model, x: ca.MX, inputs: ca.MX, quantities: Callable[[System], list[Matrix]]
+) -> list[Matrix]:
+    """Quantities of a system, written in the unknowns and in the stacked inputs with parameters behind them.
+
+    Args:
+        model: the model, which may have parameters.
+        x: unknowns, n×1.
+        inputs: of :func:`stacked_size` rows.
+        quantities: the system ↦ the quantities.
+    """
+    if not model.parameters.size:
+        return quantities(System(model.discrete, Arguments(x, inputs)))
+    own, p = inputs[: model.inputs.size, 0], inputs[model.inputs.size :, 0]
+    system = System(model.discrete, Arguments(x, own))
+    written = [ca.MX(quantity) for quantity in quantities(system)]
+    found: list[Matrix] = ca.graph_substitute(written, [model.parameters.symbol], [p])
+    return found
 
 
 def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED) -> MovingPoints:

@@ -17,9 +17,10 @@ from cosserat_casadi.loads.contact_layer import STANDING
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.moving_points import in_stacked_inputs, stacked_size
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,13 @@ class SurfaceSliding:
 
     @cached_property
     def _symbols(self) -> list[ca.MX]:
-        """Unknowns, n×1; inputs, k×1; rates of both, 1/s; the section, (M + 1)×1; an axis, 3×1.
+        """Unknowns, n×1; inputs and parameters, k×1; rates of both, 1/s; the section, (M + 1)×1; an axis, 3×1.
 
         The section consists of the weights of the M nodes and, behind them, its abscissa X. The axis sets the first
         tangent of the surface: its part along the surface, normalised.
         """
         model = self.facing.model
-        size, count = model.size, model.inputs.size
+        size, count = model.size, stacked_size(model)
         sizes = {
             "x": size,
             "inputs": count,
@@ -59,9 +60,8 @@ class SurfaceSliding:
         """
         x, inputs, v, rate, _, axis = self._symbols
         facing = self.facing
-        system = System(facing.model.discrete, Arguments(x, inputs))
         weights, X = section[:-1], section[-1]
-        centre, rotation = _pose(facing, system, weights)
+        centre, rotation = in_stacked_inputs(facing.model, x, inputs, lambda system: _pose(facing, system, weights))
         base, tip = facing.radii
         _, normal, _ = surface(facing.obstacle)(centre)
         arm = -(base + X * (tip - base)) * normal
@@ -110,15 +110,15 @@ def _rate(quantity: Matrix, moved: list[tuple[ca.MX, ca.MX]]) -> Matrix:
     return sum((ca.jtimes(stacked, argument, rate) for argument, rate in moved), ca.MX(stacked.shape[0], 1))
 
 
-def _pose(facing: Facing, system: System, weights: Matrix) -> tuple[Matrix, Matrix]:
+def _pose(facing: Facing, system: System, weights: Matrix) -> list[Matrix]:
     """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the world."""
     if facing.of_body:
         pose = system.body(facing.owner)
-        return ca.MX(pose.position), ca.MX(pose.rotation)
+        return [ca.MX(pose.position), ca.MX(pose.rotation)]
     base, shape = system.base(facing.owner), system.shapes[facing.owner]
     world = quaternion_to_matrix(base.quaternion)
     directors = [world @ (director @ weights) for director in shape.directors]
-    return base.position + world @ (shape.position @ weights), ca.horzcat(*directors)
+    return [base.position + world @ (shape.position @ weights), ca.horzcat(*directors)]
 
 
 def functions_of_sliding(model: Model) -> list[ca.Function]:

@@ -71,7 +71,7 @@ def _per_reference_length(rod: DiscreteRod, diagonal: Field, element: int, X: Fl
     if rate is None:
         return coefficients
     if is_symbolic(rate) and not is_symbolic(coefficients):
-        same = (coefficients == coefficients[:1]) | np.isnan(coefficients)
+        same = coefficients == coefficients[:1]
         coefficients = coefficients[:1] if np.all(same) else coefficients
     # One row for all times the one rate of the element.
     return each_times(coefficients, reciprocal(rate[: coefficients.shape[0]]))

@@ -371,13 +371,50 @@ def test_a_blow_has_no_derivative_and_a_wire_is_not_passed(tmp_path: Path) -> No
     assert not made.compiled.solve().converged
 
 
-def test_functions_of_equilibria_and_parameters_are_refused(tmp_path: Path) -> None:
+def test_functions_of_equilibria_and_lengths_as_parameters_are_refused(tmp_path: Path) -> None:
     tables = scene(BALL)
     with pytest.raises(ExportError, match="in a folder of their own"):
         export(build(scene_from_dict(tables), moving=True), tmp_path / "robot", dynamics=True, stability=True)
-    tables["parameters"] = ["rod.linear_density"]
-    with pytest.raises(ExportError, match="have the numbers of the scene"):
+    tables["parameters"] = ["rod.length"]
+    with pytest.raises(ExportError, match="lengths and sections of rods in exact contact in numbers"):
         export(build(scene_from_dict(tables), moving=True), tmp_path / "robot", dynamics=True)
+
+
+@pytest.mark.parametrize("friction", [pytest.param(0.0, marks=pytest.mark.slow), 0.3])
+def test_parameters_are_numbers_of_the_scene(friction: float, tmp_path: Path) -> None:
+    """Steps with parameters are those of the scene with these numbers; derivatives are differences of steps."""
+    rubbing = {"friction": friction} if friction else {}
+    for name in ("named", "fixed"):
+        (tmp_path / name).mkdir()
+    names = ["rod.stiffness.bending_y", "weight.acceleration", "rod.base.position"]
+    made = Moving(scene(floor(-0.02, **rubbing), parameters=names, inputs=[]), tmp_path / "named")
+    p = np.array([0.017, 0.5, 0.0, -9.0, 0.01, 0.0, 0.002])
+    heavier = {**WEIGHT, "acceleration": p[1:4].tolist()}
+    base = {"position": p[4:].tolist(), "tangent": [1, 0, 0]}
+    other = rod(stiffness={"bending_y": 0.017}, base=base)
+    fixed = Moving(scene(floor(-0.02, **rubbing), other, loads=[heavier], inputs=[]), tmp_path / "fixed")
+    compiled, inputs = made.compiled, made.model.inputs.pack()
+    memory, plain = compiled.step_memory(), fixed.compiled.step_memory()
+    ends = [compiled.contact_start(), fixed.compiled.contact_start()]
+    for _ in range(150):
+        step = compiled.step(ends[0], 2e-3, inputs, memory=memory, parameters=p, options=EXACT)
+        wanted = fixed.compiled.step(ends[1], 2e-3, fixed.model.inputs.pack(), memory=plain, options=EXACT)
+        assert step.done and wanted.done
+        ends = [step.state, wanted.state]
+        assert_allclose(ends[0].x, ends[1].x, rtol=0, atol=1e-9)
+    (contact, *_) = compiled.step_contacts(memory)
+    assert contact.force > 1e-3
+
+    def end(own: FloatArray) -> FloatArray:
+        step = compiled.step(ends[0], 2e-3, inputs, memory=copy.deepcopy(memory), parameters=own, options=EXACT)
+        return np.concatenate([step.state.x, step.state.v])
+
+    step, derivatives = compiled.step_sensitivity(ends[0], 2e-3, inputs, memory=memory, parameters=p, options=EXACT)
+    assert step.done and derivatives is not None
+    # The height of the base is left out: it would lift the rod off, or press it in.
+    slopes = central_differences(end, p, 1e-6)[:, :6]
+    assert abs(slopes).max() > 1e-3
+    assert_allclose(derivatives.by_parameters[:, :6], slopes, rtol=1e-4, atol=1e-6 * abs(slopes).max())
 
 
 @pytest.mark.slow
@@ -413,6 +450,24 @@ def test_an_fmu_takes_the_steps_of_the_library(touches: bool, tmp_path: Path) ->
     assert_allclose(found[height], made.tips(states)[:, 2] * LENGTH, rtol=0, atol=1e-9)
     if touches:
         assert_allclose(found[height], found[height][0], rtol=0, atol=1e-8)
+
+
+@pytest.mark.slow
+def test_an_fmu_has_parameters_in_contact(tmp_path: Path) -> None:
+    """A heavier rod strikes as that of the scene with its density; where it lies at rest, only the scene's own is."""
+    tables = scene(BALL, parameters=["rod.linear_density"])
+    heavier = Moving(scene(BALL, rod(linear_density=0.25)), tmp_path)
+    unit = write_fmu(build(scene_from_dict(tables), moving=True), tmp_path / "robot.fmu", "robot")
+    height, density = "rod.tip.position.z", {"rod.linear_density": 0.25}
+    arguments: dict[str, Any] = {"stop_time": 0.3, "step_size": 1e-3, "output_interval": 1e-3, "output": [height]}
+    found = fmpy.simulate_fmu(str(unit), start_values=density, **arguments)
+    states = heavier.steps(1e-3, 300)
+    assert_allclose(found[height], heavier.tips(states)[:, 2] * LENGTH, rtol=0, atol=1e-9)
+    tables["simulation"]["start"] = "equilibrium"
+    at_rest = write_fmu(build(scene_from_dict(tables), moving=True), tmp_path / "rests.fmu", "rests")
+    fmpy.simulate_fmu(str(at_rest), **arguments)
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        fmpy.simulate_fmu(str(at_rest), start_values=density, **arguments)
 
 
 @pytest.mark.slow

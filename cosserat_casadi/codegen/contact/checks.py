@@ -73,10 +73,7 @@ def refused_in_motion(scene: scenes.Scene) -> Iterator[Problem]:
     """Problems of exact contact in the steps of a motion in C; none of a scene without."""
     if not scene.touches_exactly:
         return
-    remedy = "give each obstacle a width, m"
-    if scene.parameters:
-        problem = "steps in exact contact have the numbers of the scene, and no parameters"
-        yield Problem("parameters", problem, f"leave them out, or {remedy}")
+    yield from _refused_parameters(scene)
     for obstacle in scene.obstacles:
         if obstacle.is_smooth and np.isfinite(obstacle.thickness):
             problem = "steps in C watch a thin smooth obstacle, or obstacles that are touched exactly, not both"

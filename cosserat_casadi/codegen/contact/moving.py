@@ -151,14 +151,14 @@ def _most_touches(faces: Sequence[Facing]) -> int:
 
 
 def start_shape(model: Model) -> FloatArray:
-    """Unknowns at the start of the scene's motion, at rest, shape (size,).
+    """Unknowns at the start of the scene's motion, at rest, with the scene's parameters, shape (size,).
 
     Raises:
         ExportError: the scene begins in an equilibrium, and none is found.
     """
     if any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded:
         return unloaded_start(model).x
-    start = equilibrium_start(model, model.pack())
+    start = equilibrium_start(model.at(), model.pack())
     if not start.found:
         raise ExportError(Problem("simulation.start", start.sentence, 'give start = "unloaded"'))
     return start.x
