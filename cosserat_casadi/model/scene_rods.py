@@ -192,7 +192,7 @@ def shear_modulus(material: scenes.Material) -> Scalar:
 
 
 def _direct(given: scenes.Stiffness | scenes.Damping) -> Field:
-    """Coefficients of the six strains, each constant or linear from base to tip, shape (k, 6); 0 for a strain without."""
+    """Coefficients of the six strains, each constant or linear from base to tip, shape (k, 6); 0 for others."""
     fields = [getattr(given, name) for name in STRAINS]
     coefficients = [linear(0.0 if field is None else field) for field in fields]
     return _shared(lambda X: side_by_side([along(coefficient, X) for coefficient in coefficients]), *fields)
