@@ -57,6 +57,7 @@ def error_words(model: Model, names: Names) -> Words:
         "error_settled": answer_error.settled_for(model),
         "error_followed": FOLLOWED,
         "error_contracting": answer_error.CONTRACTING,
+        "error_first_look": answer_error.FIRST_LOOK,
         "error_enough": answer_error.enough_for(model),
         "error_fastest": answer_error.FASTEST,
         "error_slowest": answer_error.SLOWEST,

@@ -33,6 +33,9 @@ Answer = TypeVar("Answer", bound=Equilibrium[Any])
 SAFETY = 1.2
 """Factor on the change that a richer model makes, which is not exact either."""
 
+FIRST_LOOK = 2.0
+"""Factor on the change that a first sweep makes, which the second may show to be two thirds of the error."""
+
 MOST_SWEEPS = 4
 """Sweeps after which Newton's method on the richer model takes over."""
 
@@ -210,7 +213,7 @@ def answer_error(solution: Solution) -> AnswerError:
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
     rest = _rest_of_series(solution, correction)
-    safety = safety_for(solution.model)
+    safety = _safety_of(solution, correction)
     watched = safety * (correction.change + rest) + ROUNDING
     corrected = _richer_answer(solution, correction)
     shape = safety * (_shape_change(solution, corrected) + rest) + ROUNDING
@@ -227,7 +230,12 @@ def watched_error(solution: Solution) -> float:
     believed, correction = believed_correction(solution)
     if not believed:
         return UNKNOWN
-    return safety_for(solution.model) * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
+    return _safety_of(solution, correction) * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
+
+
+def _safety_of(solution: Solution, correction: Correction) -> float:
+    """Factor on the change that a believed correction makes."""
+    return safety_for(solution.model) if correction.settled else FIRST_LOOK
 
 
 def safety_for(model: Model) -> float:
@@ -267,7 +275,7 @@ def enough_for(model: Model) -> float:
     """
     if model.discrete.has_layers:
         return ROUNDING
-    return max(model.scene.accuracy.tolerance / SAFETY, ROUNDING)
+    return max(model.scene.accuracy.tolerance / FIRST_LOOK, ROUNDING)
 
 
 def _sweeps(solution: Solution) -> Iterator[Correction]:

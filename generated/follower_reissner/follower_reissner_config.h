@@ -70,10 +70,11 @@ static const follower_reissner_real SAME_BRANCH = (follower_reissner_real)0.5;
 #define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const follower_reissner_real ERROR_SAFETY = (follower_reissner_real)1.2;
+static const follower_reissner_real ERROR_FIRST_LOOK = (follower_reissner_real)2.0;
 static const follower_reissner_real ERROR_SETTLED = (follower_reissner_real)0.2;
 static const follower_reissner_real ERROR_FOLLOWED = (follower_reissner_real)0.5;
 static const follower_reissner_real ERROR_CONTRACTING = (follower_reissner_real)0.5;
-static const follower_reissner_real ERROR_ENOUGH = (follower_reissner_real)8.333333333333334e-05;
+static const follower_reissner_real ERROR_ENOUGH = (follower_reissner_real)5e-05;
 static const follower_reissner_real ERROR_FASTEST = (follower_reissner_real)0.02;
 static const follower_reissner_real ERROR_SLOWEST = (follower_reissner_real)0.7;
 static const follower_reissner_real ERROR_FLOOR = (follower_reissner_real)2e-14;

@@ -181,7 +181,7 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
       return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x);
     }
     /* A look that leaves the answer within its tolerance need not be repeated. */
-    if (change <= ERROR_ENOUGH && (!is_first || contracts(step, next))) return ERROR_SAFETY * change + least_error(x);
+    if (change <= ERROR_ENOUGH && (!is_first || contracts(step, next))) return ERROR_FIRST_LOOK * change + least_error(x);
     change_before = change;
     step_before = step;
   }

@@ -70,10 +70,11 @@ static const nitinol_wire_real SAME_BRANCH = (nitinol_wire_real)0.5;
 #define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const nitinol_wire_real ERROR_SAFETY = (nitinol_wire_real)1.2;
+static const nitinol_wire_real ERROR_FIRST_LOOK = (nitinol_wire_real)2.0;
 static const nitinol_wire_real ERROR_SETTLED = (nitinol_wire_real)0.2;
 static const nitinol_wire_real ERROR_FOLLOWED = (nitinol_wire_real)0.5;
 static const nitinol_wire_real ERROR_CONTRACTING = (nitinol_wire_real)0.5;
-static const nitinol_wire_real ERROR_ENOUGH = (nitinol_wire_real)8.333333333333334e-05;
+static const nitinol_wire_real ERROR_ENOUGH = (nitinol_wire_real)5e-05;
 static const nitinol_wire_real ERROR_FASTEST = (nitinol_wire_real)0.02;
 static const nitinol_wire_real ERROR_SLOWEST = (nitinol_wire_real)0.7;
 static const nitinol_wire_real ERROR_FLOOR = (nitinol_wire_real)2e-14;

@@ -70,10 +70,11 @@ static const planar_strip_real SAME_BRANCH = (planar_strip_real)0.5;
 #define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const planar_strip_real ERROR_SAFETY = (planar_strip_real)1.2;
+static const planar_strip_real ERROR_FIRST_LOOK = (planar_strip_real)2.0;
 static const planar_strip_real ERROR_SETTLED = (planar_strip_real)0.2;
 static const planar_strip_real ERROR_FOLLOWED = (planar_strip_real)0.5;
 static const planar_strip_real ERROR_CONTRACTING = (planar_strip_real)0.5;
-static const planar_strip_real ERROR_ENOUGH = (planar_strip_real)8.333333333333334e-05;
+static const planar_strip_real ERROR_ENOUGH = (planar_strip_real)5e-05;
 static const planar_strip_real ERROR_FASTEST = (planar_strip_real)0.02;
 static const planar_strip_real ERROR_SLOWEST = (planar_strip_real)0.7;
 static const planar_strip_real ERROR_FLOOR = (planar_strip_real)2e-14;

@@ -75,10 +75,11 @@ static const six_rod_platform_real SAME_BRANCH = (six_rod_platform_real)0.5;
 #define SOLVER_WATCHED_CABLES 0
 enum { ERROR_SWEEPS = 4 };
 static const six_rod_platform_real ERROR_SAFETY = (six_rod_platform_real)1.2;
+static const six_rod_platform_real ERROR_FIRST_LOOK = (six_rod_platform_real)2.0;
 static const six_rod_platform_real ERROR_SETTLED = (six_rod_platform_real)0.2;
 static const six_rod_platform_real ERROR_FOLLOWED = (six_rod_platform_real)0.5;
 static const six_rod_platform_real ERROR_CONTRACTING = (six_rod_platform_real)0.5;
-static const six_rod_platform_real ERROR_ENOUGH = (six_rod_platform_real)0.0008333333333333334;
+static const six_rod_platform_real ERROR_ENOUGH = (six_rod_platform_real)0.0005;
 static const six_rod_platform_real ERROR_FASTEST = (six_rod_platform_real)0.02;
 static const six_rod_platform_real ERROR_SLOWEST = (six_rod_platform_real)0.7;
 static const six_rod_platform_real ERROR_FLOOR = (six_rod_platform_real)2e-14;

@@ -70,10 +70,11 @@ static const tendon_robot_real SAME_BRANCH = (tendon_robot_real)0.5;
 #define SOLVER_WATCHED_CABLES 4
 enum { ERROR_SWEEPS = 4 };
 static const tendon_robot_real ERROR_SAFETY = (tendon_robot_real)1.2;
+static const tendon_robot_real ERROR_FIRST_LOOK = (tendon_robot_real)2.0;
 static const tendon_robot_real ERROR_SETTLED = (tendon_robot_real)0.2;
 static const tendon_robot_real ERROR_FOLLOWED = (tendon_robot_real)0.5;
 static const tendon_robot_real ERROR_CONTRACTING = (tendon_robot_real)0.5;
-static const tendon_robot_real ERROR_ENOUGH = (tendon_robot_real)8.333333333333334e-05;
+static const tendon_robot_real ERROR_ENOUGH = (tendon_robot_real)5e-05;
 static const tendon_robot_real ERROR_FASTEST = (tendon_robot_real)0.02;
 static const tendon_robot_real ERROR_SLOWEST = (tendon_robot_real)0.7;
 static const tendon_robot_real ERROR_FLOOR = (tendon_robot_real)2e-14;

@@ -173,6 +173,16 @@ def test_parameters_move_the_stiffness_of_missing_modes() -> None:
     assert_estimated(softer)
 
 
+def test_a_first_look_leaves_room_for_what_a_second_adds() -> None:
+    """The second sweep makes the change of a heavier soft arm one and a half times that of the first."""
+    changes = ["accuracy.tolerance=2e-4", "arm.material.density=1512.0"]
+    arm = read_scene(ROOT / "examples" / "soft_arm.toml", changes)
+    heavier = solve(build(arm, discretise(arm, [1, 3, 2, 2, 1, 1], 4)))
+    assert heavier.within_tolerance
+    assert heavier.error_estimate is not None
+    assert 1.0 <= heavier.error_estimate / true_error(heavier) < MOST_ABOVE
+
+
 def test_error_that_no_correction_settles_near_counts_as_the_whole_length(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(estimates, "MOST_SWEEPS", 1)
     monkeypatch.setattr(estimates, "MOST_STEPS", 1)
