@@ -13,7 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_forces import Follower, Touches
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.rubbing_step import RubbingStep, along_tangents
 from cosserat_casadi.numerics.motion_equations import Instant
@@ -114,7 +114,7 @@ class ContactRecord:
             total = force * facing.force_unit * gap.normal
             at = min(max(place, 0.0), 1.0)
             lies = touch.facing in stretch.laid
-            contact = MotionContact(facing.obstacle.name, facing.owner, at, total, lies, facing.of_body)
+            contact = MotionContact(facing.touched, facing.owner, at, total, lies, facing.of_body)
             if isinstance(step, RubbingStep) and facing.obstacle.rubs:
                 along = facing.force_unit * instant.x[size + count :].reshape(-1, 2)[k]
                 friction = along_tangents(gap.normal, step.axes[k], along)
@@ -151,7 +151,7 @@ class ContactRecord:
         found = []
         for facing in self._facings:
             minimum = facing.deepest(facing.nodes(x, inputs))
-            found.append(Inside(-minimum.gap, facing.owner, facing.obstacle.name, minimum.place, facing.of_body))
+            found.append(Inside(-minimum.gap, facing.owner, facing.touched, minimum.place, facing.of_body))
         return max(found)
 
     @cached_property

@@ -19,7 +19,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
-from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing, facings, touching_points
+from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing
+from cosserat_casadi.motion.facings import facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
