@@ -69,7 +69,10 @@ class SectionGap:
         value: the gap.
         slope: its derivative with X.
         bend: its second derivative with X.
+        other_place: abscissa of the section of another rod that is nearest; None beside an obstacle.
     """
+
+    other_place: float | None = None
 
     def __init__(self, memory: FloatArray, points: int) -> None:
         self._memory = memory

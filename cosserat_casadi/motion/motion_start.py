@@ -16,7 +16,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Resume
 from cosserat_casadi.motion.contact_guards import ContactPhase
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_model import model_at_rest
+from cosserat_casadi.motion.rods_facing import RodsFacing
 from cosserat_casadi.motion.start_in_contact import resting
 from cosserat_casadi.numerics.newton import relative_norm
 
@@ -42,6 +44,11 @@ GIVEN_TOUCHES = (
     "The rods touch obstacles in the equilibrium that was given, and on at most {modes} modes of a strain the search "
     "for such an equilibrium, with forces at sections, did not settle. Give "
     "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
+)
+RODS_TOUCH = (
+    "Rods touch each other in the equilibrium of the inputs at t = 0 in which they could pass through each other: no "
+    'equilibrium of rods that touch exactly is found. Give start = "unloaded", other inputs at t = 0, or leave exact '
+    "out of rod_contacts."
 )
 FREE_TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
@@ -165,16 +172,31 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():
         x[model.discrete.unknowns.slices[key]] = solution.x[entries]
+    if model.scene.rods_touch_exactly and _rods_touch(
+        model, ExactContacts(model).first_phases(x, _inputs(model, solution))
+    ):
+        return Start(x, RODS_TOUCH, found=False)
     near = None if model.scene.touches_exactly else solution
     return Start(np.asarray(x), sentence, equilibrium=near)
 
 
-def _touching(model: Model, solution: Solution, sentence: str) -> Start:
-    """Start in an equilibrium in contact on the motion's own modes, next to a solution."""
+def _rods_touch(model: Model, phases: ContactPhase) -> bool:
+    """Whether rods touch rods."""
+    touched = facings(model)
+    return any(isinstance(touched[touch.facing], RodsFacing) for touch in phases.touches)
+
+
+def _inputs(model: Model, solution: Solution) -> FloatArray:
+    """The inputs of a motion that a solution was found for, shape (model.inputs.size,)."""
     names = set(model.inputs.names)
     # The forces of contacts are inputs of the solution's model.
     given = solution.model.inputs.unpack(solution.inputs)
-    inputs = model.pack({name: value for name, value in given.items() if name in names})
+    return model.pack({name: value for name, value in given.items() if name in names})
+
+
+def _touching(model: Model, solution: Solution, sentence: str) -> Start:
+    """Start in an equilibrium in contact on the motion's own modes, next to a solution."""
+    inputs = _inputs(model, solution)
     held = model_at_rest(model)
     guess = held.with_flows(projected(solution, model)[: held.size])
     found = resting(ExactContacts(model), guess, inputs, solution.contacts)
@@ -183,4 +205,6 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
         refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
         return Start(model.unloaded(), refused.format(modes=modes), found=False, asks_for_modes=True)
     x, arrangement = found
+    if _rods_touch(model, arrangement):
+        return Start(x, RODS_TOUCH, found=False)
     return Start(x, sentence, phases=arrangement)

@@ -38,6 +38,8 @@ class RodGap(SectionGap):
         other_place: its abscissa.
     """
 
+    other_place: float
+
     def __init__(self, memory: FloatArray, points: int) -> None:
         own, other = np.split(memory, 2)
         super().__init__(own, points)

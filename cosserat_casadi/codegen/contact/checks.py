@@ -12,7 +12,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.obstacle_checks import held_by_contact, suggested_width
+from cosserat_casadi.model.obstacle_checks import exact_rods, held_by_contact, suggested_width
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
@@ -74,6 +74,7 @@ def refused_in_motion(scene: scenes.Scene) -> Iterator[Problem]:
     if not scene.touches_exactly:
         return
     remedy = "give each obstacle a width, m"
+    yield from exact_rods(scene, "a motion in C")
     if scene.parameters:
         problem = "steps in exact contact have the numbers of the scene, and no parameters"
         yield Problem("parameters", problem, f"leave them out, or {remedy}")
