@@ -158,7 +158,7 @@ def start_shape(model: Model) -> FloatArray:
         ExportError: the scene begins in an equilibrium, and none is found.
     """
     if any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded:
-        return unloaded_start(model).x
+        return unloaded_start(model, model.pack()).x
     start = equilibrium_start(model, model.pack())
     if not start.found:
         raise ExportError(Problem("simulation.start", start.sentence, 'give start = "unloaded"'))
