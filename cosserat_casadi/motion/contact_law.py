@@ -101,7 +101,7 @@ class FacingRecord(ctypes.Structure):
         *((name, POINTER) for name in ("ends", "to_coefficients", "looks", "laid")),
         *((name, ctypes.c_double) for name in ("length", "radius_at_base", "radius_at_tip")),
         *((name, POINTER) for name in ("surface", "distance", "coefficients", "gaps_along")),
-        *((name, POINTER) for name in ("other", "seen_from", "looked_at", "nearest")),
+        *((name, POINTER) for name in ("other", "seen_from", "looked_at", "balls", "nearest")),
     ]
 
 

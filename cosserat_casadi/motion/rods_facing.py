@@ -99,6 +99,7 @@ class RodsFacing(RodFacing):
             "coefficients": 3 * self.points.count,
             "seen_from": 3,
             "looked_at": 3 * (LOOKS * record.elements + 1),
+            "balls": 4 * record.elements,
             "nearest": gap_size() // 2,
         }
         for name, size in sizes.items():

@@ -49,6 +49,7 @@ typedef struct facing_rod {
   struct facing_rod *other; /* rod that it may touch in the place of an obstacle, whose points stand behind its own; or null */
   real *seen_from;          /* of such a rod: the point that it is looked at from; else null */
   real *looked_at;          /* of such a rod: positions of the sections that are looked at first */
+  real *balls;              /* of such a rod: centre and radius of a ball about these sections of each element */
   void *nearest;            /* of such a rod: its section that is nearest to that point */
 } facing;
 
@@ -151,23 +152,53 @@ static void surface_of_point(const real *from, const real *point, real *distance
 /* Whether a nearest section stays at an end of its rod. */
 static int is_at_end(const section_gap *nearest) { return nearest->place <= AT_END || nearest->place >= 1 - AT_END; }
 
-/* Finds the section of a rod that is nearest to a point: of those that are looked at first, then next to that one. */
+static real way_between(const real *a, const real *b) {
+  const real way[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return SQUARE_ROOT(inner(way, way));
+}
+
+/* Finds the section of a rod that is nearest to a point: of those that are looked at first, then next to that one. Elements
+   in whose balls all is farther than what is found are passed over; the element that was nearest last is looked at first. */
 static void find_nearest(const facing *rod, const real *point) {
   workspace room = {.coefficients = rod->coefficients, .gaps_along = rod->gaps_along};
   section_gap *nearest = rod->nearest;
   const real taper = rod->radius_at_tip - rod->radius_at_base;
+  const int last = nearest->nodes ? nearest->first / rod->nodes : 0;
   int look = 0;
   real least = INFINITY;
-  for (int i = 0; i <= rod->elements * LOOKS; i++) {
-    real way[3];
-    for (int j = 0; j < 3; j++) way[j] = rod->looked_at[3 * i + j] - point[j];
-    const real distance = SQUARE_ROOT(inner(way, way)) - taper * place_of_look(rod, i);
-    if (!(distance < least)) continue;
-    least = distance;
-    look = i;
+  for (int k = 0; k < rod->elements; k++) {
+    const int e = (last + k) % rod->elements;
+    const real *ball = rod->balls + 4 * e;
+    if (way_between(ball, point) - ball[3] - larger(taper, 0) >= least) continue;
+    for (int i = e * LOOKS; i <= (e + 1) * LOOKS; i++) {
+      const real distance = way_between(rod->looked_at + 3 * i, point) - taper * place_of_look(rod, i);
+      if (!(distance < least)) continue;
+      least = distance;
+      look = i;
+    }
   }
   memcpy(rod->seen_from, point, 3 * sizeof *point);
   look_lowest_by(rod, look, nearest, &room);
+}
+
+/* Positions of the sections of a rod that are looked at first, and a ball about those of each element: its centre is the
+   middle one, its radius the largest distance from there. */
+static void place_looks(const facing *rod, const real *nodes) {
+  for (int i = 0; i <= rod->elements * LOOKS; i++) {
+    const int e = i / LOOKS < rod->elements ? i / LOOKS : rod->elements - 1;
+    const real *weights = rod->looks + (i - e * LOOKS) * rod->nodes;
+    real *at = rod->looked_at + 3 * i;
+    at[0] = at[1] = at[2] = 0;
+    for (int k = 0; k < rod->nodes; k++) {
+      for (int j = 0; j < 3; j++) at[j] += weights[k] * nodes[3 * (e * rod->nodes + k) + j];
+    }
+  }
+  for (int e = 0; e < rod->elements; e++) {
+    real *ball = rod->balls + 4 * e;
+    memcpy(ball, rod->looked_at + 3 * (e * LOOKS + LOOKS / 2), 3 * sizeof *ball);
+    ball[3] = 0;
+    for (int i = e * LOOKS; i <= (e + 1) * LOOKS; i++) ball[3] = larger(ball[3], way_between(ball, rod->looked_at + 3 * i));
+  }
 }
 
 /* The surface of the other rod: its distance is that of its nearest section, which goes along as the point moves. */
@@ -203,15 +234,7 @@ static workspace room_of(const facing *own, const real *nodes) {
     const real *of_rod = nodes + 3 * own->elements * own->nodes;
     workspace room = {.coefficients = rod->coefficients, .gaps_along = rod->gaps_along};
     fit_nodes(rod, of_rod, &room);
-    for (int i = 0; i <= rod->elements * LOOKS; i++) {
-      const int e = i / LOOKS < rod->elements ? i / LOOKS : rod->elements - 1;
-      const real *weights = rod->looks + (i - e * LOOKS) * rod->nodes;
-      real *at = rod->looked_at + 3 * i;
-      at[0] = at[1] = at[2] = 0;
-      for (int k = 0; k < rod->nodes; k++) {
-        for (int j = 0; j < 3; j++) at[j] += weights[k] * of_rod[3 * (e * rod->nodes + k) + j];
-      }
-    }
+    place_looks(rod, of_rod);
   }
   const workspace room = {.coefficients = own->coefficients, .gaps_along = own->gaps_along};
   return room;
