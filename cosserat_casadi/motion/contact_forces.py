@@ -150,7 +150,7 @@ class Follower:
         return np.array(own).reshape(len(gaps), len(x))
 
     def pushes(self, gradients: FloatArray) -> FloatArray:
-        """What unit forces of the contacts do to the equations of motion, shape (m, n), from their gaps' gradients."""
+        """Forces on the unknowns by unit forces of the contacts, shape (m, n), from the gradients of their gaps."""
         if all(facing.points.shares is None for facing in self.facings):
             return gradients
         return np.array([facing.points.in_balances(own) for facing, own in zip(self.facings, gradients, strict=True)])

@@ -2,7 +2,7 @@
 
 A section of the first rod sees the other rod as an obstacle that moves. The gap is the least distance d of the section
 from the other centre line, less both radii: d = |r(X) − s(Y)| with the normal n from s to r. The contact is where the
-gap is least along the first rod too. So the gap is a minimum over both abscissae, or over Y alone where X is given. Its
+gap is least along the first rod too. So the gap is a minimum over both abscissae, or over Y alone where X is held. Its
 gradient with the unknowns is that of d with X and Y held; its second derivative is less by what X and Y slide:
 
     δ²d − cᵀ M⁻¹ c,   M the second derivatives of d with X and Y, c how its first ones change with the unknowns.
@@ -133,7 +133,7 @@ class RodsFacing(RodFacing):
         return first / self.length, second / self.length
 
     def _taken(self, by_nodes: FloatArray, gap: RodGap, *, slides: bool) -> FloatArray:
-        """What the sliding of both abscissae takes from the second derivative of the distance, cᵀ M⁻¹ c, m.
+        """Part of the second derivative of the distance that the sliding of both abscissae takes away, cᵀ M⁻¹ c, m.
 
         Args:
             by_nodes: motion of all points, shape (M, 3, n), or (M, 3) of one motion.

@@ -28,7 +28,7 @@ from cosserat_casadi.scene.varying import VaryingValue, varying_values
 from cosserat_casadi.tubes.robot import robot_of
 
 APART = "The figures are those of rods that pass through each other: contact of rods without a width is of motions."
-"""What the figures of a scene leave out whose rods touch each other exactly."""
+"""A sentence on scenes whose rods touch each other exactly."""
 
 
 def check(
