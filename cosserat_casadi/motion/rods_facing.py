@@ -7,6 +7,8 @@ gradient with the unknowns is that of d with X and Y held; its second derivative
 
     δ²d − cᵀ M⁻¹ c,   M the second derivatives of d with X and Y, c how its first ones change with the unknowns.
 
+M is eliminated place by place: Y first, and then X, along which the gap bends as Y slides along.
+
 Forces on both rods are opposite and on one line: they leave neither a resultant nor a moment.
 """
 
@@ -146,16 +148,17 @@ class RodsFacing(RodFacing):
         # While both sections are held the distance has the curvature of a ball.
         ball = gap.other.curvature
         moved = np.tensordot(gap.rows.value, by_nodes, 1)
-        slopes, ways = [], []
-        for sign, rows, tangent in ((1.0, gap.own_rows, gap.tangent), (-1.0, gap.other.rows, gap.other.tangent)):
-            turned = np.tensordot(rows.first, by_nodes, 1)
-            slopes.append(sign * (gap.normal @ turned + tangent @ ball @ moved))
-            ways.append(sign * tangent)
-        mixed = float(ways[0] @ ball @ ways[1])
-        bend_of_other = gap.other.bend * self.other.length
-        # The bend of the gap is one with the other section sliding along.
-        bend = gap.bend * self.length + (mixed**2 / bend_of_other if gap.other_slides else 0.0)
-        bends = np.array([[bend, mixed], [mixed, bend_of_other]])
-        kept = np.flatnonzero([slides, gap.other_slides])
-        changes = np.array(slopes)[kept]
-        return np.asarray(changes.T @ np.linalg.solve(bends[np.ix_(kept, kept)], changes))
+        of_own, of_other = (np.tensordot(rows.first, by_nodes, 1) for rows in (gap.own_rows, gap.other.rows))
+        own = gap.normal @ of_own + gap.tangent @ ball @ moved
+        # Where Newton's method has gone astray numbers may be none: its step is not taken then.
+        with np.errstate(all="ignore"):
+            taken = np.zeros(np.shape(own) * 2)
+            if gap.other_slides:
+                other = -(gap.normal @ of_other) - gap.other.tangent @ ball @ moved
+                bend = np.float64(gap.other.bend * self.other.length)
+                taken = np.multiply.outer(other, other) / bend
+                # The first place changes as the other one slides along, with which the gap has its bend.
+                own = own + (gap.tangent @ ball @ gap.other.tangent) / bend * other
+            if slides:
+                taken = taken + np.multiply.outer(own, own) / np.float64(gap.bend * self.length)
+        return taken

@@ -96,6 +96,16 @@ def test_derivatives_of_the_gap(slides: bool, ends: bool) -> None:
     assert_allclose(rates, (slope, direction @ second @ direction), rtol=1e-9, atol=0)
 
 
+def test_unknowns_gone_astray_leave_no_number_and_raise_nothing() -> None:
+    """Newton's method may try anything; its step is not taken then."""
+    model = moving(free_rods())
+    (facing,) = facings(model)
+    x, inputs = np.full(model.size, 1e60), model.pack()
+    touch = MovingContact(0, 0.67, True)
+    _, (gap,) = Follower([facing], (touch,)).gaps(x, inputs)
+    assert not np.isfinite(facing.turning(facing.points.jacobian(x, inputs), gap, slides=True)).all()
+
+
 def test_the_gap_is_the_least_distance_of_both_rods() -> None:
     model = moving(free_rods())
     (facing,) = facings(model)
