@@ -147,6 +147,8 @@ def contact_pairs(
         SceneError: a contact would take too many sections.
     """
     for contact, pair in named_pairs(scene):
+        if contact.exact:
+            continue
         radii = [section_radius(nominal[name].properties, LOOKED_AT) for name in pair]
         width = _width(contact, radii)
         stiffness = contact.stiffness
@@ -200,7 +202,7 @@ def half_of_stretch(touching: Scalar, width: Scalar) -> Scalar:
 def pair_widths(scene: scenes.Scene, rod: str) -> list[float]:
     """Widths of the contacts of a rod, m."""
     records = {record.name: record for record in scene.rods}
-    pairs = [(contact, pair) for contact, pair in named_pairs(scene) if rod in pair]
+    pairs = [(contact, pair) for contact, pair in named_pairs(scene) if rod in pair and not contact.exact]
     return [
         _width(contact, [section_radius(rod_properties(records[name]), LOOKED_AT) for name in pair])
         for contact, pair in pairs

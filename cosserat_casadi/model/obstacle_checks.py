@@ -64,6 +64,20 @@ def refuse_obstacles(scene: scenes.Scene, what: str, remedy: str = WIDTH) -> Non
         raise SceneError(Problem("obstacles", problem, remedy.format(width=suggested_width(scene))))
 
 
+def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
+    """Problems of rods that touch each other exactly where such contact is not looked for.
+
+    Args:
+        scene: the scene.
+        what: what does not look for it, in words.
+    """
+    for number, contact in enumerate(scene.rod_contacts):
+        if contact.exact:
+            problem = f"{what} knows no contact of rods without a width, which simulate alone finds"
+            remedy = "leave exact out, for a contact that is smooth; or simulate the scene"
+            yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
+
+
 def refuse_held_by_contact(scene: scenes.Scene) -> None:
     """Refuse to look for the equilibrium of free rods that only contact that is exact would hold.
 

@@ -118,9 +118,7 @@ class MeetingEnds:
                     (other, one.X)
                     for one in together
                     for other, candidate in enumerate(facings)
-                    if not candidate.of_body
-                    and candidate.owner == one.rod
-                    and candidate.obstacle.name == facing.obstacle.name
+                    if not candidate.of_body and candidate.owner == one.rod and candidate.touched == facing.touched
                 ]
 
     def beside(self, touch: MovingContact, near: float) -> list[tuple[int, float]]:

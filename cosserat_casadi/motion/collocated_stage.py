@@ -22,6 +22,7 @@ from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.obstacle_checks import exact_rods
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_checks import RUBS_IN_STEPS
@@ -351,6 +352,7 @@ def motion_stage(
     if model.scene.rubs_exactly:
         remedy = "give each obstacle a width, m, for a contact that is smooth; or leave friction out"
         problems.append(Problem("obstacles", RUBS_IN_STEPS, remedy))
+    problems += exact_rods(model.scene, "a stage of a motion")
     if sections < 1:
         problems.append(Problem("sections", f"must be 1 or more, got {sections}", f"take {SECTIONS}"))
     refuse(problems)

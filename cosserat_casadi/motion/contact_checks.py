@@ -12,6 +12,8 @@ from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_pairs import named_pairs
+from cosserat_casadi.motion.coincident_ends import meetings
 from cosserat_casadi.motion.event_restart import LAID_DOWN
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.one_sided import OneSided
@@ -52,6 +54,7 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
             if pair.rigid:
                 what = "a rigid stop or cable strikes, for which steps with friction of exact contact have no blow"
                 yield Problem(pair.name, what, f"give it a stiffness, or {remedy}; or leave friction out")
+    yield from _unfit_pairs(model)
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.
     disks = [body for body, _ in body_pairs(model.scene) if body.thickness is not None]
@@ -81,6 +84,16 @@ def refuse_going_on(scene: Scene) -> None:
         raise SceneError(Problem("simulation.duration", what, remedy))
 
 
+def _unfit_pairs(model: Model) -> Iterator[Problem]:
+    """Rods that touch rods exactly and whose ends are one point with ends of others: that point would touch twice."""
+    met = {end.rod for ends in meetings(model.scene) for end in ends}
+    for contact, rods in named_pairs(model.scene):
+        if contact.exact and met & set(rods):
+            names = ", ".join(rod for rod in rods if rod in met)
+            what = f"exact contact of rods is of rods whose ends meet no other rod's, and those of {names} do"
+            yield Problem(f"rod_contacts.{contact.label}", what, "leave exact out, for a contact that is smooth")
+
+
 def _too_thin(model: Model) -> Iterator[Problem]:
     """Balls and bars about which a rod, or a body, turns so sharply that steps would be without end."""
     met = []
@@ -92,6 +105,14 @@ def _too_thin(model: Model) -> Iterator[Problem]:
         met.append(
             (obstacle, f"the ball of {body.name!r}", ball_radius(body), model.discrete.body_frame(body.name).length)
         )
+    for contact, rods in named_pairs(model.scene):
+        properties = [model.discrete.rods[rod].properties for rod in rods]
+        thinnest = sum(float(section_radius(one, np.array([0.0, 1.0])).min()) for one in properties)
+        least = THINNEST * properties[0].length
+        if contact.exact and thinnest < least:
+            what = f"the radii of both rods are {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
+            remedy = "make them thicker, or leave exact out, for a contact that is smooth"
+            yield Problem(f"rod_contacts.{contact.label}", what, remedy)
     for obstacle, whose, own, length in met:
         thinnest = obstacle.thickness / 2 + own
         least = THINNEST * length

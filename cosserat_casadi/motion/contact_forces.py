@@ -141,13 +141,19 @@ class Follower:
         at = [np.ascontiguousarray(values, dtype=float) for values in (x, inputs)]
         addresses = [values.ctypes.data for values in (*at, memory)]
         called("touched_gaps", self.at_places(), len(self.touches), *addresses)
-        gaps = [SectionGap(own, facing.points.count) for facing, own in zip(self.facings, memory, strict=True)]
+        gaps = [facing.gap(own) for facing, own in zip(self.facings, memory, strict=True)]
         return memory[:, 0].tolist(), gaps
 
     def gradients(self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap]) -> FloatArray:
         """Derivatives of the gaps of the contacts with the unknowns, shape (m, n)."""
         own = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
         return np.array(own).reshape(len(gaps), len(x))
+
+    def pushes(self, gradients: FloatArray) -> FloatArray:
+        """Forces on the unknowns by unit forces of the contacts, shape (m, n), from the gradients of their gaps."""
+        if all(facing.points.shares is None for facing in self.facings):
+            return gradients
+        return np.array([facing.points.in_balances(own) for facing, own in zip(self.facings, gradients, strict=True)])
 
     def open_by(self, gaps: Sequence[SectionGap]) -> list[float]:
         """Excess of gaps over the heights that the contacts keep, over the lengths."""
@@ -184,7 +190,9 @@ class Follower:
     def curvature(
         self, x: FloatArray, inputs: FloatArray, gaps: Sequence[SectionGap], forces: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Sum of forces times second derivatives of their gaps with the unknowns, (n, n), and their gradients, (m, n).
+        """Derivative of what forces do to the equations of motion, (n, n), and gradients of the gaps, (m, n).
+
+        The derivative is a sum of forces times second derivatives of gaps, in units of the equations.
 
         Args:
             x: unknowns, shape (n,).
@@ -196,13 +204,14 @@ class Follower:
         gradients = np.zeros((len(gaps), len(x)))
         moved = {points: points.jacobian(x, inputs) for points in {facing.points for facing in self.facings}}
         for points, weights in self.pushed(gaps, forces).items():
-            total += points.hessian(x, inputs, weights)
+            total += points.in_balances(points.hessian(x, inputs, weights))
         for number, (facing, touch, gap, force) in enumerate(
             zip(self.facings, self.touches, gaps, forces, strict=True)
         ):
             by_nodes = moved[facing.points]
             gradients[number] = facing.weights(gap) @ by_nodes.reshape(-1, len(x))
-            total += force * facing.turning(by_nodes, gap, slides=touch.slides)
+            turning = facing.turning(by_nodes, gap, slides=touch.slides)
+            total += force * facing.points.in_balances(turning)
         return total, gradients
 
     def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
@@ -296,7 +305,7 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
         _, gaps = follower.gaps(x[:size], inputs)
         curvature, gradients = follower.curvature(x[:size], inputs, gaps, x[size:])
         stiffness[:size, :size] -= curvature
-        stiffness[:size, size:] = -gradients.T
+        stiffness[:size, size:] = -follower.pushes(gradients).T
         stiffness[size:, :size] = gradients
         return stiffness, damping, mass
 

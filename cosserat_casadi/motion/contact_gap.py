@@ -62,14 +62,17 @@ class SectionGap:
     """A gap at one section, over the length of the rod, and what its derivatives are made of.
 
     Args:
-        memory: the gap as C has written it, shape (gap_size(),).
+        memory: the gap as C has written it, shape (gap_size() / 2,).
         points: number of the points of the rod or body.
 
     Attributes:
         value: the gap.
         slope: its derivative with X.
         bend: its second derivative with X.
+        other_place: abscissa of the section of another rod that is nearest; None beside an obstacle.
     """
+
+    other_place: float | None = None
 
     def __init__(self, memory: FloatArray, points: int) -> None:
         self._memory = memory
@@ -116,21 +119,32 @@ class Minimum(NamedTuple):
 
 @dataclass(frozen=True)
 class Facing(ABC):
-    """A rod or a body, and an obstacle that it may touch.
+    """A rod or a body, and an obstacle or another rod that it may touch.
 
     Attributes:
         model: the model, built for a motion.
         owner: name of the rod, or of the body.
-        obstacle: the obstacle.
-        points: of the rod, or of the body.
+        against: the obstacle, or the contact with the other rod.
+        points: of the rod, or of the body; behind those of a rod stand those of the other rod.
         of_body: whether it is a body.
     """
 
     model: Model
     owner: str
-    obstacle: scenes.ObstacleRecord
+    against: scenes.ObstacleRecord | scenes.RodContact
     points: MovingPoints
     of_body: bool
+
+    @property
+    def obstacle(self) -> scenes.ObstacleRecord:
+        """The obstacle of a pair that is not of two rods."""
+        assert not isinstance(self.against, scenes.RodContact), "asked for of obstacles"
+        return self.against
+
+    @property
+    def touched(self) -> str:
+        """Name of the obstacle, or of the other rod."""
+        return self.obstacle.name
 
     @property
     @abstractmethod
@@ -195,6 +209,10 @@ class Facing(ABC):
         held.share("gaps_along", np.zeros(LOOKS * record.elements + 1))
         return held
 
+    def gap(self, memory: FloatArray) -> SectionGap:
+        """A gap that C has written, shape (gap_size(),)."""
+        return SectionGap(memory[: len(memory) // 2], self.points.count)
+
     def at(self, nodes: FloatArray, X: float, element: int | None = None) -> SectionGap:
         """The gap at a section, by the polynomials of an element next to it; None for the element that it lies in.
 
@@ -203,7 +221,7 @@ class Facing(ABC):
         memory = np.empty(gap_size())
         number = self.element(X) if element is None else element
         called("gap_at", self.in_law.address, _address(nodes), X, number, memory.ctypes.data)
-        return SectionGap(memory, self.points.count)
+        return self.gap(memory)
 
     def place(self, nodes: FloatArray, near: float, element: int) -> float:
         """Abscissa next to another where the gap is least, by the polynomials of an element."""

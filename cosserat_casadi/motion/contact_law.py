@@ -44,6 +44,9 @@ FAR = 0.02
 AT_END = 1e-12
 """Distance from an end, over the length, at which a place is that end."""
 
+NEXT_TO_NOTHING = 1e-30
+"""Distance, m, of two points that are one: the direction from one to the other is unknown."""
+
 MOST_PLACINGS = 20
 """Newton iterations for the place where a gap is least."""
 
@@ -84,11 +87,12 @@ class PointsRecord(ctypes.Structure):
         ("is_known", ctypes.c_int),
         ("positions", POINTER),
         ("gradient", POINTER),
+        ("shares", POINTER),
     ]
 
 
 class FacingRecord(ctypes.Structure):
-    """A rod or a body, and an obstacle."""
+    """A rod or a body, and an obstacle or another rod."""
 
     _fields_ = [
         ("points", POINTER),
@@ -97,6 +101,7 @@ class FacingRecord(ctypes.Structure):
         *((name, POINTER) for name in ("ends", "to_coefficients", "looks", "laid")),
         *((name, ctypes.c_double) for name in ("length", "radius_at_base", "radius_at_tip")),
         *((name, POINTER) for name in ("surface", "distance", "coefficients", "gaps_along")),
+        *((name, POINTER) for name in ("other", "seen_from", "looked_at", "balls", "nearest")),
     ]
 
 
@@ -196,6 +201,7 @@ def _words() -> dict[str, Any]:
         "beyond": BEYOND,
         "off": OFF,
         "at_end": AT_END,
+        "next_to_nothing": NEXT_TO_NOTHING,
     }
 
 
@@ -231,7 +237,10 @@ def least_pushes(compliance: FloatArray, rates: FloatArray, tolerance: float) ->
 
 @lru_cache(maxsize=1)
 def gap_size() -> int:
-    """Numbers that a gap takes in memory, with weights of as many nodes as an element may have."""
+    """Numbers that a gap takes in memory: of a section, then of the nearest section of another rod, if there is one.
+
+    Both have weights of as many nodes as an element may have.
+    """
     return int(compiled_law().contact_records(5)) // ctypes.sizeof(DOUBLE)
 
 

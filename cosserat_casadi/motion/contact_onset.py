@@ -114,7 +114,7 @@ class Onset:
         saddle = self.saddle
         if pressing:
             equations = with_touches(self.plain, self._follower(pressing), self.piece)
-            saddle = saddle.with_constraints(self._gradients(pressing))
+            saddle = saddle.with_constraints(*self._gradients(pressing))
         x, v = (_padded(values, pressing) for values in (self.before.x, self.before.v))
         return consistent_start(equations, self.before.time, x, v, self.interval, saddle)
 
@@ -126,7 +126,7 @@ class Onset:
         """
         if not touches:
             return self
-        return self.at(self.before.v + least_change(self.saddle, self._gradients(touches), self.rates(touches)))
+        return self.at(self.before.v + least_change(self.saddle, *self._gradients(touches), self.rates(touches)))
 
     def struck(self, touching: Touches, known: int) -> Struck | None:
         """The state after an impact at sections without a gap; None where no impulses settle it.
@@ -139,10 +139,10 @@ class Onset:
             return Struck(self.before.v, np.zeros(0), np.zeros(0), ())
         speeds = self.rates(touching)
         still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
-        gradients = self._gradients(touching)
-        answers = response(self.saddle, gradients.T)
+        gradients, pushes = self._gradients(touching)
+        answers = response(self.saddle, pushes.T)
         # Newton's law: γ⁺ ≥ −e γ⁻ where gaps close. Of what has touched before γ⁻ is zero.
-        shares = np.array([self.facings[touch.facing].obstacle.restitution for touch in touching])
+        shares = np.array([self.facings[touch.facing].against.restitution for touch in touching])
         shares[:known] = 0.0
         rebound = np.where(speeds < -still, -shares * speeds, 0.0)
         impulses = least_pushes(gradients @ answers, speeds - rebound, still)
@@ -194,19 +194,21 @@ class Onset:
         nothing of these.
         """
         _, turning = self._follower(touches).rates(self.before.x, self.before.v, self.inputs)
-        gradients = self._gradients(touches)
+        gradients, pushes = self._gradients(touches)
         free = self.start(()).instant
-        a, answers = shortly_after(self.plain, free, self.horizon, gradients.T)
+        a, answers = shortly_after(self.plain, free, self.horizon, pushes.T)
         opening = gradients @ a + turning
         compliance = gradients @ answers
         largest = float(np.abs(opening).max() + np.abs(turning).max())
         tolerance = STEADY * largest + FORCELESS * float(np.abs(np.diag(compliance)).max())
         return opening, compliance, tolerance
 
-    def _gradients(self, touches: Touches) -> FloatArray:
+    def _gradients(self, touches: Touches) -> tuple[FloatArray, FloatArray]:
+        """Gradients of gaps, and what unit forces of their contacts do to the equations, shape (m, n) each."""
         follower, x = self._follower(touches), self.before.x
         _, gaps = follower.gaps(x, self.inputs.value)
-        return follower.gradients(x, self.inputs.value, gaps)
+        gradients = follower.gradients(x, self.inputs.value, gaps)
+        return gradients, follower.pushes(gradients)
 
     def _follower(self, touches: Sequence[MovingContact]) -> Follower:
         return Follower(self.facings, tuple(touches))

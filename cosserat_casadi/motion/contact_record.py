@@ -13,7 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_forces import Follower, Touches
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.rubbing_step import RubbingStep, along_tangents
 from cosserat_casadi.numerics.motion_equations import Instant
@@ -25,7 +25,7 @@ class MotionContact:
     """A section that touches an obstacle at some time.
 
     Attributes:
-        obstacle: name of the obstacle.
+        obstacle: name of the obstacle, or of the other rod.
         owner: name of the rod, or of the body, that touches.
         at: abscissa X of the section; 0 of a body.
         force: on the rod along the normal of the obstacle, world axes, shape (3,), N.
@@ -33,6 +33,7 @@ class MotionContact:
         of_body: whether it is a body that touches.
         friction: on the rod along the surface, world axes, shape (3,), N; None where the obstacle has no friction.
         slips: whether it slips, as all does without friction; else it sticks.
+        at_other: abscissa X of the section of the other rod; None where an obstacle is touched.
     """
 
     obstacle: str
@@ -43,6 +44,7 @@ class MotionContact:
     of_body: bool = False
     friction: FloatArray | None = None
     slips: bool = True
+    at_other: float | None = None
 
 
 class Inside(NamedTuple):
@@ -114,7 +116,9 @@ class ContactRecord:
             total = force * facing.force_unit * gap.normal
             at = min(max(place, 0.0), 1.0)
             lies = touch.facing in stretch.laid
-            contact = MotionContact(facing.obstacle.name, facing.owner, at, total, lies, facing.of_body)
+            contact = MotionContact(
+                facing.touched, facing.owner, at, total, lies, facing.of_body, at_other=gap.other_place
+            )
             if isinstance(step, RubbingStep) and facing.obstacle.rubs:
                 along = facing.force_unit * instant.x[size + count :].reshape(-1, 2)[k]
                 friction = along_tangents(gap.normal, step.axes[k], along)
@@ -151,7 +155,7 @@ class ContactRecord:
         found = []
         for facing in self._facings:
             minimum = facing.deepest(facing.nodes(x, inputs))
-            found.append(Inside(-minimum.gap, facing.owner, facing.obstacle.name, minimum.place, facing.of_body))
+            found.append(Inside(-minimum.gap, facing.owner, facing.touched, minimum.place, facing.of_body))
         return max(found)
 
     @cached_property

@@ -18,18 +18,13 @@ from numpy.polynomial import chebyshev as polynomial
 from numpy.polynomial import legendre
 
 from cosserat_casadi.compiling.shared_records import Held
-from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.function_table import kept_with
-from cosserat_casadi.motion.coincident_ends import watched_ends
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS
-from cosserat_casadi.motion.moving_points import MovingPoints, centre_of, nodes_of
-from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 
 BENDING = (0, 1)
 """Numbers of the strains that bend a rod."""
@@ -137,45 +132,6 @@ class BodyFacing(Facing):
     def describe(self, held: Held) -> None:
         """Write into the record that it is one point."""
         held.record.elements = held.record.nodes = 1
-
-
-def facings(model: Model, libraries: Libraries = INTERPRETED) -> list[Facing]:
-    """Every rod and every body with every obstacle that it may touch exactly.
-
-    Args:
-        model: the model, built for a motion.
-        libraries: shared objects that have the functions of :func:`touching_points`.
-    """
-    # Its functions are those of every motion of the model.
-    kept: dict[Libraries, list[Facing]] = kept_with(model, "_facings", dict)
-    if libraries not in kept:
-        kept[libraries] = _facings(model, libraries)
-    return kept[libraries]
-
-
-def touching_points(model: Model, libraries: Libraries = INTERPRETED) -> list[MovingPoints]:
-    """Points of all rods and bodies that may touch; none in a scene without exact contact."""
-    return list(dict.fromkeys(facing.points for facing in facings(model, libraries)))
-
-
-def _facings(model: Model, libraries: Libraries) -> list[Facing]:
-    found: list[Facing] = []
-    exact = [obstacle for obstacle in model.scene.obstacles if not obstacle.is_smooth]
-    for rod in model.scene.rods:
-        concerned = [obstacle for obstacle in exact if obstacle.concerns(rod.name)]
-        if not concerned:
-            continue
-        points = nodes_of(model, rod.name, libraries)
-        for obstacle in concerned:
-            ends = watched_ends(model, rod.name, obstacle)
-            found.append(RodFacing(model, rod.name, obstacle, points, False, ends))
-    for body in model.scene.bodies:
-        concerned = [obstacle for obstacle in exact if obstacle.concerns_body(body.name)]
-        if not concerned:
-            continue
-        points = centre_of(model, body.name, libraries)
-        found += [BodyFacing(model, body.name, obstacle, points, True, ball_radius(body)) for obstacle in concerned]
-    return found
 
 
 def lobatto(count: int) -> FloatArray:

@@ -32,8 +32,8 @@ from cosserat_casadi.motion.contact_guards import (
     guarded,
 )
 from cosserat_casadi.motion.contact_onset import Onset, Struck
-from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.event_restart import LAID_DOWN, ContactEvent, Restart
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries
 from cosserat_casadi.numerics.consistent_start import least_change, saddle_at
@@ -126,15 +126,16 @@ class ExactContacts:
         saddle = saddle_at(plain, Instant(at.time, x, v, at.a[:size]))
         _, gaps = follower.gaps(x, inputs.value)
         gradients = follower.gradients(x, inputs.value, gaps)
+        pushes = follower.pushes(gradients)
         open_by = np.array(follower.open_by(gaps))
         for _ in range(CLOSINGS):
             if np.abs(open_by).max() <= CLOSED:
                 break
-            x = x + least_change(saddle, gradients, open_by)
+            x = x + least_change(saddle, gradients, pushes, open_by)
             _, gaps = follower.gaps(x, inputs.value)
             open_by = np.array(follower.open_by(gaps))
         rates, _ = follower.rates(x, v, inputs)
-        v = v + least_change(saddle, gradients, rates)
+        v = v + least_change(saddle, gradients, pushes, rates)
         return replace(at, x=np.append(x, at.x[size:]), v=np.append(v, at.v[size:]))
 
     def restarted(
@@ -352,7 +353,7 @@ class ExactContacts:
 
     def _stopped(self, onset: Onset, known: _Known, touching: Touches) -> Restart[ContactPhase]:
         """The end of a motion, with everything as it was, because nothing is decided."""
-        names = sorted({self.facings[touch.facing].obstacle.name for touch in touching})
+        names = sorted({self.facings[touch.facing].touched for touch in touching})
         why = (
             f"At t = {onset.before.time:.6g} s it is not decided which of {len(touching)} contacts with "
             f"{', '.join(names)} remain."
@@ -447,8 +448,7 @@ class ExactContacts:
         self, kind: str, time: float, touch: MovingContact, energy: float = 0.0, impulse: float = 0.0
     ) -> ContactEvent:
         facing = self.facings[touch.facing]
-        name = facing.obstacle.name
-        return ContactEvent(kind, time, facing.owner, name, touch.place, energy, impulse, facing.of_body)
+        return ContactEvent(kind, time, facing.owner, facing.touched, touch.place, energy, impulse, facing.of_body)
 
 
 @dataclass(frozen=True)

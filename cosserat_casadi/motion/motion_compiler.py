@@ -28,8 +28,8 @@ from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.motion.centred_coordinates import can_be_centred
 from cosserat_casadi.motion.compiled_steps import CompiledSteps
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
-from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import function_of_displacements
+from cosserat_casadi.motion.facings import touching_points
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
 from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.motion.step_kernels import (

@@ -14,9 +14,11 @@ from cosserat_casadi.equilibrium.solve import NOTHING, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import Resume
-from cosserat_casadi.motion.contact_guards import ContactPhase
-from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.contact_guards import CLOSE, ContactPhase
+from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_model import model_at_rest
+from cosserat_casadi.motion.rods_facing import RodsFacing
 from cosserat_casadi.motion.start_in_contact import resting
 from cosserat_casadi.numerics.newton import relative_norm
 
@@ -43,6 +45,12 @@ GIVEN_TOUCHES = (
     "for such an equilibrium, with forces at sections, did not settle. Give "
     "another number of accuracy.modes, mostly a larger one; the equilibrium that was given may stay."
 )
+RODS_TOUCH = (
+    "Rods touch each other in the equilibrium of the inputs at t = 0 in which they could pass through each other: no "
+    'equilibrium of rods that touch exactly is found. Give start = "unloaded", other inputs at t = 0, or leave exact '
+    "out of rod_contacts."
+)
+RODS_INSIDE = "Rods that touch each other exactly are inside each other in the unloaded shape: move them apart."
 FREE_TOUCHES = (
     "The rods touch obstacles in the equilibrium of the inputs at t = 0 with free bases held, and a free base that is "
     'let go in contact is no start: give start = "unloaded", or other inputs at t = 0.'
@@ -79,10 +87,18 @@ def resumed_start(model: Model, resume: Resume) -> Start:
     return Start(model.unloaded(), RESUMED.format(time=resume.at.time), resume=resume)
 
 
-def unloaded_start(model: Model) -> Start:
-    """Start at rest in the unloaded shape."""
+def unloaded_start(model: Model, inputs: FloatArray) -> Start:
+    """Start at rest in the unloaded shape.
+
+    Args:
+        model: of the scene in motion.
+        inputs: at the start, shape (model.inputs.size,).
+    """
     asked = model.scene.simulation is not None and model.scene.simulation.start is not None
-    return Start(_own_unloaded(model), UNLOADED if asked else SWINGS)
+    x = _own_unloaded(model)
+    if least_gap_of_rods(model, x, inputs) < -CLOSE:
+        return Start(x, RODS_INSIDE, found=False)
+    return Start(x, UNLOADED if asked else SWINGS)
 
 
 def equilibrium_start(
@@ -165,16 +181,37 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():
         x[model.discrete.unknowns.slices[key]] = solution.x[entries]
+    if least_gap_of_rods(model, x, _inputs(model, solution)) <= TOUCHING:
+        return Start(x, RODS_TOUCH, found=False)
     near = None if model.scene.touches_exactly else solution
     return Start(np.asarray(x), sentence, equilibrium=near)
 
 
-def _touching(model: Model, solution: Solution, sentence: str) -> Start:
-    """Start in an equilibrium in contact on the motion's own modes, next to a solution."""
+def least_gap_of_rods(model: Model, x: FloatArray, inputs: FloatArray) -> float:
+    """The least gap of rods that touch each other exactly, over the length; infinite where there are none.
+
+    Args:
+        model: of the scene in motion.
+        x: unknowns, shape (size,).
+        inputs: stacked, shape (model.inputs.size,).
+    """
+    if not model.scene.rods_touch_exactly:
+        return float("inf")
+    pairs = [facing for facing in facings(model) if isinstance(facing, RodsFacing)]
+    return min((pair.deepest(pair.nodes(x, inputs)).gap for pair in pairs), default=float("inf"))
+
+
+def _inputs(model: Model, solution: Solution) -> FloatArray:
+    """The inputs of a motion that a solution was found for, shape (model.inputs.size,)."""
     names = set(model.inputs.names)
     # The forces of contacts are inputs of the solution's model.
     given = solution.model.inputs.unpack(solution.inputs)
-    inputs = model.pack({name: value for name, value in given.items() if name in names})
+    return model.pack({name: value for name, value in given.items() if name in names})
+
+
+def _touching(model: Model, solution: Solution, sentence: str) -> Start:
+    """Start in an equilibrium in contact on the motion's own modes, next to a solution."""
+    inputs = _inputs(model, solution)
     held = model_at_rest(model)
     guess = held.with_flows(projected(solution, model)[: held.size])
     found = resting(ExactContacts(model), guess, inputs, solution.contacts)
@@ -183,4 +220,6 @@ def _touching(model: Model, solution: Solution, sentence: str) -> Start:
         refused = GIVEN_TOUCHES if sentence == GIVEN else TOUCHES
         return Start(model.unloaded(), refused.format(modes=modes), found=False, asks_for_modes=True)
     x, arrangement = found
+    if least_gap_of_rods(model, x, inputs) <= TOUCHING:
+        return Start(x, RODS_TOUCH, found=False)
     return Start(x, sentence, phases=arrangement)

@@ -30,10 +30,17 @@ class MovingPoints:
         placed: the positions in a system, 3×M.
         name: of the points in C.
         libraries: shared objects that have :attr:`in_iterations` and :attr:`in_derivatives`.
+        shares: unit of the work of forces on the points over the unit of each balance, shape (n,); None where the
+            points move with unknowns whose balances have that unit.
     """
 
     def __init__(
-        self, model: Model, placed: Callable[[System], Matrix], name: str, libraries: Libraries = INTERPRETED
+        self,
+        model: Model,
+        placed: Callable[[System], Matrix],
+        name: str,
+        libraries: Libraries = INTERPRETED,
+        shares: FloatArray | None = None,
     ) -> None:
         x = ca.MX.sym("x", model.size)
         inputs = ca.MX.sym("inputs", stacked_size(model))
@@ -46,6 +53,13 @@ class MovingPoints:
         self._written = (positions, total, gradient)
         self._name = name
         self._libraries = libraries
+        self.shares = shares
+
+    def in_balances(self, by_unknowns: FloatArray) -> FloatArray:
+        """Forces on the points, or their derivatives, in units of the balances, shape (n,) or (n, n)."""
+        if self.shares is None:
+            return by_unknowns
+        return (by_unknowns.T * self.shares).T
 
     @property
     def in_iterations(self) -> list[ca.Function]:
@@ -85,6 +99,8 @@ class MovingPoints:
         held = Held(PointsRecord(self.count))
         held.point("positions", function_record(self._positions))
         held.point("gradient", function_record(self.gradient))
+        if self.shares is not None:
+            held.share("shares", self.shares)
         return held
 
     @cached_property
@@ -197,13 +213,26 @@ def in_stacked_inputs(
 def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The nodes of a rod."""
     number = [record.name for record in model.scene.rods].index(rod)
+    return MovingPoints(model, lambda system: _nodes(system, rod), f"rod_{number}", libraries)
+
+
+def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = INTERPRETED) -> MovingPoints:
+    """The nodes of a rod, and those of another rod behind them; work is in units of the first rod's."""
+    numbers = [[record.name for record in model.scene.rods].index(rod) for rod in rods]
+    name = "rods_{}_{}".format(*numbers)
+    shares = model.discrete.rods[rods[0]].energy_unit / model.discrete.unknowns.units
 
     def placed(system: System) -> Matrix:
-        base = system.base(rod)
-        turned = quaternion_to_matrix(base.quaternion) @ system.shapes[rod].position
-        return ca.repmat(ca.MX(base.position), 1, turned.shape[1]) + turned
+        return ca.horzcat(*[_nodes(system, rod) for rod in rods])
 
-    return MovingPoints(model, placed, f"rod_{number}", libraries)
+    return MovingPoints(model, placed, name, libraries, shares)
+
+
+def _nodes(system: System, rod: str) -> Matrix:
+    """World positions of the nodes of a rod, 3×M."""
+    base = system.base(rod)
+    turned = quaternion_to_matrix(base.quaternion) @ system.shapes[rod].position
+    return ca.repmat(ca.MX(base.position), 1, turned.shape[1]) + turned
 
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:

@@ -35,8 +35,8 @@ from cosserat_casadi.motion.contact_law import (
     program_record,
     without_compiler,
 )
-from cosserat_casadi.motion.contact_sections import facings, touching_points
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.facings import facings, touching_points
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method

@@ -707,7 +707,7 @@ def started(
     if solution is not None:
         start = given_start(model, solution)
     elif model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
-        start = unloaded_start(model)
+        start = unloaded_start(model, moving.at(0.0).value)
     else:
         kernels = interpreted(model) if source is None else source.kernels(model)
         start = equilibrium_start(model, moving.at(0.0).value, near, kernels.residual)

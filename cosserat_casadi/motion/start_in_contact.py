@@ -64,7 +64,7 @@ def resting(
     facings = contacts.facings
     allowed = variations(contacts.model)
     lines = {(contact.owner, contact.obstacle) for contact in guess if contact.kind == "line"}
-    laid = frozenset(k for k, facing in enumerate(facings) if (facing.owner, facing.obstacle.name) in lines)
+    laid = frozenset(k for k, facing in enumerate(facings) if (facing.owner, facing.touched) in lines)
     pressing: Touches = ()
     forces = np.zeros(0)
     before = np.inf

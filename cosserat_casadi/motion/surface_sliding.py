@@ -19,7 +19,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_points import in_stacked_inputs, stacked_size
 
 

@@ -77,10 +77,15 @@ class Saddle:
         """Pseudo-inverse of the matrix, and the number of directions that it leaves out."""
         return _pseudo_inverse(self.matrix)
 
-    def with_constraints(self, gradients: FloatArray) -> Saddle:
-        """The system with further constraints of these gradients, shape (m, n), and their multipliers, as last rows."""
+    def with_constraints(self, gradients: FloatArray, pushes: FloatArray) -> Saddle:
+        """The system with further constraints of these gradients, shape (m, n), and their multipliers, as last rows.
+
+        Args:
+            gradients: of the constraints, shape (m, n).
+            pushes: what unit multipliers do to the rows, shape (m, n).
+        """
         count = len(gradients)
-        added = np.block([[self.matrix, -gradients.T], [gradients, np.zeros((count, count))]])
+        added = np.block([[self.matrix, -pushes.T], [gradients, np.zeros((count, count))]])
         return Saddle(
             np.append(self.constraints, np.ones(count, dtype=bool)),
             added,
@@ -189,7 +194,7 @@ def response(saddle: Saddle, directions: FloatArray) -> FloatArray:
     return np.where(saddle.differential[:, None], inverse @ forced, 0.0)
 
 
-def least_change(saddle: Saddle, gradients: FloatArray, values: FloatArray) -> FloatArray:
+def least_change(saddle: Saddle, gradients: FloatArray, pushes: FloatArray, values: FloatArray) -> FloatArray:
     """The change of unknowns, or of their rates, that takes values from some gaps, or from the rates of these.
 
     It is the smallest in the metric of the mass that keeps all constraints: of rates, one by impulses along the gaps.
@@ -197,12 +202,13 @@ def least_change(saddle: Saddle, gradients: FloatArray, values: FloatArray) -> F
     Args:
         saddle: the linear system.
         gradients: gradients of the gaps, shape (m, n).
+        pushes: what unit forces along the gaps do to the rows, shape (m, n).
         values: values to be taken from each gap, or rate, shape (m,).
 
     Returns:
         the change, shape (n,).
     """
-    answers = response(saddle, gradients.T)
+    answers = response(saddle, pushes.T)
     impulses, *_ = np.linalg.lstsq(gradients @ answers, values, rcond=None)
     return np.asarray(-answers @ impulses)
 

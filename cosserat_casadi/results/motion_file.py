@@ -147,6 +147,9 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         forces = [np.zeros(3) if contact.friction is None else contact.friction for contact in contacts]
         slips = np.array([contact.slips for contact in contacts], dtype=bool)
         friction = {"friction": np.array(forces).reshape(-1, 3), "slips": slips}
+    rods = {}
+    if motion.model.scene.rods_touch_exactly:
+        rods = {"at_other": [contact.at_other for contact in contacts]}
     return {
         "kind": "exact",
         "row": np.array([row for row, _ in numbered], dtype=int),
@@ -156,6 +159,7 @@ def _contact_entry(motion: Motion) -> dict[str, Any]:
         "of_body": [contact.of_body for contact in contacts],
         "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
         "lies": np.array([contact.lies for contact in contacts], dtype=bool),
+        **rods,
         **friction,
         "events": _events_entry(motion),
     }

@@ -220,7 +220,7 @@ class ObstacleRecord(Entry):
                 continue
             yield from _not_round(name, rod)
             if exact:
-                yield from _without_exact_contact(name, rod)
+                yield from without_exact_contact(name, rod, SMOOTH_FORM)
 
 
 def _misplaced_on_body(given: Table) -> Iterator[Fault]:
@@ -274,13 +274,19 @@ def _not_round(name: str, rod: Table) -> Iterator[Fault]:
         yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
 
 
-def _without_exact_contact(name: str, rod: Table) -> Iterator[Fault]:
-    """Properties of a rod with which its exact contact cannot be computed; a smooth contact needs none of this."""
+def without_exact_contact(name: str, rod: Table, smooth_form: str) -> Iterator[Fault]:
+    """Properties of a rod with which its exact contact cannot be computed; a smooth contact needs none of this.
+
+    Args:
+        name: of the rod.
+        rod: its table.
+        smooth_form: how to have a smooth contact, for people.
+    """
     if SHEARS & set(admitted_strains(rod.get("strain"))):
         # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
         # contact spreads over a stretch as short as the section is high, which is not resolved.
         problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
-        remedy = f'{SMOOTH_FORM}; or take strain = "kirchhoff", or leave the rod out of rods'
+        remedy = f'{smooth_form}; or take strain = "kirchhoff", or leave the rod out of rods'
         yield Fault((), problem, remedy)
 
 

@@ -1,4 +1,4 @@
-"""Rods that touch rods, or themselves: contact of pairs of rods, which is smooth."""
+"""Rods that touch rods, or themselves: contact of pairs of rods, which is smooth; or exact, in motion alone."""
 
 from __future__ import annotations
 
@@ -7,13 +7,17 @@ from typing import Any, ClassVar
 
 from pydantic import Field
 
-from cosserat_casadi.scene.faults import Fault, SceneTables, Table, table_of
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, refused_keys, table_of
+from cosserat_casadi.scene.obstacle_records import without_exact_contact
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rod_records import is_round
-from cosserat_casadi.scene.values import Name, Names, NotNegative, Positive
+from cosserat_casadi.scene.values import Name, Names, NotNegative, Positive, Share
 
 MOST_RODS = 2
 """Rods of a pair."""
+
+SMOOTH_KEYS = ("width", "stiffness", "friction", "slip_speed")
+"""Keys of a contact that is smooth."""
 
 
 class RodContact(Entry):
@@ -52,6 +56,14 @@ width = 5e-4
         description="with friction: speed, m/s, below which a contact that sticks creeps, under a "
         "force that grows with the speed",
     )
+    exact: bool = Field(
+        False,
+        description="whether rods touch without a width, which is found in motion alone: they strike each other",
+    )
+    restitution: Share = Field(
+        0.0,
+        description="with exact: speed after an impact over the speed of approach, without unit",
+    )
 
     @property
     def label(self) -> str:
@@ -69,6 +81,15 @@ width = 5e-4
         if isinstance(rods, list | tuple) and len(rods) > MOST_RODS:
             problem = f"must be one rod or two, got {len(rods)}"
             yield Fault(("rods",), problem, "give a table for each pair, or leave rods out: every two rods then")
+        if not given.get("exact"):
+            problem = "is of impacts, which a contact that is smooth does not have"
+            yield from refused_keys(given, ("restitution",), problem, "give exact = true, or leave it out")
+            return
+        problem = "is of a contact that is smooth"
+        yield from refused_keys(given, SMOOTH_KEYS, problem, "leave it out, or leave exact out")
+        if isinstance(rods, list | tuple) and len(set(rods)) == 1:
+            problem = "exact contact is of two rods, not of one with itself"
+            yield Fault(("exact",), problem, "leave it out: contact of a rod with itself is smooth")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -86,9 +107,21 @@ width = 5e-4
         if named is None and len(known) < MOST_RODS:
             problem = "missing: the scene has no two rods"
             yield Fault(("rods",), problem, "name the rod that touches itself, as in rods = ['finger']")
-        if any("width" not in other for _, other in scene.tables("obstacles")):
-            problem = "contact of rods is smooth, and an obstacle of the scene is touched exactly"
-            yield Fault((), problem, "give each obstacle a width, m, or leave one of the two out")
+        exact = bool(given.get("exact"))
+        if any(("width" not in other) is not exact for _, other in scene.tables("obstacles")):
+            kinds = ("exact", "has a width") if exact else ("smooth", "is touched exactly")
+            problem = "contact of rods is {}, and an obstacle of the scene {}".format(*kinds)
+            remedy = "leave the width of each obstacle out" if exact else "give each obstacle a width, m"
+            yield Fault((), problem, f"{remedy}, or leave one of the two out")
+        if any(bool(other.get("exact")) is not exact for _, other in scene.tables("rod_contacts")):
+            problem = "is true of some rods that touch rods, and not of all"
+            yield Fault(("exact",), problem, "give it for all, or for none")
+        if exact and any("friction" in other for _, other in scene.tables("obstacles")):
+            problem = "rods that touch rods exactly have no friction, and an obstacle has"
+            yield Fault(("exact",), problem, "give rods and obstacles a width, m, or leave friction out")
+        if exact:
+            for name in names:
+                yield from without_exact_contact(name, known[name][1], "leave exact out, for a contact that is smooth")
 
 
 def _without_radius(name: str, rod: Table, width: Any) -> Iterator[Fault]:

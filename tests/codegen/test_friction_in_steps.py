@@ -16,7 +16,7 @@ from cosserat_casadi.control import motion_stage
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 from tests.codegen.test_steps_in_contact import BALL, LENGTH, Moving, compare_with_differences, floor, rod, scene
 from tests.reference.falling_rods import FallingRod
 

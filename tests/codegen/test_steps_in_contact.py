@@ -23,7 +23,7 @@ from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.simulate import moving_inputs
 from tests.derivatives import central_differences
 from tests.motion.test_exact_contact_in_motion import beam_on_a_stop

@@ -86,6 +86,11 @@ CONTACTS: dict[str, dict[str, Any]] = {
     "smooth with friction": {"obstacles": [FLOOR | {"width": 8e-3, "friction": 0.3}]},
     "rods on rods": {"rods": [rod(), BELOW], "rod_contacts": [TOUCH]},
     "these with friction": {"rods": [rod(), BELOW], "rod_contacts": [TOUCH | {"friction": 0.3}]},
+    "rods on rods, exact": {
+        "rods": [rod(), BELOW],
+        "rod_contacts": [{"rods": ["rod", "other"], "exact": True}],
+        "simulation": {"duration": 0.03, "start": "unloaded", "tolerance": 1e-2},
+    },
 }
 """What a scene of each column has beside a rod and its push, by the heading of the column."""
 
@@ -151,6 +156,7 @@ def _followed(contact: str, _: Path) -> str:
 def _moved(contact: str, _: Path) -> str:
     motion = simulate(model(contact, moving=True))
     assert motion.converged, motion.message
+    assert motion.events or contact != "rods on rods, exact"
     return motion.message
 
 

@@ -13,7 +13,7 @@ from cosserat_casadi import Model, SceneError, build, scene_from_dict, simulate
 from cosserat_casadi.control import Condensing, Horizon, MotionStage, gauss, motion_stage, radau
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.section_pairs import TouchingPairs
 
 LENGTH = 0.1

@@ -15,9 +15,10 @@ from cosserat_casadi.motion import exact_contact
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, GuardKind
 from cosserat_casadi.motion.contact_law import LOOKS
-from cosserat_casadi.motion.contact_sections import RodFacing, facings
+from cosserat_casadi.motion.contact_sections import RodFacing
 from cosserat_casadi.motion.event_restart import ContactEvent
 from cosserat_casadi.motion.exact_contact import TOUCHING, ExactContacts
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import Simulator, motion_of, moving_inputs, started
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome

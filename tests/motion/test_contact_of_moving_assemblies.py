@@ -17,8 +17,8 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.coincident_ends import MeetingEnds, RodEnd, meetings, watched_ends
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
-from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import LEEWAY, ExactContacts
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import Motion

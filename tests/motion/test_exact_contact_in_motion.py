@@ -20,8 +20,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion import motion_start as starts
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
-from cosserat_casadi.motion.contact_sections import facings
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.motion_start import given_start
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from tests.moving_scenes import gaps_along

@@ -20,7 +20,7 @@ from scipy.optimize import nnls
 
 from cosserat_casadi import build, parse_scene, simulate
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.facings import facings
 
 LENGTH = 0.3
 RADIUS = 5e-3

@@ -24,9 +24,9 @@ from cosserat_casadi.motion.compiled_steps import FEW_TRIES, CompiledSteps
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
-from cosserat_casadi.motion.contact_sections import touching_points
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.facings import touching_points
 from cosserat_casadi.motion.history import equations_of, free_flight, functions_of_flight, integrated
 from cosserat_casadi.motion.kernel_residual import KernelResidual
 from cosserat_casadi.motion.motion_compiler import (

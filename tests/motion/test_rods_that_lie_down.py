@@ -15,8 +15,9 @@ from cosserat_casadi.cli.main import app
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact
 from cosserat_casadi.motion.contact_guards import ContactPhase
-from cosserat_casadi.motion.contact_sections import facings, lobatto
+from cosserat_casadi.motion.contact_sections import lobatto
 from cosserat_casadi.motion.exact_contact import ExactContacts
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.motion.trajectory import MotionOutcome

@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi import build, scene_from_dict, simulate
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_sections import RodFacing, facings
+from cosserat_casadi.motion.contact_sections import RodFacing
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.scene import Scene

@@ -19,7 +19,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
-from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing, facings, touching_points
+from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing
+from cosserat_casadi.motion.facings import facings, touching_points
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
 from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
@@ -157,7 +158,7 @@ def start_shape(model: Model) -> FloatArray:
         ExportError: the scene begins in an equilibrium, and none is found.
     """
     if any(rod.base.free for rod in model.scene.rods) or model.scene.starts_unloaded:
-        return unloaded_start(model).x
+        return unloaded_start(model.at(), model.pack()).x
     start = equilibrium_start(model.at(), model.pack())
     if not start.found:
         raise ExportError(Problem("simulation.start", start.sentence, 'give start = "unloaded"'))
