@@ -64,6 +64,9 @@ OUTCOMES = {
 }
 """Outcome for each status number; a step with another status was not solved."""
 
+KNOWN = 4
+"""Numbers of a contact that is known at the begin: pair, whether it slides, place, gap; as in ``rubbing_begin``."""
+
 HEAD = 4
 """Numbers at the head of a stretch's row, before the state at its begin; as in ``rubbing_steps.c``."""
 
@@ -107,7 +110,11 @@ class RubbingModelRecord(ctypes.Structure):
 
 
 class Sizes(NamedTuple):
-    """Sizes from C: bytes of memory and workspace; most rows; numbers of a row and its parts; most contacts."""
+    """Sizes from C.
+
+    They are bytes of memory and workspace; most rows; numbers of a row and its parts; most contacts; numbers of a
+    memory that is carried.
+    """
 
     memory: int
     workspace: int
@@ -116,6 +123,7 @@ class Sizes(NamedTuple):
     stretch: int
     touch: int
     touches: int
+    carried: int
 
 
 class RubbingTouch(NamedTuple):
@@ -206,10 +214,24 @@ class RubbingSteps:
     def begin(self, at: Instant, touches: Touches) -> None:
         """Clear the memory, and begin a motion at an instant at which the contacts ``touches`` press."""
         given = [[touch.facing, touch.slides, touch.place, touch.height] for touch in touches]
-        known = np.array(given, dtype=float).reshape(-1, 4)
+        known = np.array(given, dtype=float).reshape(-1, KNOWN)
         accelerations = np.ascontiguousarray(at.a)
         addresses = accelerations.ctypes.data, len(known), known.ctypes.data
         self._library.rubbing_begin(self._memory, *addresses)
+
+    def carried(self) -> FloatArray:
+        """The memory after the last step, by which steps go on to the last bit, shape (c,)."""
+        numbers = np.zeros(self.sizes.carried)
+        self._library.rubbing_carry(self._held.address, self._memory, numbers.ctypes.data, False)
+        return numbers
+
+    def go_on(self, carried: FloatArray) -> bool:
+        """Go on with the memory of another motion; False where it is of no such model."""
+        if carried.shape != (self.sizes.carried,):
+            return False
+        numbers = np.ascontiguousarray(carried)
+        self._library.rubbing_carry(self._held.address, self._memory, numbers.ctypes.data, True)
+        return True
 
     def _record(self) -> Held:
         """The record of the model for C, without its functions."""
@@ -354,13 +376,14 @@ def _library(
         library = ctypes.CDLL(str(compiled_texts(NAME, texts, find_compiler(), INCLUDED)))
     pointers = (POINTER,) * 4
     library.rubbing_begin.argtypes = [POINTER, POINTER, ctypes.c_int, POINTER]
+    library.rubbing_carry.argtypes = [POINTER, POINTER, POINTER, ctypes.c_int]
     library.rubbing_step.argtypes = [*pointers, DOUBLE, *pointers]
-    found = (ctypes.c_longlong * 11)()
+    found = (ctypes.c_longlong * 12)()
     library.rubbing_sizes(found)
     records = (RubbingModelRecord, RubbingFacingRecord, PointKernelsRecord, KernelRecord)
-    for size, record in zip(found[7:], records, strict=True):
+    for size, record in zip(found[8:], records, strict=True):
         assert size == ctypes.sizeof(record), record.__name__
-    return library, Sizes(*found[:7])
+    return library, Sizes(*found[:8])
 
 
 def _tables(points: int, pairs: int) -> str:

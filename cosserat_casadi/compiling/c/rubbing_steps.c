@@ -377,13 +377,70 @@ static void tell_stretch(const step_start *start, workspace *work) {
   IS_STRUCK = 0;
 }
 
+/* ---- Memory from one motion to the next ---- */
+
+enum {
+  /* Numbers of a contact in carried memory: facing; whether it slides, presses; place, gap that it keeps, force, axis, drag. */
+  OF_CARRIED_TOUCH = 11,
+  CARRIED = 2 * STAGED + 2 * STAGE_ENTRIES + 2 + N + 3 + OF_CARRIED_TOUCH * TOUCHES
+};
+
+/* The next number of carried memory, and whether numbers are read into a memory; else they are written from one. */
+typedef struct {
+  real *next;
+  int reads;
+} carrying;
+
+static void carry(carrying *row, real *own, int count) {
+  if (row->reads) {
+    memcpy(own, row->next, (size_t)count * sizeof *own);
+  } else {
+    memcpy(row->next, own, (size_t)count * sizeof *own);
+  }
+  row->next += count;
+}
+
+/* What is read is brought into its range: numbers of a file lead out of no array. */
+static void carry_whole(carrying *row, int *own, int most) {
+  real number = (real)*own;
+  carry(row, &number, 1);
+  *own = (int)clipped(number, 0, (real)most);
+}
+
 /* ---- For Python ---- */
 
-/* Writes 11 sizes: bytes of memory and workspace; MOST_TOLD; numbers of a row, a stretch, a contact; most contacts; bytes
-   of the four records. */
+/* Carries the memory between two motions, into CARRIED numbers or from them, with which steps go on to the last bit. */
+void rubbing_carry(const model *of, solver_step_memory *memory, real *numbers, int reads) {
+  carrying row = {numbers, reads};
+  carry(&row, memory->rows, N);
+  carry(&row, memory->columns, N);
+  carry(&row, memory->matrix, 2 * STAGE_ENTRIES);
+  carry(&row, memory->unknowns, STAGED);
+  carry(&row, &memory->size, 1);
+  carry(&row, &memory->jacobian_size, 1);
+  for (int i = 0; i < N; i++) carry_whole(&row, memory->pivots + i, N - 1);
+  carry_whole(&row, &memory->as_a_whole, 1);
+  carry_whole(&row, &memory->first_iterations, MAX_STEP_ITERATIONS);
+  carry_whole(&row, &memory->touch_count, TOUCHES);
+  for (int k = 0; k < memory->touch_count; k++) {
+    solver_touch *own = memory->touches + k;
+    carry_whole(&row, &own->facing, of->facing_count - 1);
+    carry_whole(&row, &own->slides, 1);
+    carry_whole(&row, &own->presses, 1);
+    carry(&row, &own->place, 1);
+    carry(&row, &own->height, 1);
+    carry(&row, &own->force, 1);
+    carry(&row, own->axis, 3);
+    carry(&row, own->drag, 2);
+  }
+}
+
+/* Writes 12 sizes: bytes of memory and workspace; MOST_TOLD; numbers of a row, a stretch, a contact; most contacts; CARRIED;
+   bytes of the four records. */
 void rubbing_sizes(long long *sizes) {
-  const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW, OF_STRETCH, OF_TOUCH,
-                             TOUCHES,  sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
+  const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW,
+                             OF_STRETCH, OF_TOUCH, TOUCHES, CARRIED,
+                             sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
   memcpy(sizes, found, sizeof found);
 }
 
