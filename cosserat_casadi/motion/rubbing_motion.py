@@ -49,6 +49,9 @@ from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 SHORTEST = 2.0**-12
 """Shortest step tried, over the step of the motion; if its equations are not solved, the motion ends."""
 
+LAST = 1.5
+"""Last part of a divided step, over the others, up to which it is not divided once more."""
+
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
 
@@ -341,7 +344,8 @@ def _integrate(
             tried = whole
             while at.time < end:
                 left = whole if tried == whole else end - at.time
-                own = tried if tried < (1.0 - ROUNDED) * left else left
+                # No step is left that is rounding of the time: its forces would be rounding over the square of its size.
+                own = tried if left > LAST * tried else left
                 outcome, stretches, counts = told.steps.take(at, _inputs(piece, at.time, own), own)
                 told.count(len(stretches), outcome, *counts)
                 if outcome is not None and tried <= SHORTEST * whole:
