@@ -37,6 +37,7 @@ from cosserat_casadi.motion.contact_law import (
 )
 from cosserat_casadi.motion.contact_sections import facings, touching_points
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
@@ -104,7 +105,9 @@ class RubbingModelRecord(ctypes.Structure):
         *((name, ctypes.c_int) for name in ("points_count", "facing_count")),
         *((name, POINTER) for name in ("is_shape", "displacements", "points", "facings", "residual", "matrices")),
         ("deepest", DOUBLE),
-        ("told", POINTER),
+        ("gaps", POINTER),
+        ("pair_count", ctypes.c_int),
+        *((name, POINTER) for name in ("pair_rows", "pair_softness", "pair_closed", "told")),
         ("told_count", ctypes.c_int),
     ]
 
@@ -241,6 +244,13 @@ class RubbingSteps:
         held.share("is_shape", differential.astype(np.intc))
         held.share("displacements", np.where(differential, displacements(model), 0.0))
         held.record.deepest = float(model.scene.accuracy.tolerance)
+        pairs = OneSided(model)
+        if pairs.pairs:
+            held.record.pair_count = len(pairs.pairs)
+            held.share("pair_rows", np.array(pairs.rows, dtype=np.intc))
+            held.share("pair_softness", pairs.softness)
+            held.share("pair_closed", np.zeros(len(pairs.pairs), dtype=np.intc))
+            held.point("gaps", program_record(pairs.gaps_and_gradients))
         return held
 
     def use(self, kernels: StepKernels) -> None:

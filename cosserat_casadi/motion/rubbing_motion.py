@@ -344,7 +344,7 @@ def _integrate(
             tried = whole
             while at.time < end:
                 left = whole if tried == whole else end - at.time
-                # No step is left that is rounding of the time: its forces would be rounding over the square of its size.
+                # Forces of a step that is rounding of the time would be rounding over the square of its size.
                 own = tried if left > LAST * tried else left
                 outcome, stretches, counts = told.steps.take(at, _inputs(piece, at.time, own), own)
                 told.count(len(stretches), outcome, *counts)

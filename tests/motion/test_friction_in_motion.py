@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cosserat_casadi import SceneError, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.motion_event import MotionEvent
+from cosserat_casadi.motion.rubbing_library import RubbingSteps
+from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
+from cosserat_casadi.numerics.integration import StepOutcome
+from cosserat_casadi.numerics.motion_equations import Instant
 from tests.codegen.test_steps_in_contact import LENGTH, floor, rod, scene
 from tests.conftest import ROOT
+from tests.model.test_base_joints import ends
 from tests.reference.falling_rods import FallingRod
 
 G = 9.81
@@ -112,6 +119,66 @@ def test_what_steps_lose_of_the_energy_tells_of_the_error_where_a_rod_slaps_down
     motion = moved(tables)
     assert motion.error_estimate > 2.9e-3
     assert motion.error_estimate >= 2.0 * np.abs(motion.energy.imbalance).max()
+
+
+def simulator(tables: dict[str, Any]) -> Simulator:
+    model = build(scene_from_dict(tables).with_motion_inputs(), moving=True).at().in_motion
+    assert model.scene.simulation is not None
+    return Simulator(model, model.scene.simulation, started(model, model.scene.simulation, None))
+
+
+def test_a_block_does_not_hop_in_steps_of_microseconds() -> None:
+    """Its weight closes less of a gap in such a step than is no gap in longer ones."""
+    sliding = block(0.0, 2e-3, velocities=[{"rod": "rod", "linear": [0.03, 0, 0]}])
+    own = simulator(sliding)
+    history = own.stepped(4e-6)
+    assert history.completed and [event.kind for event in history.events] == ["lie_down", "slip"]
+    gone = 0.03 * 2e-3 - FRICTION * G * 2e-3**2 / 2.0
+    tip = own.paths(history).points[-1, 0, 0] * LENGTH
+    assert_allclose(tip - LENGTH, gone, rtol=1e-9, atol=0)
+
+
+def test_a_divided_step_has_no_last_part_of_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its forces would be rounding over the square of its size: a rod was thrown off so."""
+    step, taken = 2e-3, RubbingSteps.take
+
+    def take(self: RubbingSteps, at: Instant, inputs: Sequence[FloatArray], size: float) -> Any:
+        return (StepOutcome.NOT_SOLVED, [], (0, 0)) if size > step / 10 else taken(self, at, inputs, size)
+
+    monkeypatch.setattr(RubbingSteps, "take", take)
+    history = simulator(block(0.0, 0.2)).stepped(step)
+    assert history.completed
+    assert_allclose(history.statistics.smallest_step, step / 16, rtol=1e-6, atol=0)
+
+
+def chain(stiffness: float, friction: float) -> dict[str, Any]:
+    """Two rods that fall on a floor, with a hinge between them that has elastic stops."""
+    stops = {"lower_stop": -0.1, "upper_stop": 0.1, "stop_stiffness": stiffness}
+    first = rod(name="a", base=FREE | {"position": [0, 0, 0.05], "tangent": [1, 0, 0.2]}, stiffness={"bending_y": 0.05})
+    second = {name: value for name, value in first.items() if name != "base"} | {"name": "b"}
+    return scene(
+        floor(-0.05, **({"friction": friction} if friction else {})),
+        rods=[first, second],
+        joints=[ends({"rod": "a"}, {"rod": "b", "at": 0.0}, name="knee", **stops)],
+        accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-3},
+        simulation={"duration": 0.2, "start": "unloaded"},
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stiffness", [2.0, 50.0])
+def test_elastic_stops_push_as_in_motions_from_event_to_event(stiffness: float) -> None:
+    """Friction is next to nothing: the other motions have none, and end steps where stops are hit and left."""
+    from_event_to_event = simulator(chain(stiffness, 0.0))
+    wanted = from_event_to_event.paths(from_event_to_event.controlled(1e-6))
+    equal = simulator(chain(stiffness, 1e-9))
+    errors = []
+    for size in (4e-3, 6.25e-5):
+        history = equal.stepped(size)
+        assert history.completed
+        errors.append(path_distance(wanted, equal.paths(history)))
+    assert errors[0] < 2e-3
+    assert errors[1] < 5e-5
 
 
 def test_a_motion_that_rubs_does_not_start_inside() -> None:

@@ -87,6 +87,12 @@ typedef struct {
   kernel *residual;
   kernel *matrices; /* stiffness, damping and mass */
   real deepest;
+  /* Pairs of a gap and a push, of elastic stops and cables. */
+  kernel *gaps; /* (x, inputs) -> gaps, then their gradients; null without pairs */
+  int pair_count;
+  const int *pair_rows;      /* of their equations, which are the entries of their pushes */
+  const real *pair_softness; /* gap that a unit of a push closes */
+  int *pair_closed;          /* whether a pair has no gap in the present stretch; else it has no push */
   real *told;     /* MOST_TOLD rows of TOLD_ROW numbers */
   int told_count; /* rows that the last step wrote */
 } model;
@@ -243,16 +249,36 @@ static void ask(kernel *function, const real *state, const real *inputs, int cou
   memcpy(entries, result_of(function, count), (size_t)count * sizeof *entries);
 }
 
+/* Gaps of elastic stops and cables, then their gradients, column after column; null without any. */
+static const real *gaps_at(const real *x, const real *inputs) {
+  writing to = {AT->gaps, 0, 0};
+  if (!AT->gaps) return 0;
+  put(&to, x, N);
+  put(&to, inputs, INPUTS);
+  return result_of(AT->gaps, AT->pair_count * (1 + N));
+}
+
 static void residual_of(const real *state, const real *inputs, const real *factor, const real *constants, real *entries,
                         workspace *work) {
   (void)factor, (void)constants, (void)work;
   ask(AT->residual, state, inputs, N, entries);
+  const real *gaps = gaps_at(state, inputs);
+  for (int k = 0; k < AT->pair_count; k++) {
+    const int row = AT->pair_rows[k];
+    entries[row] = AT->pair_closed[k] ? -gaps[k] : AT->pair_softness[k] * state[row];
+  }
 }
 
 static void matrices_of(const real *state, const real *inputs, const real *factor, const real *constants, real *entries,
                         workspace *work) {
   (void)factor, (void)constants, (void)work;
   ask(AT->matrices, state, inputs, MATRICES * STAGE_ENTRIES, entries);
+  const real *gradients = gaps_at(state, inputs) + AT->pair_count;
+  for (int k = 0; k < AT->pair_count; k++) {
+    const int row = AT->pair_rows[k];
+    for (int i = 0; i < N; i++) entries[i * N + row] = AT->pair_closed[k] ? -gradients[i * AT->pair_count + k] : 0;
+    if (!AT->pair_closed[k]) entries[row * N + row] = AT->pair_softness[k];
+  }
 }
 
 static const motion_part MOTION_RESIDUAL_PARTS[] = {{residual_of, NUMBERS, NUMBERS, 0, NUMBERS, 3 * N, 3 * INPUTS, N}};
@@ -267,6 +293,23 @@ static const int FEELS_ACCELERATION[INPUTS + 1] = {0};
 #include "contact_ways.c"
 #include "step.c"
 #include "motion.c"
+
+/* ---- Elastic stops and cables ---- */
+
+/* The equations of the model round the corner between a gap and a push so little that Newton's method, with one Jacobian for
+   a step, does not pass it. Here each pair is closed or open in all of a stretch, as it is at the end. */
+
+/* Finds which pairs are closed at a state; returns whether that is new. */
+static int find_closed(const real *x, const real *inputs) {
+  int is_new = 0;
+  const real *gaps = gaps_at(x, inputs);
+  for (int k = 0; k < AT->pair_count; k++) {
+    const int closed = AT->pair_softness[k] * x[AT->pair_rows[k]] > gaps[k];
+    is_new |= closed != AT->pair_closed[k];
+    AT->pair_closed[k] = closed;
+  }
+  return is_new;
+}
 
 /* ---- Stretches that are told ---- */
 
