@@ -35,6 +35,9 @@ static const real MOST_OF_A_TURN = (real)0.9;
 static const real BEYOND_TURN = (real)1e-6;
 static const real LEAST_OF_A_TURN = (real)1e-4;
 
+/* Share of a stretch from which on it ends where something lifts off. */
+static const real MOST_OF_A_LIFT_OFF = (real)0.999;
+
 /* The search for such an end: size of a stretch in which something turned, 0 before there is one; whether the size at hand
    is such that it just does; how often it was looked for. */
 typedef struct {
@@ -514,9 +517,33 @@ static real size_to_the_turn(const step_start *start, real whole, real rest, tur
   return shorter;
 }
 
-/* The same, looked for so many times. A stretch that is not to change is taken. */
+/* The share of a stretch that was solved after which a force comes to zero: where it pulls at the end, though it presses in
+   the mean. Sections at which a rod lies share its weight as rounding has it. */
+static real share_to_lift_off(const workspace *work) {
+  real share = 1;
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    const real first = own->forces[0], last = own->forces[STAGES - 1];
+    if (!own->presses || !(own->slides || FACING[own->facing].is_body) || !(first > 0 && last < 0)) continue;
+    const real zero = STAGE_NODES[0] + (1 - STAGE_NODES[0]) * first / (first - last);
+    if (zero < share) share = zero;
+  }
+  return share;
+}
+
+/* By how much the size of a stretch is to change so that it ends where something lifts off, comes to rest or turns back,
+   looked for so many times. A stretch that is not to change is taken. */
 static real to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
-  const real share = search->looks++ < LOOKS_FOR_A_TURN ? size_to_the_turn(start, whole, rest, search, work) : 1;
+  real share = 1;
+  if (search->looks++ < LOOKS_FOR_A_TURN) {
+    share = share_to_lift_off(work);
+    if (share < MOST_OF_A_LIFT_OFF && start->size * share > LEAST_OF_A_TURN * whole) {
+      search->turned_after = 0;
+      search->is_aimed = 0;
+    } else {
+      share = size_to_the_turn(start, whole, rest, search, work);
+    }
+  }
 #ifdef STRETCHES_ARE_TOLD
   if (share == 1) tell_stretch(start, work);
 #endif
