@@ -803,7 +803,7 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
       share = first_blow(&start, unknowns, work);
       if (!(share > 0) || tries == SETS) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS
-      if (share == 1 && tries < TURNS) share = to_the_turn(&start, whole->size, whole->size - done, &search, work);
+      if (share == 1 && tries < TURNS) share = to_the_turn(&start, whole->size, whole->size - done, unknowns, &search, work);
 #endif
       if (share == 1) break;
       work->was_cut = 1;
