@@ -71,6 +71,16 @@ KNOWN = 4
 HEAD = 4
 """Numbers at the head of a stretch's row, before the state at its begin; as in ``rubbing_steps.c``."""
 
+FARTHEST = 0.02
+"""Way of a place of contact along its rod, over the length, in a stretch of a step of SHORT or more.
+
+A rod that rolls out flat loses energy with the cube of it. It falls with the root of shorter steps, so that this error
+falls faster than they do.
+"""
+
+SHORT = 1e-3
+"""Size of steps, s, below which places go less far in a stretch."""
+
 _ONE_AT_A_TIME = threading.RLock()
 """Lock of the motion that takes a step: C has one present model."""
 
@@ -104,7 +114,7 @@ class RubbingModelRecord(ctypes.Structure):
     _fields_ = [
         *((name, ctypes.c_int) for name in ("points_count", "facing_count")),
         *((name, POINTER) for name in ("is_shape", "displacements", "points", "facings", "residual", "matrices")),
-        ("deepest", DOUBLE),
+        *((name, DOUBLE) for name in ("deepest", "farthest")),
         ("gaps", POINTER),
         ("pair_count", ctypes.c_int),
         *((name, POINTER) for name in ("pair_rows", "pair_softness", "pair_closed", "told")),
@@ -214,8 +224,9 @@ class RubbingSteps:
         counts_of_bytes = (self.sizes.memory, self.sizes.workspace)
         self._memory, self._workspace = (ctypes.create_string_buffer(count) for count in counts_of_bytes)
 
-    def begin(self, at: Instant, touches: Touches) -> None:
-        """Clear the memory, and begin a motion at an instant at which the contacts ``touches`` press."""
+    def begin(self, at: Instant, touches: Touches, size: float) -> None:
+        """Clear the memory, and begin a motion at an instant, with the contacts that press and the size of steps, s."""
+        self._held.record.farthest = FARTHEST * min(1.0, np.sqrt(size / SHORT))
         given = [[touch.facing, touch.slides, touch.place, touch.height] for touch in touches]
         known = np.array(given, dtype=float).reshape(-1, KNOWN)
         accelerations = np.ascontiguousarray(at.a)

@@ -278,7 +278,7 @@ def rubbing_history(
     steps.use(kernels)
     plain = equations_of(model, piece, None, kernels)
     begin = _begin(steps, pieces, start, plain) if resume is None else _resumed(resume, model.size)
-    steps.begin(begin.instant, touches)
+    steps.begin(begin.instant, touches, settings.size)
     told = _Told(steps, piece, plain, Restart(begin, ContactPhase()))
     if resume is not None:
         told.recall(resume)

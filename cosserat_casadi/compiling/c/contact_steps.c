@@ -17,8 +17,10 @@ static const real FALLING = (real)1e-2;
 static const real GAP_ROUNDED = (real)1e-14;
 #endif
 
+#ifndef FARTHEST
 /* Way along the rod, in a stretch, from which on a section that presses may have come to another valley of its gap. */
 static const real FARTHEST = (real)0.05;
+#endif
 
 /* Speed of opening, over that of approach or in lengths a step, that counts as none. */
 static const real STILL = (real)1e-9;

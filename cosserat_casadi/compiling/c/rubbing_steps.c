@@ -87,6 +87,7 @@ typedef struct {
   kernel *residual;
   kernel *matrices; /* stiffness, damping and mass */
   real deepest;
+  real farthest; /* way along a rod of a section that presses, in a stretch */
   /* Pairs of a gap and a push, of elastic stops and cables. */
   kernel *gaps; /* (x, inputs) -> gaps, then their gradients; null without pairs */
   int pair_count;
@@ -104,6 +105,7 @@ static model *AT; /* the model of the present step */
 #define IS_SHAPE AT->is_shape
 #define DISPLACEMENTS AT->displacements
 #define DEEPEST AT->deepest
+#define FARTHEST AT->farthest
 
 /* The place behind the last number that was written into the arguments of a function. */
 typedef struct {
