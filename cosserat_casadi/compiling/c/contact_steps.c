@@ -533,11 +533,11 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
   solver_step_options exact = *options;
   if (exact.tolerance > gap_open(start->size) / 10) exact.tolerance = gap_open(start->size) / 10;
   options = &exact;
+  work->stretch_size = start->size;
+  work->friction_lost = 0;
 #endif
 #ifdef STRETCHES_ARE_TOLD
   if (find_closed(start->x, start->inputs)) memory->jacobian_size = 0;
-  work->stretch_size = start->size;
-  work->friction_lost = 0;
 #endif
   for (int set = 0; set < SETS; set++) {
     if (set > 0) {
