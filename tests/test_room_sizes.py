@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_585,
     "mjcf": 1_055,
     "model": 11_635,
-    "motion": 14_315,
+    "motion": 14_450,
     "numerics": 5_325,
     "obstacles": 465,
     "page": 825,

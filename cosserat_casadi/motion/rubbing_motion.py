@@ -57,10 +57,7 @@ ROUNDED = 1e-12
 
 NO_COST = IntegrationCost(0, 0, 0, 0, 0)
 
-UNSETTLED = (
-    "At t = {time:.6g} s no forces of contact and friction were found that solve a step of {size:.3g} s: damp the "
-    "rods, or allow more modes."
-)
+UNSETTLED = "At t = {time:.6g} s a step of {size:.3g} s was not solved, {where}: damp the rods, or allow more modes."
 
 
 @dataclass
@@ -151,7 +148,10 @@ class _Told:
     def stall(self, at: Instant, size: float) -> None:
         """End the motion at an instant from which a step of the size, s, could not be solved."""
         self.close()
-        sentence = UNSETTLED.format(time=at.time, size=size)
+        facings = [self.steps.facings[own.facing] for own in self.touches]
+        pairs = sorted({f"{facing.owner!r} on {facing.obstacle.name!r}" for facing in facings})
+        where = f"with contact and friction of {', '.join(pairs)}" if pairs else "although nothing touches before it"
+        sentence = UNSETTLED.format(time=at.time, size=size, where=where)
         start = ConsistentStart(at, 0.0, 0.0, 0.0, 0)
         self.restart = Restart(start, self.restart.phases, stalled=sentence)
         self.close(StepOutcome.STALLED)

@@ -106,7 +106,7 @@ def test_what_touches_an_obstacle_without_friction_beside_one_with_it_has_none()
 
 
 def test_what_steps_lose_where_a_rod_slaps_down_falls_with_them_and_tells_the_error() -> None:
-    """Places run out onto the ends of the rod, where steps end: beyond, they lost 2.9e-3 of the length in any number."""
+    """Steps end where places run out onto ends of the rod: beyond, they lost 2.9e-3 of the length in any number."""
     wall = {"name": "wall", "kind": "plane", "point": [0.45, 0, 0], "normal": [-1, 0, 0]}
     tables = scene(
         floor(0.0, friction=0.4),
@@ -154,6 +154,9 @@ def test_a_divided_step_has_no_last_part_of_rounding(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(RubbingSteps, "take", take)
     history = simulator(block(0.0, 0.2)).stepped(step)
     assert history.completed
+    monkeypatch.setattr(RubbingSteps, "take", lambda *_: (StepOutcome.NOT_SOLVED, [], (0, 0)))
+    (stalled,) = simulator(block(0.0, 0.2)).stepped(step).legs
+    assert "although nothing touches before it" in str(stalled.restart.stalled)
     assert_allclose(history.statistics.smallest_step, step / 16, rtol=1e-6, atol=0)
 
 
