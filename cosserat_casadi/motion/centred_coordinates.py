@@ -33,11 +33,12 @@ ORDERS = 3
 
 
 def can_be_centred(model: Model) -> bool:
-    """Whether a scene is one free rod without slack cables, and of a length that is no input.
+    """Whether a scene is one free rod without slack cables or exact friction, and of a length that is no input.
 
     Tensions of cables are unknowns of the model, and a length that is an input would enter the frame with its rates.
+    Steps with friction of exact contact are taken in the unknowns of the model.
     """
-    if not flies_alone(model) or OneSided(model).pairs:
+    if not flies_alone(model) or OneSided(model).pairs or model.scene.rubs_exactly:
         return False
     (name,) = model.discrete.rods
     return model.discrete.layout.of_rod(name, "length") is None

@@ -32,6 +32,21 @@ KEY = "checkpoint"
 
 
 @dataclass(frozen=True)
+class CarriedContacts:
+    """Data that a step with friction of exact contact takes over from the steps before it, beside the state.
+
+    Attributes:
+        memory: numbers of the memory in C, shape (c,).
+        touches: pair, whether it slides, place and gap of each contact that presses, shape (m, 4).
+        stuck: indices of the pairs with a contact, but no contact that slips.
+    """
+
+    memory: FloatArray
+    touches: FloatArray
+    stuck: frozenset[int]
+
+
+@dataclass(frozen=True)
 class Resume:
     """Where a motion goes on.
 
@@ -42,6 +57,7 @@ class Resume:
         guard: number of the guard that came to zero there; None where none did.
         first: size of the next step, s.
         memory: of the steps so far; None where the next one takes over nothing.
+        contacts: of the steps so far; None without friction of exact contact.
     """
 
     at: Instant
@@ -50,6 +66,7 @@ class Resume:
     guard: int | None
     first: float
     memory: CarriedStep | None
+    contacts: CarriedContacts | None = None
 
 
 @dataclass(frozen=True)

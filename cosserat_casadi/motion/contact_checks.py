@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import named_pairs
@@ -18,7 +18,6 @@ from cosserat_casadi.motion.event_restart import LAID_DOWN
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.tip_paths import watched_states
-from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation
 
 THINNEST = 1e-3
@@ -70,18 +69,6 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
             f"exact contact in motion is with obstacles that stand still, not with those on bodies: {', '.join(moving)}"
         )
         yield Problem("obstacles", what, remedy)
-
-
-def refuse_going_on(scene: Scene) -> None:
-    """Refuse that a motion with friction of exact contact goes on from another, or is written in parts.
-
-    Raises:
-        SceneError: friction acts on an obstacle without a width.
-    """
-    if scene.rubs_exactly:
-        what = "a motion with friction of exact contact is computed at once, and none goes on from another"
-        remedy = "give the duration of the whole, or give each obstacle a width, m"
-        raise SceneError(Problem("simulation.duration", what, remedy))
 
 
 def _unfit_pairs(model: Model) -> Iterator[Problem]:

@@ -18,7 +18,6 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
-from cosserat_casadi.motion.contact_checks import refuse_going_on
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     UNKNOWN_ORDER,
@@ -101,7 +100,6 @@ def go_on(
     """
     given = subject.at() if isinstance(subject, Model) else None
     scene = given.scene if given is not None else _moving(subject, simulation)
-    refuse_going_on(scene)
     asked = simulation or scene.simulation
     first = checkpoint.strands[0]
     model = _model_of(scene, given, first, checkpoint)
@@ -120,7 +118,7 @@ def go_on(
     if not history.completed:
         return ended_early(simulator, history)
     paths = simulator.paths(history)
-    error = 0.0 if len(checkpoint.strands) > 1 else float("nan")
+    by_steps = 0.0 if len(checkpoint.strands) > 1 else float("nan")
     is_damped = all(rod.damping is not None for rod in scene.rods)
     # The factors of a first part tell of waves that it had: jumps that were to come were not known then.
     has_jumps = not is_damped and bool(simulator.moving.jumps(asked.duration))
@@ -137,7 +135,7 @@ def go_on(
             return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
         factor = strand.factor
         if is_struck(history) or is_struck(told):
-            factor = max(factor, _factor_after_impacts(first, strand, history, told))
+            factor = max(factor, _factor_after_impacts(simulator, strand, history, told))
         elif has_jumps and strand.by_modes:
             modes, others = (most_modes(one.discretisation) for one in (first, strand))
             factor = max(factor, told_by_modes(modes, others, ORDER_OF_WAVES))
@@ -145,9 +143,11 @@ def go_on(
         if strand.by_modes:
             by_other_modes = max(by_other_modes, left)
         else:
-            error += left
+            by_steps = max(by_steps, left)
         companions.append(Companion(told, factor, strand.impacts, strand.by_modes))
-    error += by_other_modes
+    if scene.rubs_exactly:
+        by_steps = float(np.maximum(by_steps, simulator.unbalanced(history, paths)))
+    error = by_steps + by_other_modes
     by_modes = any(strand.by_modes for strand in checkpoint.strands)
     if given is None and not scene.accuracy.fixed and not by_modes:
         # The modes were enough so far, as their last coefficients told.
@@ -159,22 +159,24 @@ def go_on(
     return motion if given is None else replace(motion, tolerance=None)
 
 
-def _factor_after_impacts(first: Strand, strand: Strand, history: History, told: History) -> float:
+def _factor_after_impacts(simulator: Simulator, strand: Strand, history: History, told: History) -> float:
     """Error of a motion over its distance from another one, from above, where either was struck as they went on.
 
     Args:
-        first: the strand of the motion.
+        simulator: the simulator of the motion.
         strand: the strand of the other one.
         history: the motion.
         told: the other one.
     """
-    modes = most_modes(first.discretisation)
+    modes = most_modes(history.model.discretisation)
     others = most_modes(strand.discretisation)
     if modes != others:
         return told_by_modes(modes, others, UNKNOWN_ORDER)
-    if strand.settings.size is not None or strand.discretisation != first.discretisation:
+    if strand.discretisation != history.model.discretisation:
         return strand.factor
-    tighter = float(np.max(strand.settings.tolerance / first.settings.tolerance))
+    if strand.settings.size is not None:
+        return simulator.left_by_half(history, told) if simulator.rubs else strand.factor
+    tighter = float(np.max(strand.settings.tolerance / history.settings.tolerance))
     return left_by(tighter, history, told)
 
 
@@ -200,7 +202,9 @@ def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Che
         model = moving_model(scene, strand.discretisation) if given is None else given
     except ValueError as error:
         raise refused from error
-    at = strand.resume.at
+    at, contacts = strand.resume.at, strand.resume.contacts
+    if (contacts is not None) != scene.rubs_exactly:
+        raise refused
     if model.discretisation != strand.discretisation or len(strand.settings.tolerance) != model.size:
         raise refused
     inputs = moving_inputs(model).at(at.time).value

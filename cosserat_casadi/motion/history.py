@@ -16,7 +16,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
-from cosserat_casadi.motion.checkpoint import Resume
+from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_forces import Follower
 from cosserat_casadi.motion.contact_guards import ContactPhase
@@ -161,6 +161,7 @@ class History:
         settings: how it steps.
         flight: coordinates of the steps, and what keeps their momentum.
         stopped: number of the value that stopped the motion; None for one that was not stopped.
+        carried: data that a next step takes over; None without friction of exact contact.
     """
 
     model: Model
@@ -169,6 +170,7 @@ class History:
     settings: StepSettings
     flight: FreeFlight
     stopped: int | None = None
+    carried: CarriedContacts | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         # The record of contacts has functions in symbols of one process; it is made anew where it is asked for.
@@ -191,7 +193,7 @@ class History:
         # Behind a guard there are other equations.
         memory = ended.memory if guard is None else None
         first = ended.next_size if memory is None else memory.wanted
-        return Resume(ended.end, phases, places, guard, first, memory)
+        return Resume(ended.end, phases, places, guard, first, memory, self.carried)
 
     @property
     def outcome(self) -> StepOutcome:

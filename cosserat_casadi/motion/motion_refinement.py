@@ -24,7 +24,6 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
-from cosserat_casadi.motion.contact_checks import refuse_going_on
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     REST,
@@ -415,7 +414,6 @@ def simulate(
         return simulated(start, simulation, progress)
     refuse_tubes(subject)
     scene = subject.scene if isinstance(subject, Model) else subject
-    refuse_going_on(scene)
     whole = simulation or scene.simulation
     if whole is None:
         return simulated(start, simulation, progress)
@@ -494,7 +492,7 @@ def _with_fixed(search: _Search) -> Motion:
             left = told_by_modes(modes, modes + FINER_MODES, UNKNOWN_ORDER if struck else ORDER_OF_WAVES)
         if history.completed:
             space_error = max(left * path_distance(level.paths, witness.paths(history)), level.fronts)
-    companions = [timed.companion]
+    companions = timed.companions
     if witness.start.found:
         companions.append(Companion(history, left, by_modes=True))
     return _judged(search, level, space_error + timed.error, companions)
@@ -564,7 +562,7 @@ def _with_tolerance(search: _Search) -> Motion:
     if not timed.history.completed:
         return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
-    companions = [timed.companion]
+    companions = timed.companions
     if len(search.levels) > 1 and search.last.distance > 0.0:
         left = search.left_over_distance(search.order)
         companions.append(Companion(search.levels[-2].history, left, by_modes=True))
@@ -658,7 +656,7 @@ def _given_up(search: _Search, why: str) -> Motion:
         if timed.history.completed:
             _tell_fronts(search, timed.history)
             exact = replace(search.last, history=timed.history)
-            motion = _judged(search, exact, search.space_error + timed.error, [timed.companion])
+            motion = _judged(search, exact, search.space_error + timed.error, timed.companions)
             return replace(motion, message=f"{motion.message} {why}")
     motion = _judged(search, search.last, search.space_error + TIME_SHARE * search.tolerance, [])
     return replace(motion, message=f"{motion.message} {why}")

@@ -146,7 +146,7 @@ class OneSided:
         def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
             rows = plain.residual(t, x, v, a)
             gaps = self.gaps(x, piece.at(t).value)
-            rows[self.rows] = np.where(phases, -gaps, self._softness * x[self.rows])
+            rows[self.rows] = np.where(phases, -gaps, self.softness * x[self.rows])
             return rows
 
         def jacobians(
@@ -178,7 +178,7 @@ class OneSided:
         def values(instant: Instant) -> FloatArray:
             # Forces of contact come after the unknowns of the model.
             gaps = self.gaps(instant.x[: self.model.size], piece.at(instant.time).value)
-            return np.where(phases, self._softness * instant.x[self.rows], gaps)
+            return np.where(phases, self.softness * instant.x[self.rows], gaps)
 
         return values
 
@@ -286,7 +286,7 @@ class OneSided:
         rounding = THROUGH * interval
         while True:
             v, impulses = impact(self.equations(plain, piece, phases), at.time, at.x, at.v, interval)
-            pushes = self._softness * impulses[self.rows]
+            pushes = self.softness * impulses[self.rows]
             # The pair that closes is the one that is run into.
             held = [k for k, pair in enumerate(self.pairs) if phases[k] and pair.rigid and k != guard]
             pulling = [k for k in held if pushes[k] < -rounding]
@@ -318,7 +318,7 @@ class OneSided:
 
     def _pulling(self, x: FloatArray, phases: Closed) -> list[int]:
         """Closed pairs that pull."""
-        pushes = self._softness * x[self.rows]
+        pushes = self.softness * x[self.rows]
         return [k for k, closed in enumerate(phases) if closed and pushes[k] < -THROUGH]
 
     def _kinetic(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> float:
@@ -331,7 +331,8 @@ class OneSided:
         return np.asarray(self._gradients(x, inputs).reshape(len(self.pairs), -1, order="F") @ v)
 
     @cached_property
-    def _softness(self) -> FloatArray:
+    def softness(self) -> FloatArray:
+        """Gap that a unit of each push closes, shape (m,)."""
         return np.array([pair.softness for pair in self.pairs])
 
     @cached_property
@@ -341,8 +342,16 @@ class OneSided:
 
     @cached_property
     def _gradients(self) -> RepeatedCall:
-        by_unknowns = ca.densify(ca.jacobian(self._gap_rows, self._symbols[0]))
-        return RepeatedCall(ca.Function("gradients", self._symbols, [ca.vec(by_unknowns)]))
+        return RepeatedCall(ca.Function("gradients", self._symbols, [self._gradient_entries]))
+
+    @cached_property
+    def gaps_and_gradients(self) -> ca.Function:
+        """(x, inputs) ↦ :attr:`gaps`, then their gradients by the n unknowns, column after column, (m + m n)×1."""
+        return ca.Function("gaps", self._symbols, [ca.vertcat(self._gap_rows, self._gradient_entries)])
+
+    @cached_property
+    def _gradient_entries(self) -> Matrix:
+        return ca.vec(ca.densify(ca.jacobian(self._gap_rows, self._symbols[0])))
 
     @cached_property
     def _symbols(self) -> list[ca.MX]:

@@ -37,6 +37,7 @@ from cosserat_casadi.motion.contact_law import (
 )
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.facings import facings, touching_points
+from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
@@ -64,8 +65,21 @@ OUTCOMES = {
 }
 """Outcome for each status number; a step with another status was not solved."""
 
+KNOWN = 4
+"""Numbers of a contact that is known at the begin: pair, whether it slides, place, gap; as in ``rubbing_begin``."""
+
 HEAD = 4
 """Numbers at the head of a stretch's row, before the state at its begin; as in ``rubbing_steps.c``."""
+
+FARTHEST = 0.02
+"""Way of a place of contact along its rod, over the length, in a stretch of a step of SHORT or more.
+
+A rod that rolls out flat loses energy with the cube of it. It falls with the root of shorter steps, so that this error
+falls faster than they do.
+"""
+
+SHORT = 1e-3
+"""Size of steps, s, below which places go less far in a stretch."""
 
 _ONE_AT_A_TIME = threading.RLock()
 """Lock of the motion that takes a step: C has one present model."""
@@ -100,14 +114,20 @@ class RubbingModelRecord(ctypes.Structure):
     _fields_ = [
         *((name, ctypes.c_int) for name in ("points_count", "facing_count")),
         *((name, POINTER) for name in ("is_shape", "displacements", "points", "facings", "residual", "matrices")),
-        ("deepest", DOUBLE),
-        ("told", POINTER),
+        *((name, DOUBLE) for name in ("deepest", "farthest")),
+        ("gaps", POINTER),
+        ("pair_count", ctypes.c_int),
+        *((name, POINTER) for name in ("pair_rows", "pair_softness", "pair_closed", "told")),
         ("told_count", ctypes.c_int),
     ]
 
 
 class Sizes(NamedTuple):
-    """Sizes from C: bytes of memory and workspace; most rows; numbers of a row and its parts; most contacts."""
+    """Sizes from C.
+
+    They are bytes of memory and workspace; most rows; numbers of a row and its parts; most contacts; numbers of a
+    memory that is carried.
+    """
 
     memory: int
     workspace: int
@@ -116,6 +136,7 @@ class Sizes(NamedTuple):
     stretch: int
     touch: int
     touches: int
+    carried: int
 
 
 class RubbingTouch(NamedTuple):
@@ -203,13 +224,28 @@ class RubbingSteps:
         counts_of_bytes = (self.sizes.memory, self.sizes.workspace)
         self._memory, self._workspace = (ctypes.create_string_buffer(count) for count in counts_of_bytes)
 
-    def begin(self, at: Instant, touches: Touches) -> None:
-        """Clear the memory, and begin a motion at an instant at which the contacts ``touches`` press."""
+    def begin(self, at: Instant, touches: Touches, size: float) -> None:
+        """Clear the memory, and begin a motion at an instant, with the contacts that press and the size of steps, s."""
+        self._held.record.farthest = FARTHEST * min(1.0, np.sqrt(size / SHORT))
         given = [[touch.facing, touch.slides, touch.place, touch.height] for touch in touches]
-        known = np.array(given, dtype=float).reshape(-1, 4)
+        known = np.array(given, dtype=float).reshape(-1, KNOWN)
         accelerations = np.ascontiguousarray(at.a)
         addresses = accelerations.ctypes.data, len(known), known.ctypes.data
         self._library.rubbing_begin(self._memory, *addresses)
+
+    def carried(self) -> FloatArray:
+        """The memory after the last step, by which steps go on to the last bit, shape (c,)."""
+        numbers = np.zeros(self.sizes.carried)
+        self._library.rubbing_carry(self._held.address, self._memory, numbers.ctypes.data, False)
+        return numbers
+
+    def go_on(self, carried: FloatArray) -> bool:
+        """Go on with the memory of another motion; False where it is of no such model."""
+        if carried.shape != (self.sizes.carried,):
+            return False
+        numbers = np.ascontiguousarray(carried)
+        self._library.rubbing_carry(self._held.address, self._memory, numbers.ctypes.data, True)
+        return True
 
     def _record(self) -> Held:
         """The record of the model for C, without its functions."""
@@ -219,6 +255,13 @@ class RubbingSteps:
         held.share("is_shape", differential.astype(np.intc))
         held.share("displacements", np.where(differential, displacements(model), 0.0))
         held.record.deepest = float(model.scene.accuracy.tolerance)
+        pairs = OneSided(model)
+        if pairs.pairs:
+            held.record.pair_count = len(pairs.pairs)
+            held.share("pair_rows", np.array(pairs.rows, dtype=np.intc))
+            held.share("pair_softness", pairs.softness)
+            held.share("pair_closed", np.zeros(len(pairs.pairs), dtype=np.intc))
+            held.point("gaps", program_record(pairs.gaps_and_gradients))
         return held
 
     def use(self, kernels: StepKernels) -> None:
@@ -354,13 +397,14 @@ def _library(
         library = ctypes.CDLL(str(compiled_texts(NAME, texts, find_compiler(), INCLUDED)))
     pointers = (POINTER,) * 4
     library.rubbing_begin.argtypes = [POINTER, POINTER, ctypes.c_int, POINTER]
+    library.rubbing_carry.argtypes = [POINTER, POINTER, POINTER, ctypes.c_int]
     library.rubbing_step.argtypes = [*pointers, DOUBLE, *pointers]
-    found = (ctypes.c_longlong * 11)()
+    found = (ctypes.c_longlong * 12)()
     library.rubbing_sizes(found)
     records = (RubbingModelRecord, RubbingFacingRecord, PointKernelsRecord, KernelRecord)
-    for size, record in zip(found[7:], records, strict=True):
+    for size, record in zip(found[8:], records, strict=True):
         assert size == ctypes.sizeof(record), record.__name__
-    return library, Sizes(*found[:7])
+    return library, Sizes(*found[:8])
 
 
 def _tables(points: int, pairs: int) -> str:

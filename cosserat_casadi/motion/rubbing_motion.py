@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
@@ -29,7 +30,7 @@ from cosserat_casadi.motion.history import (
     equations_of,
 )
 from cosserat_casadi.motion.moving_inputs import Piece
-from cosserat_casadi.motion.rubbing_library import RubbingSteps, RubbingTouch, ToldStretch
+from cosserat_casadi.motion.rubbing_library import KNOWN, RubbingSteps, RubbingTouch, ToldStretch
 from cosserat_casadi.motion.rubbing_step import RubbingStep
 from cosserat_casadi.motion.step_kernels import StepKernels
 from cosserat_casadi.motion.step_words import STAGES
@@ -48,15 +49,15 @@ from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 SHORTEST = 2.0**-12
 """Shortest step tried, over the step of the motion; if its equations are not solved, the motion ends."""
 
+LAST = 1.5
+"""Last part of a divided step, over the others, up to which it is not divided once more."""
+
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
 
 NO_COST = IntegrationCost(0, 0, 0, 0, 0)
 
-UNSETTLED = (
-    "At t = {time:.6g} s no forces of contact and friction were found that solve a step of {size:.3g} s: damp the "
-    "rods, or allow more modes."
-)
+UNSETTLED = "At t = {time:.6g} s a step of {size:.3g} s was not solved, {where}: damp the rods, or allow more modes."
 
 
 @dataclass
@@ -73,6 +74,7 @@ class _Told:
         touches: contacts that press in the last stretch, with their places at its end.
         stuck: indices of the pairs with a contact, but no contact that slips.
         cost: counts of steps, iterations and Jacobians in the present leg.
+        carried: data that a next step takes over.
     """
 
     steps: RubbingSteps
@@ -84,6 +86,7 @@ class _Told:
     touches: tuple[RubbingTouch, ...] = ()
     stuck: frozenset[int] = frozenset()
     cost: IntegrationCost = NO_COST
+    carried: CarriedContacts | None = None
 
     @property
     def model(self) -> Model:
@@ -104,6 +107,37 @@ class _Told:
         self.touches = pressing
         return step
 
+    def keep(self) -> None:
+        """Keep what a next step takes over, after a step: an interrupt may come within one."""
+        touches = [[own.facing, own.slides, own.end_place, own.height] for own in self.touches]
+        known = np.array(touches, dtype=float).reshape(-1, KNOWN)
+        self.carried = CarriedContacts(self.steps.carried(), known, self.stuck)
+
+    def recall(self, resume: Resume) -> None:
+        """Take over contacts and memory from where a motion goes on."""
+        carried = resume.contacts
+        assert carried is not None and self.steps.go_on(carried.memory), "of steps with friction"
+        none, of_tangents = np.zeros(STAGES), np.zeros((STAGES, 2))
+        self.stuck = carried.stuck
+        self.touches = tuple(
+            RubbingTouch(
+                int(facing),
+                bool(slides),
+                True,
+                int(facing) not in self.stuck,
+                False,
+                place,
+                place,
+                height,
+                none,
+                np.zeros(3),
+                of_tangents,
+                0.0,
+            )
+            for facing, slides, place, height in carried.touches.reshape(-1, KNOWN).tolist()
+        )
+        self.restart = Restart(self.restart.start, self._phase(self.touches))
+
     def close(self, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan) -> None:
         """End the present leg, with the size of the next step, s. A leg without steps is kept if it ends the motion."""
         if self.taken or outcome is not StepOutcome.GUARDED:
@@ -114,7 +148,10 @@ class _Told:
     def stall(self, at: Instant, size: float) -> None:
         """End the motion at an instant from which a step of the size, s, could not be solved."""
         self.close()
-        sentence = UNSETTLED.format(time=at.time, size=size)
+        facings = [self.steps.facings[own.facing] for own in self.touches]
+        pairs = sorted({f"{facing.owner!r} on {facing.obstacle.name!r}" for facing in facings})
+        where = f"with contact and friction of {', '.join(pairs)}" if pairs else "although nothing touches before it"
+        sentence = UNSETTLED.format(time=at.time, size=size, where=where)
         start = ConsistentStart(at, 0.0, 0.0, 0.0, 0)
         self.restart = Restart(start, self.restart.phases, stalled=sentence)
         self.close(StepOutcome.STALLED)
@@ -218,6 +255,7 @@ def rubbing_history(
     kernels: StepKernels,
     after_step: AfterStep | None = None,
     stops: Stops | None = None,
+    resume: Resume | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -230,6 +268,7 @@ def rubbing_history(
         kernels: inverse dynamics and its derivatives.
         after_step: function that is called after every step, with its end time and its size, s.
         stops: makes the values at whose zeros the motion stops.
+        resume: where a motion goes on; start and touches count for nothing then. None for one that begins.
 
     Raises:
         SceneError: the start contradicts the constraints, or is inside an obstacle.
@@ -238,16 +277,26 @@ def rubbing_history(
     model, piece = steps.model, pieces[0]
     steps.use(kernels)
     plain = equations_of(model, piece, None, kernels)
-    begin = _begin(steps, pieces, start, plain)
-    steps.begin(begin.instant, touches)
+    begin = _begin(steps, pieces, start, plain) if resume is None else _resumed(resume, model.size)
+    steps.begin(begin.instant, touches, settings.size)
     told = _Told(steps, piece, plain, Restart(begin, ContactPhase()))
+    if resume is not None:
+        told.recall(resume)
+    told.keep()
     stopped = None
     try:
         stopped = _integrate(told, pieces, settings.size, kernels, after_step, stops)
     except KeyboardInterrupt:
         # What was computed stands: whoever stops a long motion wants to see it.
         told.close(StepOutcome.INTERRUPTED, settings.size)
-    return History(model, tuple(told.legs), radau(STAGES), settings, FreeFlight(model, None, None), stopped)
+    flight = FreeFlight(model, None, None)
+    return History(model, tuple(told.legs), radau(STAGES), settings, flight, stopped, told.carried)
+
+
+def _resumed(resume: Resume, size: int) -> ConsistentStart:
+    """The state of a motion with so many unknowns that goes on; the forces of contacts stand behind them."""
+    at = Instant(resume.at.time, *(values[:size] for values in (resume.at.x, resume.at.v, resume.at.a)))
+    return ConsistentStart(at, 0.0, 0.0, 0.0, 0)
 
 
 def _begin(
@@ -284,16 +333,19 @@ def _integrate(
     """
     at = told.restart.start.instant
     for piece in pieces:
+        if piece.end <= at.time:
+            continue
         jumped = stops.jumped(told.piece, piece, at) if stops and told.legs else None
         if jumped is not None:
             return jumped
         told.piece, told.plain = piece, equations_of(told.model, piece, None, kernels)
         guards = stops.guards(piece, at) if stops else None
-        for end in _ends(piece, size):
-            whole = tried = end - at.time
+        for end, whole in _ends(piece, at.time, size):
+            tried = whole
             while at.time < end:
-                left = end - at.time
-                own = tried if tried < (1.0 - ROUNDED) * left else left
+                left = whole if tried == whole else end - at.time
+                # Forces of a step that is rounding of the time would be rounding over the square of its size.
+                own = tried if left > LAST * tried else left
                 outcome, stretches, counts = told.steps.take(at, _inputs(piece, at.time, own), own)
                 told.count(len(stretches), outcome, *counts)
                 if outcome is not None and tried <= SHORTEST * whole:
@@ -312,17 +364,23 @@ def _integrate(
                         told.close(StepOutcome.COMPLETED)
                         return crossed[1]
                     at = Instant(step.end.time, *stretch.end)
+                told.keep()
                 if after_step is not None:
                     after_step(at.time, own)
         told.close(StepOutcome.COMPLETED, size)
     return None
 
 
-def _ends(piece: Piece, size: float) -> Iterator[float]:
-    """End times, s, of the steps of a piece; steps between two kinks are equal."""
-    for begin, end in pairwise([piece.start, *piece.kinks, piece.end]):
+def _ends(piece: Piece, start: float, size: float) -> Iterator[tuple[float, float]]:
+    """End times and sizes, s, of the steps of a piece from a time on; steps between two kinks are equal.
+
+    They are so to the last bit: the Jacobian of one step serves the next one.
+    """
+    later = [time for time in (*piece.kinks, piece.end) if time > start]
+    for begin, end in pairwise([max(piece.start, start), *later]):
         count = max(1, int(np.ceil((end - begin) / size * (1.0 - ROUNDED))))
-        yield from np.linspace(begin, end, count + 1)[1:].tolist()
+        own = size if abs(count * size - (end - begin)) <= ROUNDED * end else (end - begin) / count
+        yield from ((time, own) for time in np.linspace(begin, end, count + 1)[1:].tolist())
 
 
 def _inputs(piece: Piece, time: float, size: float) -> list[FloatArray]:

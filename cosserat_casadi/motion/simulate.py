@@ -213,6 +213,7 @@ class TimedHistory:
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
         companion: the motion by which the error was told; None where none was made.
         distance: distance of the paths from that motion's paths, over the length; nan without one.
+        earlier: motion that was compared with the companion, where impacts with friction ask for a third one.
     """
 
     history: History
@@ -220,6 +221,12 @@ class TimedHistory:
     tolerance: float = float("nan")
     companion: Companion | None = None
     distance: float = float("nan")
+    earlier: Companion | None = None
+
+    @property
+    def companions(self) -> list[Companion | None]:
+        """The motions that told the error."""
+        return [self.companion, self.earlier]
 
 
 @dataclass(frozen=True)
@@ -291,10 +298,10 @@ class Simulator:
     @property
     def has_equal_steps(self) -> bool:
         """Whether no tolerance of a step controls the steps: they are halved until motions agree."""
-        return self.simulation.integrator == "gauss" or self._rubs
+        return self.simulation.integrator == "gauss" or self.rubs
 
     @property
-    def _rubs(self) -> bool:
+    def rubs(self) -> bool:
         """Whether friction of exact contact acts, which steps in C have."""
         return self.model.scene.rubs_exactly
 
@@ -436,19 +443,21 @@ class Simulator:
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         history_paths = self.paths(history)
         distance = path_distance(history_paths, self.paths(shorter))
-        left = self._halved(shorter)
+        left = self.left_by_half(history, shorter)
         error = left * distance if shorter.completed else float("nan")
-        if self._rubs and history.completed:
-            error = float(np.maximum(error, self._unbalanced(history, history_paths)))
+        if self.rubs and history.completed:
+            error = float(np.maximum(error, self.unbalanced(history, history_paths)))
         return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance)
 
-    def _halved(self, history: History) -> float:
-        """Error of a motion over its distance to one of half the step, from above, by that one."""
-        if not self._rubs:
-            return HALVED
-        return HALVED_WHERE_STRUCK if is_struck(history) else HALVED_WHERE_RUBBING
+    def left_by_half(self, history: History, other: History) -> float:
+        """Error of a motion over its distance to one of half the step, or of twice the step or more, from above."""
+        is_finer = history.statistics.largest_step < other.statistics.largest_step
+        if not self.rubs:
+            return LEFT_BY_HALF if is_finer else HALVED
+        are_struck = is_struck(history if is_finer else other)
+        return (HALVED_WHERE_STRUCK if are_struck else HALVED_WHERE_RUBBING) - is_finer
 
-    def _unbalanced(self, history: History, paths: Paths) -> float:
+    def unbalanced(self, history: History, paths: Paths) -> float:
         """Least error of the paths of free rods with friction, over the length, by the imbalance of their energy.
 
         Where a rod rolls out flat, its place of contact runs along it within a step. Such a step may lose energy, and
@@ -460,8 +469,10 @@ class Simulator:
             return 0.0
         times = np.linspace(history.begin, history.end.time, TIMES_OF_ENERGY)
         moving = frozenset(motion.input for motion in self.model.scene.motions)
-        energies, _ = energies_of(history, times, moving)
+        energies, _ = energies_of(history, times, moving, None if self.begun is None else self.begun.energy)
         way = float(np.linalg.norm(paths.points - paths.points[0], axis=2).max(initial=0.0))
+        if self.begun is not None:
+            way += self.begun.error
         return min(way, UNBALANCED * float(np.abs(energies.imbalance).max()))
 
     def halved(self, tolerance: float, begun: History | None = None) -> TimedHistory:
@@ -478,7 +489,7 @@ class Simulator:
         history_paths = self.paths(history)
         error = float("nan")
         distance = 0.0 if begun else float("nan")
-        companion = None
+        companion = earlier = None
         apart = 0
         if history.outcome is StepOutcome.INTERRUPTED:
             return TimedHistory(history, float("nan"))
@@ -489,28 +500,29 @@ class Simulator:
             if shorter.outcome is StepOutcome.INTERRUPTED:
                 return TimedHistory(shorter, float("nan"))
             shorter_paths = self.paths(shorter)
-            left = self._halved(shorter) - 1.0 if self._rubs else LEFT_BY_HALF
+            left = self.left_by_half(shorter, history)
             if history.completed and shorter.completed:
                 before, distance = distance, path_distance(history_paths, shorter_paths)
                 error = left * distance
-                if self._rubs and is_struck(shorter):
+                if self.rubs and is_struck(shorter):
                     # Impacts of two motions may happen to be alike: a third one is asked, without which none is known.
                     error = left * float(np.maximum(before, distance))
                     apart = apart + 1 if hangs_on_rounding(shorter, distance, 2.0 * before, tolerance) else 0
-                if self._rubs:
-                    error = float(np.maximum(error, self._unbalanced(shorter, shorter_paths)))
+                if self.rubs:
+                    error = float(np.maximum(error, self.unbalanced(shorter, shorter_paths)))
+            earlier = None if companion is None or not self.rubs else replace(companion, factor=left)
             companion = Companion(history, left)
             history = shorter
             history_paths = shorter_paths
             if error <= tolerance or apart == MOST_APART:
                 break
-        return TimedHistory(history, error, companion=companion, distance=distance)
+        return TimedHistory(history, error, companion=companion, distance=distance, earlier=earlier)
 
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         rates = np.zeros(self.model.size) if self.start.v is None else self.start.v
         kernels = None if self.source is None else self.source.kernels(self.model)
-        if self._rubs:
+        if self.rubs:
             return self._rubbed(pieces, rates, settings, kernels or interpreted(self.model))
         libraries = INTERPRETED if kernels is None else kernels.libraries
         if libraries not in self._flights:
@@ -539,10 +551,10 @@ class Simulator:
     def _rubbed(
         self, pieces: Sequence[Piece], rates: FloatArray, settings: StepSettings, kernels: StepKernels
     ) -> History:
-        start = self.start.x, rates
+        start, resume = (self.start.x, rates), self.start.resume
         tell = None if self.tell is None else self._after_step
         touches = () if self.start.phases is None else self.start.phases.touches
-        history = rubbing_history(self._rubbing, pieces, start, touches, settings, kernels, tell, self.watch)
+        history = rubbing_history(self._rubbing, pieces, start, touches, settings, kernels, tell, self.watch, resume)
         if self.source is not None:
             self.source.learn(history.statistics)
         return history
@@ -659,7 +671,7 @@ def simulate(
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
     bound = tolerance if asked.step is None else LARGEST_SHAPE_ERROR
-    motion = judged(simulator, timed.history, timed.error, bound, [timed.companion])
+    motion = judged(simulator, timed.history, timed.error, bound, timed.companions)
     # What its modes leave of the paths is not estimated, so that no tolerance of the paths is met.
     return replace(motion, message=f"{motion.message} {STEPS_ALONE}", tolerance=None)
 

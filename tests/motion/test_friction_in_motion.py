@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import SceneError, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.motion_event import MotionEvent
-from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.motion.rubbing_library import RubbingSteps
+from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.tip_paths import path_distance
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
+from cosserat_casadi.numerics.integration import StepOutcome
+from cosserat_casadi.numerics.motion_equations import Instant
 from tests.codegen.test_steps_in_contact import LENGTH, floor, rod, scene
 from tests.conftest import ROOT
+from tests.model.test_base_joints import ends
 from tests.reference.falling_rods import FallingRod
 
 G = 9.81
@@ -97,8 +105,8 @@ def test_what_touches_an_obstacle_without_friction_beside_one_with_it_has_none()
     assert not np.any(motion.to_dict()["contact"]["friction"])
 
 
-def test_what_steps_lose_of_the_energy_tells_of_the_error_where_a_rod_slaps_down() -> None:
-    """Two motions that lose energy alike are near each other; one with steps of a 128th is 2.9e-3 away."""
+def test_what_steps_lose_where_a_rod_slaps_down_falls_with_them_and_tells_the_error() -> None:
+    """Steps end where places run out onto ends of the rod: beyond, they lost 2.9e-3 of the length in any number."""
     wall = {"name": "wall", "kind": "plane", "point": [0.45, 0, 0], "normal": [-1, 0, 0]}
     tables = scene(
         floor(0.0, friction=0.4),
@@ -109,20 +117,173 @@ def test_what_steps_lose_of_the_energy_tells_of_the_error_where_a_rod_slaps_down
     )
     tables["obstacles"].append(wall | {"friction": 0.2, "restitution": 0.4})
     motion = moved(tables)
-    assert motion.error_estimate > 2.9e-3
-    assert motion.error_estimate >= 2.0 * np.abs(motion.energy.imbalance).max()
+    lost = np.abs(motion.energy.imbalance).max()
+    assert motion.error_estimate >= 2.0 * lost
+    own = simulator(tables)
+    fine = own.stepped(2.5e-4)
+    history = own.stepped(2e-3)
+    assert path_distance(own.paths(history), own.paths(fine)) < 0.5 * motion.error_estimate < 1e-3
+    # With the 1.5th power of the step.
+    assert own.unbalanced(fine, own.paths(fine)) < 2.0 * lost / 15.0
 
 
-def test_a_motion_that_rubs_neither_goes_on_nor_starts_inside() -> None:
-    tables = block(0.0, 0.02)
-    first = moved(tables)
-    with pytest.raises(SceneError, match="none goes on from another"):
-        simulate(scene_from_dict(tables), start=first)
-    with pytest.raises(SceneError, match="is computed at once"):
-        simulate(scene_from_dict(tables), part=0.01, output="parts.npz")
-    inside = {**tables, "rods": [rod(base=FREE | {"tangent": [4, 0, -3]})]}
+def simulator(tables: dict[str, Any]) -> Simulator:
+    model = build(scene_from_dict(tables).with_motion_inputs(), moving=True).at().in_motion
+    assert model.scene.simulation is not None
+    return Simulator(model, model.scene.simulation, started(model, model.scene.simulation, None))
+
+
+def test_a_block_does_not_hop_in_steps_of_microseconds() -> None:
+    """Its weight closes less of a gap in such a step than is no gap in longer ones."""
+    sliding = block(0.0, 2e-3, velocities=[{"rod": "rod", "linear": [0.03, 0, 0]}])
+    own = simulator(sliding)
+    history = own.stepped(4e-6)
+    assert history.completed and [event.kind for event in history.events] == ["lie_down", "slip"]
+    gone = 0.03 * 2e-3 - FRICTION * G * 2e-3**2 / 2.0
+    tip = own.paths(history).points[-1, 0, 0] * LENGTH
+    assert_allclose(tip - LENGTH, gone, rtol=1e-9, atol=0)
+
+
+def test_a_divided_step_has_no_last_part_of_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its forces would be rounding over the square of its size: a rod was thrown off so."""
+    step, taken = 2e-3, RubbingSteps.take
+
+    def take(self: RubbingSteps, at: Instant, inputs: Sequence[FloatArray], size: float) -> Any:
+        return (StepOutcome.NOT_SOLVED, [], (0, 0)) if size > step / 10 else taken(self, at, inputs, size)
+
+    monkeypatch.setattr(RubbingSteps, "take", take)
+    history = simulator(block(0.0, 0.2)).stepped(step)
+    assert history.completed
+    monkeypatch.setattr(RubbingSteps, "take", lambda *_: (StepOutcome.NOT_SOLVED, [], (0, 0)))
+    (stalled,) = simulator(block(0.0, 0.2)).stepped(step).legs
+    assert "although nothing touches before it" in str(stalled.restart.stalled)
+    assert_allclose(history.statistics.smallest_step, step / 16, rtol=1e-6, atol=0)
+
+
+def chain(stiffness: float, friction: float) -> dict[str, Any]:
+    """Two rods that fall on a floor, with a hinge between them that has elastic stops."""
+    stops = {"lower_stop": -0.1, "upper_stop": 0.1, "stop_stiffness": stiffness}
+    first = rod(name="a", base=FREE | {"position": [0, 0, 0.05], "tangent": [1, 0, 0.2]}, stiffness={"bending_y": 0.05})
+    second = {name: value for name, value in first.items() if name != "base"} | {"name": "b"}
+    return scene(
+        floor(-0.05, **({"friction": friction} if friction else {})),
+        rods=[first, second],
+        joints=[ends({"rod": "a"}, {"rod": "b", "at": 0.0}, name="knee", **stops)],
+        accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-3},
+        simulation={"duration": 0.2, "start": "unloaded"},
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stiffness", [2.0, 50.0])
+def test_elastic_stops_push_as_in_motions_from_event_to_event(stiffness: float) -> None:
+    """Friction is next to nothing: the other motions have none, and end steps where stops are hit and left."""
+    from_event_to_event = simulator(chain(stiffness, 0.0))
+    wanted = from_event_to_event.paths(from_event_to_event.controlled(1e-6))
+    equal = simulator(chain(stiffness, 1e-9))
+    errors = []
+    for size in (4e-3, 6.25e-5):
+        history = equal.stepped(size)
+        assert history.completed
+        errors.append(path_distance(wanted, equal.paths(history)))
+    assert errors[0] < 2e-3
+    assert errors[1] < 5e-5
+
+
+def test_a_motion_that_rubs_does_not_start_inside() -> None:
+    inside = block(0.0, 0.02, rods=[rod(base=FREE | {"tangent": [4, 0, -3]})])
     with pytest.raises(SceneError, match="inside an obstacle by 0"):
         simulate(scene_from_dict(inside))
+
+
+PART = 0.0625
+
+
+def thrown_block(parts: int) -> dict[str, Any]:
+    """A block that slides for 0.102 s; a part of the time has 16 steps."""
+    settings = {"duration": parts * PART, "frames": 8 * parts + 1, "start": "unloaded", "step": PART / 16}
+    return block(0.0, 0.0, velocities=[{"rod": "rod", "linear": [0.3, 0, 0]}], simulation=settings)
+
+
+def compare_as_one(later: Motion, whole: Motion, events: int) -> None:
+    """Compare a motion that went on with the one over all of the time, bit for bit.
+
+    Args:
+        later: the motion that went on.
+        whole: the motion over all of the time.
+        events: number of the last events of the whole that are to be those of the later motion.
+    """
+    rows = whole.times > later.times[0]
+    for name in ("times", "x", "v", "a"):
+        assert_array_equal(getattr(later, name)[1:], getattr(whole, name)[rows])
+    for name in ("kinetic", "dissipated", "impacts", "work"):
+        assert_array_equal(getattr(later.energy, name)[1:], getattr(whole.energy, name)[rows])
+    assert later.events == whole.events[len(whole.events) - events :]
+    ends = [motion.contacts[-1] for motion in (later, whole)]
+    assert [own.slips for own in ends[0]] == [own.slips for own in ends[1]]
+    assert_array_equal([own.friction for own in ends[0]], [own.friction for own in ends[1]])
+
+
+def test_a_block_that_goes_on_slides_and_rests_as_in_one_motion(tmp_path: Path) -> None:
+    whole, *firsts = (simulate(scene_from_dict(thrown_block(parts)), compiled=False) for parts in (3, 1, 2))
+    assert [event.kind for event in whole.events] == ["lie_down", "slip", "stick"]
+    for first, events in zip(firsts, (1, 0), strict=True):
+        file = tmp_path / "first.npz"
+        first.write(file)
+        later = simulate(scene_from_dict(thrown_block(3)), start=file, compiled=False)
+        compare_as_one(later, whole, events)
+        # The motions that tell the error go on too.
+        assert later.end is not None and len(later.end.strands) == 3
+    smooth = thrown_block(3)
+    del smooth["obstacles"][0]["friction"]
+    with pytest.raises(SceneError, match="of another scene"):
+        simulate(scene_from_dict(smooth), start=file, compiled=False)
+
+
+def test_a_motion_that_rubs_is_written_in_parts_that_an_interrupt_leaves(tmp_path: Path) -> None:
+    def interrupt(progress: MotionProgress) -> None:
+        if progress.time > 1.4 * PART:
+            raise KeyboardInterrupt
+
+    scene, path = scene_from_dict(thrown_block(2)), tmp_path / "out.json"
+    stopped = simulate(scene, output=path, part=PART, progress=interrupt, compiled=False)
+    assert stopped.outcome is MotionOutcome.INTERRUPTED
+    files = [tmp_path / f"out-000{number}.json" for number in (1, 2)]
+    assert sorted(tmp_path.iterdir()) == files
+    whole = simulate(scene, compiled=False)
+    compare_as_one(simulate(scene, start=files[1], compiled=False), whole, events=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("split", [0.0625, 0.078125, 0.125])
+def test_a_rod_that_bounces_and_rolls_goes_on_as_in_one_motion(split: float) -> None:
+    def falling(duration: float) -> dict[str, Any]:
+        return scene(
+            floor(0.0, restitution=0.3, friction=0.4),
+            rod(base=FREE | {"position": [0, 0, 0.02], "tangent": [1, 0, 0.3]}, stiffness={"bending_y": 0.5}),
+            accuracy={"modes": 3, "nodes": 10},
+            simulation={
+                "duration": duration,
+                "frames": round(256 * duration) + 1,
+                "start": "unloaded",
+                "step": 2.0**-11,
+            },
+        )
+
+    first, whole = (simulate(scene_from_dict(falling(duration)), compiled=False) for duration in (split, 0.1875))
+    later = simulate(scene_from_dict(falling(0.1875)), start=first, compiled=False)
+    compare_as_one(later, whole, events=len(whole.events) - len(first.events))
+    assert later.error_estimate == whole.error_estimate
+
+
+def test_a_third_motion_goes_on_where_impacts_ask_for_one() -> None:
+    """Two motions may happen to be struck alike; steps are halved until motions agree."""
+    drop = block(0.0, 0.1, obstacles=[floor(-0.02, friction=FRICTION, restitution=0.5)])
+    first = moved(drop)
+    assert first.end is not None and len(first.end.strands) == 3
+    later = simulate(scene_from_dict({**drop, "simulation": drop["simulation"] | {"duration": 0.15}}), start=first)
+    assert later.converged and later.end is not None and len(later.end.strands) == 3
+    assert later.error_estimate >= first.error_estimate
 
 
 @pytest.mark.slow

@@ -35,6 +35,13 @@ static const real MOST_OF_A_TURN = (real)0.9;
 static const real BEYOND_TURN = (real)1e-6;
 static const real LEAST_OF_A_TURN = (real)1e-4;
 
+/* How much the slope at an end of a rod may rise beyond zero, over what it rose to zero, in a stretch that ends where a
+   section runs out onto that end. */
+static const real BEYOND_END = (real)1e-2;
+
+/* Share of a stretch from which on it ends where something lifts off. */
+static const real MOST_OF_A_LIFT_OFF = (real)0.999;
+
 /* The search for such an end: size of a stretch in which something turned, 0 before there is one; whether the size at hand
    is such that it just does; how often it was looked for. */
 typedef struct {
@@ -60,6 +67,7 @@ static void tell_blow(real taken, const workspace *work);
 static void tell_stretch(const step_start *start, workspace *work);
 #endif
 static void respond_to(const real *row, const stage_factors *factors, real *response, workspace *work);
+static void instant_in(const step_start *start, real share, const real *unknowns, instant *at);
 static real wanted_of(int k, real still, const workspace *work);
 
 static int rubs(const touch *own) { return FACING[own->facing].rubbing != 0; }
@@ -514,9 +522,71 @@ static real size_to_the_turn(const step_start *start, real whole, real rest, tur
   return shorter;
 }
 
-/* The same, looked for so many times. A stretch that is not to change is taken. */
-static real to_the_turn(const step_start *start, real whole, real rest, turn_search *search, workspace *work) {
-  const real share = search->looks++ < LOOKS_FOR_A_TURN ? size_to_the_turn(start, whole, rest, search, work) : 1;
+/* The share of a stretch that was solved after which a force comes to zero: where it pulls at the end, though it presses in
+   the mean. Sections at which a rod lies share its weight as rounding has it. */
+static real share_to_lift_off(const workspace *work) {
+  real share = 1;
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    const real first = own->forces[0], last = own->forces[STAGES - 1];
+    if (!own->presses || !(own->slides || FACING[own->facing].is_body) || !(first > 0 && last < 0)) continue;
+    const real zero = STAGE_NODES[0] + (1 - STAGE_NODES[0]) * first / (first - last);
+    if (zero < share) share = zero;
+  }
+  return share;
+}
+
+/* Slope of a gap at an end of a rod after a share of a stretch that was solved, inwards: negative while it is less inside. */
+static real slope_at_end(const step_start *start, real share, const touch *own, const real *unknowns, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  section_gap gap;
+  instant_in(start, share, unknowns, &work->at);
+  POINTS[faces->points].positions(work->at.state, work->at.inputs, work->nodes, work);
+  fit_nodes(faces, work->nodes, work);
+  look_at(faces, own->end_place, &gap, work);
+  return own->end_place > 0 ? -gap.slope : gap.slope;
+}
+
+/* The share of a stretch that was solved after which a section that slides runs out onto an end of the rod. It has no speed
+   there, and a stretch that goes beyond takes what it has at its own place from the energy. */
+static real share_to_the_end(const step_start *start, const real *unknowns, workspace *work) {
+  real share = 1;
+  for (int k = 0; k < work->touch_count; k++) {
+    const touch *own = work->touches + k;
+    const int is_out = own->end_place == 0 || own->end_place == 1;
+    if (!own->presses || !own->slides || FACING[own->facing].is_body || !is_out || own->place == own->end_place) continue;
+    const real first = slope_at_end(start, 0, own, unknowns, work), last = slope_at_end(start, 1, own, unknowns, work);
+    if (!(first < 0) || !(last > -BEYOND_END * first)) continue;
+    real low = 0, high = 1;
+    while (high - low > BEYOND_END / 4) {
+      const real middle = (low + high) / 2;
+      if (slope_at_end(start, middle, own, unknowns, work) > 0) {
+        high = middle;
+      } else {
+        low = middle;
+      }
+    }
+    if (high < share) share = high;
+  }
+  return share;
+}
+
+/* By how much the size of a stretch is to change so that it ends where something runs out onto an end, lifts off, comes to
+   rest or turns back, looked for so many times. A stretch that is not to change is taken. */
+static real to_the_turn(const step_start *start, real whole, real rest, const real *unknowns, turn_search *search,
+                        workspace *work) {
+  real share = 1;
+  if (search->looks++ < LOOKS_FOR_A_TURN) {
+    const real to_end = share_to_the_end(start, unknowns, work);
+    share = share_to_lift_off(work);
+    if (to_end < share) share = to_end;
+    if (share < MOST_OF_A_LIFT_OFF && start->size * share > LEAST_OF_A_TURN * whole) {
+      search->turned_after = 0;
+      search->is_aimed = 0;
+    } else {
+      share = size_to_the_turn(start, whole, rest, search, work);
+    }
+  }
 #ifdef STRETCHES_ARE_TOLD
   if (share == 1) tell_stretch(start, work);
 #endif

@@ -11,8 +11,16 @@
 /* Depth up to which a section without a force may come at the end of a step. */
 static const real GAP_OPEN = (real)1e-9;
 
+#ifdef CONTACT_RUBS
+/* Acceleration, lengths/s^2, that counts as none, and depth that is rounding. */
+static const real FALLING = (real)1e-2;
+static const real GAP_ROUNDED = (real)1e-14;
+#endif
+
+#ifndef FARTHEST
 /* Way along the rod, in a stretch, from which on a section that presses may have come to another valley of its gap. */
 static const real FARTHEST = (real)0.05;
+#endif
 
 /* Speed of opening, over that of approach or in lengths a step, that counts as none. */
 static const real STILL = (real)1e-9;
@@ -26,6 +34,18 @@ enum {
 };
 
 typedef solver_touch touch;
+
+/* The same depth for a stretch of a size, s, the gaps of which Newton's method is to know more exactly. With friction it is
+   little beside what an acceleration makes of so short a stretch: what is let go for one would strike in the next. */
+static real gap_open(real size) {
+#ifdef CONTACT_RUBS
+  const real fallen = size * size * FALLING;
+  return fallen < GAP_OPEN ? fallen > GAP_ROUNDED ? fallen : GAP_ROUNDED : GAP_OPEN;
+#else
+  (void)size;
+  return GAP_OPEN;
+#endif
+}
 
 #include "square_systems.c"
 #include "least_pushes.c"
@@ -430,6 +450,9 @@ static void close_gaps(real *solution, workspace *work) {
 static solver_motion_status solve_step(const step_start *start, const solver_step_options *options, real *unknowns,
                                        solver_step_memory *memory, workspace *work, solver_step_info *info);
 static void guess_stages(const real *before, real ratio, const solver_state *state, real *unknowns);
+#ifdef STRETCHES_ARE_TOLD
+static int find_closed(const real *x, const real *inputs);
+#endif
 
 /* Whether those that press do, and the others are open, at the end of a stretch that was solved with these; else others are
    chosen, by how the gaps at the end answer to forces that last all along. Negative where nothing settles it. */
@@ -438,6 +461,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
   const real whole = TO_EIGENVECTOR[0][0] + TO_EIGENVECTOR[1][0];
   const real imaginary = TO_EIGENVECTOR[0][1] + TO_EIGENVECTOR[1][1];
   real *wanted = work->wanted;
+  const real open = gap_open(start->size);
   int holds = 1, closed = 1;
   stage_at(start, STAGES - 1, unknowns, &work->at);
   for (int k = 0; k < count; k++) {
@@ -448,7 +472,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     own->end_place = gap.place;
     own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
     closed &= !own->presses || ABSOLUTE(gap.value - own->height) <= TOUCHING;
-    holds &= own->presses ? own->force >= 0 : gap.value - own->height >= -GAP_OPEN;
+    holds &= own->presses ? own->force >= 0 : gap.value - own->height >= -open;
 #ifdef CONTACT_RUBS
     note_friction(k, &gap, work);
 #endif
@@ -470,7 +494,7 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     wanted[j] = work->touches[j].gap - work->touches[j].height;
     for (int k = 0; k < count; k++) wanted[j] -= work->compliance[k * count + j] * work->touches[k].force;
   }
-  if (!least_pushes(work->compliance, wanted, count, GAP_OPEN / 10, work->pushes, work)) return -1;
+  if (!least_pushes(work->compliance, wanted, count, open / 10, work->pushes, work)) return -1;
   for (int k = 0; k < count; k++) {
     touch *own = work->touches + k;
     const int presses = work->pushes[k] > 0;
@@ -506,8 +530,14 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
                                           solver_step_memory *memory, workspace *work, solver_step_info *info) {
   int tried_again = 0;
 #ifdef CONTACT_RUBS
+  solver_step_options exact = *options;
+  if (exact.tolerance > gap_open(start->size) / 10) exact.tolerance = gap_open(start->size) / 10;
+  options = &exact;
   work->stretch_size = start->size;
   work->friction_lost = 0;
+#endif
+#ifdef STRETCHES_ARE_TOLD
+  if (find_closed(start->x, start->inputs)) memory->jacobian_size = 0;
 #endif
   for (int set = 0; set < SETS; set++) {
     if (set > 0) {
@@ -531,6 +561,12 @@ static solver_motion_status solve_stretch(const step_start *start, const solver_
     }
     if (status != SOLVER_MOTION_DONE) return status;
     const int holds = choose_pressing(start, unknowns, work);
+#ifdef STRETCHES_ARE_TOLD
+    if (holds >= 0 && find_closed(work->at.state, work->at.inputs)) {
+      memory->jacobian_size = 0;
+      continue;
+    }
+#endif
     if (holds > 0) return slides_too_far(work) ? SOLVER_MOTION_NOT_SOLVED : SOLVER_MOTION_DONE;
     if (holds < 0) return SOLVER_MOTION_NOT_SOLVED;
   }
@@ -769,7 +805,7 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
       share = first_blow(&start, unknowns, work);
       if (!(share > 0) || tries == SETS) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS
-      if (share == 1 && tries < TURNS) share = to_the_turn(&start, whole->size, whole->size - done, &search, work);
+      if (share == 1 && tries < TURNS) share = to_the_turn(&start, whole->size, whole->size - done, unknowns, &search, work);
 #endif
       if (share == 1) break;
       work->was_cut = 1;

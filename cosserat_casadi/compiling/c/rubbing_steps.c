@@ -87,6 +87,13 @@ typedef struct {
   kernel *residual;
   kernel *matrices; /* stiffness, damping and mass */
   real deepest;
+  real farthest; /* way along a rod of a section that presses, in a stretch */
+  /* Pairs of a gap and a push, of elastic stops and cables. */
+  kernel *gaps; /* (x, inputs) -> gaps, then their gradients; null without pairs */
+  int pair_count;
+  const int *pair_rows;      /* of their equations, which are the entries of their pushes */
+  const real *pair_softness; /* gap that a unit of a push closes */
+  int *pair_closed;          /* whether a pair has no gap in the present stretch; else it has no push */
   real *told;     /* MOST_TOLD rows of TOLD_ROW numbers */
   int told_count; /* rows that the last step wrote */
 } model;
@@ -98,6 +105,7 @@ static model *AT; /* the model of the present step */
 #define IS_SHAPE AT->is_shape
 #define DISPLACEMENTS AT->displacements
 #define DEEPEST AT->deepest
+#define FARTHEST AT->farthest
 
 /* The place behind the last number that was written into the arguments of a function. */
 typedef struct {
@@ -243,16 +251,36 @@ static void ask(kernel *function, const real *state, const real *inputs, int cou
   memcpy(entries, result_of(function, count), (size_t)count * sizeof *entries);
 }
 
+/* Gaps of elastic stops and cables, then their gradients, column after column; null without any. */
+static const real *gaps_at(const real *x, const real *inputs) {
+  writing to = {AT->gaps, 0, 0};
+  if (!AT->gaps) return 0;
+  put(&to, x, N);
+  put(&to, inputs, INPUTS);
+  return result_of(AT->gaps, AT->pair_count * (1 + N));
+}
+
 static void residual_of(const real *state, const real *inputs, const real *factor, const real *constants, real *entries,
                         workspace *work) {
   (void)factor, (void)constants, (void)work;
   ask(AT->residual, state, inputs, N, entries);
+  const real *gaps = gaps_at(state, inputs);
+  for (int k = 0; k < AT->pair_count; k++) {
+    const int row = AT->pair_rows[k];
+    entries[row] = AT->pair_closed[k] ? -gaps[k] : AT->pair_softness[k] * state[row];
+  }
 }
 
 static void matrices_of(const real *state, const real *inputs, const real *factor, const real *constants, real *entries,
                         workspace *work) {
   (void)factor, (void)constants, (void)work;
   ask(AT->matrices, state, inputs, MATRICES * STAGE_ENTRIES, entries);
+  const real *gradients = gaps_at(state, inputs) + AT->pair_count;
+  for (int k = 0; k < AT->pair_count; k++) {
+    const int row = AT->pair_rows[k];
+    for (int i = 0; i < N; i++) entries[i * N + row] = AT->pair_closed[k] ? -gradients[i * AT->pair_count + k] : 0;
+    if (!AT->pair_closed[k]) entries[row * N + row] = AT->pair_softness[k];
+  }
 }
 
 static const motion_part MOTION_RESIDUAL_PARTS[] = {{residual_of, NUMBERS, NUMBERS, 0, NUMBERS, 3 * N, 3 * INPUTS, N}};
@@ -267,6 +295,23 @@ static const int FEELS_ACCELERATION[INPUTS + 1] = {0};
 #include "contact_ways.c"
 #include "step.c"
 #include "motion.c"
+
+/* ---- Elastic stops and cables ---- */
+
+/* The equations of the model round the corner between a gap and a push so little that Newton's method, with one Jacobian for
+   a step, does not pass it. Here each pair is closed or open in all of a stretch, as it is at the end. */
+
+/* Finds which pairs are closed at a state; returns whether that is new. */
+static int find_closed(const real *x, const real *inputs) {
+  int is_new = 0;
+  const real *gaps = gaps_at(x, inputs);
+  for (int k = 0; k < AT->pair_count; k++) {
+    const int closed = AT->pair_softness[k] * x[AT->pair_rows[k]] > gaps[k];
+    is_new |= closed != AT->pair_closed[k];
+    AT->pair_closed[k] = closed;
+  }
+  return is_new;
+}
 
 /* ---- Stretches that are told ---- */
 
@@ -377,13 +422,70 @@ static void tell_stretch(const step_start *start, workspace *work) {
   IS_STRUCK = 0;
 }
 
+/* ---- Memory from one motion to the next ---- */
+
+enum {
+  /* Numbers of a contact in carried memory: facing; whether it slides, presses; place, gap that it keeps, force, axis, drag. */
+  OF_CARRIED_TOUCH = 11,
+  CARRIED = 2 * STAGED + 2 * STAGE_ENTRIES + 2 + N + 3 + OF_CARRIED_TOUCH * TOUCHES
+};
+
+/* The next number of carried memory, and whether numbers are read into a memory; else they are written from one. */
+typedef struct {
+  real *next;
+  int reads;
+} carrying;
+
+static void carry(carrying *row, real *own, int count) {
+  if (row->reads) {
+    memcpy(own, row->next, (size_t)count * sizeof *own);
+  } else {
+    memcpy(row->next, own, (size_t)count * sizeof *own);
+  }
+  row->next += count;
+}
+
+/* What is read is brought into its range: numbers of a file lead out of no array. */
+static void carry_whole(carrying *row, int *own, int most) {
+  real number = (real)*own;
+  carry(row, &number, 1);
+  *own = (int)clipped(number, 0, (real)most);
+}
+
 /* ---- For Python ---- */
 
-/* Writes 11 sizes: bytes of memory and workspace; MOST_TOLD; numbers of a row, a stretch, a contact; most contacts; bytes
-   of the four records. */
+/* Carries the memory between two motions, into CARRIED numbers or from them, with which steps go on to the last bit. */
+void rubbing_carry(const model *of, solver_step_memory *memory, real *numbers, int reads) {
+  carrying row = {numbers, reads};
+  carry(&row, memory->rows, N);
+  carry(&row, memory->columns, N);
+  carry(&row, memory->matrix, 2 * STAGE_ENTRIES);
+  carry(&row, memory->unknowns, STAGED);
+  carry(&row, &memory->size, 1);
+  carry(&row, &memory->jacobian_size, 1);
+  for (int i = 0; i < N; i++) carry_whole(&row, memory->pivots + i, N - 1);
+  carry_whole(&row, &memory->as_a_whole, 1);
+  carry_whole(&row, &memory->first_iterations, MAX_STEP_ITERATIONS);
+  carry_whole(&row, &memory->touch_count, TOUCHES);
+  for (int k = 0; k < memory->touch_count; k++) {
+    solver_touch *own = memory->touches + k;
+    carry_whole(&row, &own->facing, of->facing_count - 1);
+    carry_whole(&row, &own->slides, 1);
+    carry_whole(&row, &own->presses, 1);
+    carry(&row, &own->place, 1);
+    carry(&row, &own->height, 1);
+    carry(&row, &own->force, 1);
+    carry(&row, own->axis, 3);
+    carry(&row, own->drag, 2);
+  }
+}
+
+/* Writes 12 sizes: bytes of memory and workspace; MOST_TOLD; numbers of a row, a stretch, a contact; most contacts; CARRIED;
+   bytes of the four records. */
 void rubbing_sizes(long long *sizes) {
-  const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW, OF_STRETCH, OF_TOUCH,
-                             TOUCHES,  sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
+  const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW,
+                             OF_STRETCH, OF_TOUCH, TOUCHES, CARRIED,
+                             sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
   memcpy(sizes, found, sizeof found);
 }
 
