@@ -18,12 +18,12 @@ import numpy as np
 
 from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.errors import SceneError
+from cosserat_casadi.motion.fall_of_errors import impacts_of
 from cosserat_casadi.motion.simulate import (
     TIGHTER,
     Simulator,
     TimedHistory,
     are_struck_alike,
-    impacts_of,
     started,
 )
 from cosserat_casadi.motion.tip_paths import path_distance

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
-from cosserat_casadi.motion.simulate import HALVED, LEFT_BY_HALF
+from cosserat_casadi.motion.fall_of_errors import HALVED, LEFT_BY_HALF
 from cosserat_casadi.tubes.tube_functions import AnyModel
 
 STEP_ERROR = 0.05

@@ -18,6 +18,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
+from cosserat_casadi.motion.fall_of_errors import is_struck
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     UNKNOWN_ORDER,
@@ -38,7 +39,6 @@ from cosserat_casadi.motion.simulate import (
     Tell,
     bound_of,
     ended_early,
-    is_struck,
     judged,
     left_by,
     motion_of,
@@ -145,8 +145,7 @@ def go_on(
         else:
             by_steps = max(by_steps, left)
         companions.append(Companion(told, factor, strand.impacts, strand.by_modes))
-    if scene.rubs_exactly:
-        by_steps = float(np.maximum(by_steps, simulator.unbalanced(history, paths)))
+    by_steps = float(np.maximum(by_steps, simulator.fall.least(history, paths)))
     error = by_steps + by_other_modes
     by_modes = any(strand.by_modes for strand in checkpoint.strands)
     if given is None and not scene.accuracy.fixed and not by_modes:
@@ -175,7 +174,7 @@ def _factor_after_impacts(simulator: Simulator, strand: Strand, history: History
     if strand.discretisation != history.model.discretisation:
         return strand.factor
     if strand.settings.size is not None:
-        return simulator.left_by_half(history, told) if simulator.rubs else strand.factor
+        return simulator.fall.factor(history, told) if simulator.rubs else strand.factor
     tighter = float(np.max(strand.settings.tolerance / history.settings.tolerance))
     return left_by(tighter, history, told)
 

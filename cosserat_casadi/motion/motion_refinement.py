@@ -24,6 +24,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.tube_checks import refuse_tubes
+from cosserat_casadi.motion.fall_of_errors import FAR_APART, hangs_on_rounding, impacts_of, is_struck
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     REST,
@@ -45,7 +46,6 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.parts import simulate_in_parts
 from cosserat_casadi.motion.simulate import (
-    FAR_APART,
     SLOPE,
     TIGHTER,
     Companion,
@@ -56,9 +56,6 @@ from cosserat_casadi.motion.simulate import (
     bound_of,
     ended_early,
     factor_for,
-    hangs_on_rounding,
-    impacts_of,
-    is_struck,
     judged,
     left_by,
     motion_of,

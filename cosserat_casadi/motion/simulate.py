@@ -32,6 +32,13 @@ from cosserat_casadi.motion.contact_guards import SAME_PLACE
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.event_restart import LAID_DOWN, Restart
+from cosserat_casadi.motion.fall_of_errors import (
+    FallOfErrors,
+    RubbingFall,
+    SmoothFall,
+    hangs_on_rounding,
+    is_struck,
+)
 from cosserat_casadi.motion.history import FreeFlight, History, free_flight, integrated
 from cosserat_casadi.motion.initial_velocity import with_velocities
 from cosserat_casadi.motion.motion_checks import check_simulation
@@ -112,45 +119,11 @@ Steps grow by a bounded factor after each event: over the first few no tolerance
 MOST_ALIKE = 2
 """Further motions, each TIGHTER times as exact, that are looked at for steps that their tolerance shortens."""
 
-HALVED = 4.0 / 3.0
-"""Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
-
-LEFT_BY_HALF = 1.0 / 3.0
-"""Error of a motion over its distance to one of twice the step, which has four times the error."""
-
 MOST_TIGHTENINGS = 6
 """Motions, each more exactly computed than the last, before a tolerance is given up."""
 
-NOT_NEARER = 0.5
-"""Share of the distance of two motions from which on the next two, ten times as exact, count as no nearer."""
-
-FAR_APART = 10.0
-"""Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
-
 MOST_APART = 3
 """Halvings of steps in a row that bring motions with impacts no nearer to each other before they are given up."""
-
-HALVED_WHERE_RUBBING = 2.0
-"""Error of a motion with friction of exact contact over its distance to one of half the step.
-
-What breaks loose or lifts off in a step may leave its first power; where nothing does it leaves the second one.
-"""
-
-HALVED_WHERE_STRUCK = 4.85
-"""Error over the same distance where impacts strike: errors are then taken to go with the cube root of the step.
-
-Of ten rods that were let fall, with the root, one erred by 1.4 times as much as was told.
-"""
-
-UNBALANCED = 2.0
-"""Least error of the paths of free rods with friction, over the largest imbalance of their energy.
-
-Of 35 motions of five rods that were let fall, with hardly any friction, one erred by more than is told, 2.3 times as
-much as the distances and this tell; by the distances alone five did, by up to 8.6 times.
-"""
-
-TIMES_OF_ENERGY = 101
-"""Times at which the energy of a motion with friction is looked at."""
 
 FIRST_EQUAL_STEPS = 50
 """Steps that a motion without a tolerance of a step is first divided into; they are halved until motions agree."""
@@ -306,6 +279,11 @@ class Simulator:
         return self.model.scene.rubs_exactly
 
     @cached_property
+    def fall(self) -> FallOfErrors:
+        """How errors of equal steps fall."""
+        return RubbingFall(self.model, self.begun) if self.rubs else SmoothFall()
+
+    @cached_property
     def _rubbing(self) -> RubbingSteps:
         """Steps with friction, for all motions of the model."""
         return RubbingSteps(self.model)
@@ -443,37 +421,9 @@ class Simulator:
         shorter = self.stepped(history.statistics.largest_step / 2.0)
         history_paths = self.paths(history)
         distance = path_distance(history_paths, self.paths(shorter))
-        left = self.left_by_half(history, shorter)
-        error = left * distance if shorter.completed else float("nan")
-        if self.rubs and history.completed:
-            error = float(np.maximum(error, self.unbalanced(history, history_paths)))
+        left = self.fall.factor(history, shorter)
+        error = self.fall.error(history, history_paths, left * distance, 0.0) if shorter.completed else float("nan")
         return TimedHistory(history, error, step_tolerance, Companion(shorter, left), distance)
-
-    def left_by_half(self, history: History, other: History) -> float:
-        """Error of a motion over its distance to one of half the step, or of twice the step or more, from above."""
-        is_finer = history.statistics.largest_step < other.statistics.largest_step
-        if not self.rubs:
-            return LEFT_BY_HALF if is_finer else HALVED
-        are_struck = is_struck(history if is_finer else other)
-        return (HALVED_WHERE_STRUCK if are_struck else HALVED_WHERE_RUBBING) - is_finer
-
-    def unbalanced(self, history: History, paths: Paths) -> float:
-        """Least error of the paths of free rods with friction, over the length, by the imbalance of their energy.
-
-        Where a rod rolls out flat, its place of contact runs along it within a step. Such a step may lose energy, and
-        two motions that lose alike are near each other and far from the true motion: the missing energy tells the
-        error. A rod that is held comes back, whatever energy its waves have lost. The error is no more than the
-        longest way of the paths: the energy of rods at rest is rounding.
-        """
-        if not any(rod.base.free for rod in self.model.scene.rods):
-            return 0.0
-        times = np.linspace(history.begin, history.end.time, TIMES_OF_ENERGY)
-        moving = frozenset(motion.input for motion in self.model.scene.motions)
-        energies, _ = energies_of(history, times, moving, None if self.begun is None else self.begun.energy)
-        way = float(np.linalg.norm(paths.points - paths.points[0], axis=2).max(initial=0.0))
-        if self.begun is not None:
-            way += self.begun.error
-        return min(way, UNBALANCED * float(np.abs(energies.imbalance).max()))
 
     def halved(self, tolerance: float, begun: History | None = None) -> TimedHistory:
         """The motion with equal steps that are halved until the paths of two motions agree to a tolerance.
@@ -500,17 +450,13 @@ class Simulator:
             if shorter.outcome is StepOutcome.INTERRUPTED:
                 return TimedHistory(shorter, float("nan"))
             shorter_paths = self.paths(shorter)
-            left = self.left_by_half(shorter, history)
+            left = self.fall.factor(shorter, history)
             if history.completed and shorter.completed:
                 before, distance = distance, path_distance(history_paths, shorter_paths)
-                error = left * distance
-                if self.rubs and is_struck(shorter):
-                    # Impacts of two motions may happen to be alike: a third one is asked, without which none is known.
-                    error = left * float(np.maximum(before, distance))
-                    apart = apart + 1 if hangs_on_rounding(shorter, distance, 2.0 * before, tolerance) else 0
-                if self.rubs:
-                    error = float(np.maximum(error, self.unbalanced(shorter, shorter_paths)))
-            earlier = None if companion is None or not self.rubs else replace(companion, factor=left)
+                error = self.fall.error(shorter, shorter_paths, left * distance, left * before)
+                hangs = self.fall.asks_a_third and hangs_on_rounding(shorter, distance, 2.0 * before, tolerance)
+                apart = apart + 1 if hangs else 0
+            earlier = replace(companion, factor=left) if companion and self.fall.asks_a_third else None
             companion = Companion(history, left)
             history = shorter
             history_paths = shorter_paths
@@ -570,30 +516,6 @@ def has_shorter_steps_at_events(history: History) -> bool:
     if not history.events or not statistics.steps:
         return False
     return (history.end.time - history.begin) / statistics.largest_step < 0.5 * statistics.steps
-
-
-def hangs_on_rounding(history: History, distance: float, before: float, tolerance: float) -> bool:
-    """Whether impacts make a motion erratic: more exact steps do not bring its paths nearer to a limit.
-
-    Errors that go with LEAST_SLOPE or faster fall to a half from one distance to the next.
-
-    Args:
-        history: the motion.
-        distance: between the paths of two motions, over the length, of which one has steps TIGHTER times as exact.
-        before: between the paths of two motions TIGHTER times as coarse; infinite where it is not known.
-        tolerance: error of the paths allowed, over the length.
-    """
-    return is_struck(history) and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
-
-
-def is_struck(history: History) -> bool:
-    """Whether a motion has impacts."""
-    return impacts_of(history) > 0
-
-
-def impacts_of(history: History) -> int:
-    """Number of impacts of a motion."""
-    return sum(event.kind == "impact" for event in history.events)
 
 
 def are_struck_alike(first: History, second: History) -> bool:

@@ -14,10 +14,11 @@ from cosserat_casadi import SceneError, scene_from_dict, simulate
 from cosserat_casadi.accuracy.refine import FINER_MODES
 from cosserat_casadi.motion import simulate as motion_simulate
 from cosserat_casadi.motion.checkpoint import Checkpoint, EnergyAccount, Resume, Strand
+from cosserat_casadi.motion.fall_of_errors import HALVED
 from cosserat_casadi.motion.felt_modes import SAFETY, UNKNOWN_ORDER, told_by_modes
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_start import resumed_start
-from cosserat_casadi.motion.simulate import HALVED, Simulator, started
+from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
 from tests.families import mostly_slow
