@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_595,
     "mjcf": 1_055,
     "model": 11_645,
-    "motion": 14_785,
+    "motion": 14_870,
     "numerics": 5_325,
     "obstacles": 415,
     "page": 825,
