@@ -124,7 +124,7 @@ def test_what_steps_lose_where_a_rod_slaps_down_falls_with_them_and_tells_the_er
     history = own.stepped(2e-3)
     assert path_distance(own.paths(history), own.paths(fine)) < 0.5 * motion.error_estimate < 1e-3
     # With the 1.5th power of the step.
-    assert own.unbalanced(fine, own.paths(fine)) < 2.0 * lost / 15.0
+    assert own.fall.least(fine, own.paths(fine)) < 2.0 * lost / 15.0
 
 
 def simulator(tables: dict[str, Any]) -> Simulator:
