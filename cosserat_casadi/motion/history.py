@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
@@ -37,7 +38,7 @@ from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
-from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
+from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, Instants, TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
 
 DIFFERENTIATED = 0.01
@@ -234,14 +235,33 @@ class History:
 
     def at(self, time: float) -> MotionState:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
-        leg, instant = self.locate(time)
-        inputs = leg.piece.at(instant.time).value
-        equations = leg.equations or equations_of(self.model, leg.piece)
-        near = instant
-        if self.steps:
-            _, step = self.steps[self.number_at(time)]
-            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time)))
-        return MotionState(self._closing.closed(instant, inputs, equations, near), instant.v, instant.a, inputs)
+        instants, inputs = self.states(np.array([time]))
+        return MotionState(instants.x[0], instants.v[0], instants.a[0], inputs[0])
+
+    def states(self, times: FloatArray) -> tuple[Instants, FloatArray]:
+        """The states at T times that were reached, as :meth:`at`, and the inputs, shape (T, inputs)."""
+        x, v, a = np.empty((3, len(times), self.model.size))
+        inputs = np.empty((len(times), self.model.inputs.size))
+        for leg, rows, held in self._held(times):
+            inputs[rows] = leg.piece.values_at(times[rows])
+            if held is not None and self.flight.coordinates is None:
+                parts = held.positions(), *held.rates()
+                x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
+                continue
+            for row in np.flatnonzero(rows).tolist():
+                _, instant = self.locate(float(times[row]))
+                x[row], v[row], a[row] = instant.x, instant.v, instant.a
+
+        def near(row: int) -> tuple[MotionEquations, Instant]:
+            time = float(times[row])
+            leg, end = self.legs[0], self.legs[0].start.instant
+            if self.steps:
+                leg, step = self.steps[self.number_at(time)]
+                end = min(step.end, step.start, key=lambda end: abs(end.time - time))
+            return leg.equations or equations_of(self.model, leg.piece), self.of_model(end)
+
+        instants = Instants(times, x, v, a)
+        return replace(instants, x=self._closing.closed(instants, inputs, near)), inputs
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
@@ -288,23 +308,27 @@ class History:
 
         Between the ends of steps constraints are open there by less than the error of the motion.
         """
-        if not self.steps:
-            leg = self.legs[0]
-            x = np.tile(self.of_model(leg.start.instant).x, (len(times), 1))
-            return x, np.tile(leg.piece.at(leg.start.instant.time).value, (len(times), 1))
         x = np.zeros((len(times), self.model.size))
         inputs = np.zeros((len(times), self.model.inputs.size))
+        for leg, rows, held in self._held(times):
+            begin = self.of_model(leg.start.instant)
+            x[rows] = begin.x if held is None else self._positions_of_model(held.positions())
+            inputs[rows] = leg.piece.values_at(times[rows])
+        return x, inputs
+
+    def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
+        """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
+        if not self.steps:
+            yield self.legs[0], np.ones(len(times), dtype=bool), None
+            return
         numbers = np.minimum(np.searchsorted(self._ends, times), len(self.steps) - 1)
         first = 0
         for leg in self.legs:
             steps = leg.integration.steps
-            held = (first <= numbers) & (numbers < first + len(steps))
-            if np.any(held):
-                of_steps = positions_at(steps, numbers[held] - first, times[held])
-                x[held] = self._positions_of_model(of_steps)
-                inputs[held] = leg.piece.values_at(times[held])
+            rows = (first <= numbers) & (numbers < first + len(steps))
+            if np.any(rows):
+                yield leg, rows, HeldTimes(steps, numbers[rows] - first, times[rows])
             first += len(steps)
-        return x, inputs
 
     def _positions_of_model(self, positions: FloatArray) -> FloatArray:
         """Unknowns of the model from positions of steps, (T, n) to (T, size)."""

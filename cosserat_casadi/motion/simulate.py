@@ -827,11 +827,7 @@ def motion_of(
     times = wanted[(history.begin <= wanted) & (wanted <= history.end.time)]
     if history.stopped is not None:
         times = np.union1d(times, history.end.time)
-    x, v, a = (np.empty((len(times), model.size)) for _ in range(3))
-    inputs = np.empty((len(times), model.inputs.size))
-    for row, time in enumerate(times.tolist()):
-        state = history.at(time)
-        x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
+    states, inputs = history.states(times)
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
     strands = [_strand(Companion(history, 0.0))]
@@ -842,9 +838,9 @@ def motion_of(
         outcome=outcome,
         message=message,
         times=times,
-        x=x,
-        v=v,
-        a=a,
+        x=states.x,
+        v=states.v,
+        a=states.a,
         inputs=inputs,
         error_estimate=error,
         statistics=history.statistics,

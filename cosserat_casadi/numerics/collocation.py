@@ -64,19 +64,23 @@ class Collocation:
     def values_at(self, share: float | FloatArray) -> FloatArray:
         """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,), or at k shares, shape (k, s)."""
         powers = np.asarray(share)[..., None] ** np.arange(self.stages)
-        return np.asarray(powers @ self.polynomials)
+        return self._of_powers(powers)
 
-    def integrals_at(self, share: float) -> FloatArray:
-        """Integrals ∫₀^θ ℓ_j, shape (s,)."""
+    def integrals_at(self, share: float | FloatArray) -> FloatArray:
+        """Integrals ∫₀^θ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(1, self.stages + 1)
-        powers = share**exponents / exponents
-        return np.asarray(powers @ self.polynomials)
+        powers = np.asarray(share)[..., None] ** exponents / exponents
+        return self._of_powers(powers)
 
     def double_integrals_at(self, share: float | FloatArray) -> FloatArray:
         """Integrals of the integrals, ∫₀^θ ∫₀^σ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(2, self.stages + 2)
         powers = np.asarray(share)[..., None] ** exponents / (exponents * (exponents - 1))
-        return np.asarray(powers @ self.polynomials)
+        return self._of_powers(powers)
+
+    def _of_powers(self, powers: FloatArray) -> FloatArray:
+        # No product of matrices: it rounds a row by its place among the others.
+        return np.asarray((powers[..., None] * self.polynomials).sum(axis=-2))
 
 
 @cache

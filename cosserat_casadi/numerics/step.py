@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,14 +21,14 @@ from cosserat_casadi.numerics.motion_equations import Instant
 
 
 @dataclass(frozen=True)
-class Stages:
-    """The instants at which a step collocates, side by side.
+class Instants:
+    """T instants side by side, such as those at which a step collocates.
 
     Attributes:
-        times: t₀ + c_i h, shape (s,), s.
-        x: shape (s, n).
-        v: shape (s, n), 1/s.
-        a: shape (s, n), 1/s².
+        times: shape (T,), s.
+        x: shape (T, n).
+        v: shape (T, n), 1/s.
+        a: shape (T, n), 1/s².
     """
 
     times: FloatArray
@@ -60,14 +61,14 @@ class StepPolynomial:
         return np.where(self.differential, self.unknowns, 0.0)
 
     @property
-    def stages(self) -> Stages:
+    def stages(self) -> Instants:
         """The instants of the stages."""
         a = self.accelerations
         v = np.where(self.differential, self.start.v + self.size * (self.method.matrix @ a), 0.0)
         straight_on = self.start.x + self.size * self.method.nodes[:, None] * self.start.v
         curved = straight_on + self.size**2 * (self.method.matrix_squared @ a)
         x = np.where(self.differential, curved, self.unknowns)
-        return Stages(self.start.time + self.method.nodes * self.size, x, v, a)
+        return Instants(self.start.time + self.method.nodes * self.size, x, v, a)
 
     def arrival(self, time: float) -> Instant:
         """The end, at its time, s; a method whose last stage is not the end extrapolates accelerations too."""
@@ -123,8 +124,8 @@ class TimeStep(StepPolynomial):
         return self.at_share((time - self.start.time) / self.size, time)
 
 
-def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> FloatArray:
-    """Positions and algebraic entries at T times by the polynomials of the steps that hold them, shape (T, n).
+class HeldTimes:
+    """T times in the steps that hold them, with the motion there by the polynomials of these steps.
 
     :meth:`TimeStep.at` computes the same numbers for one time.
 
@@ -133,28 +134,47 @@ def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times
         numbers: which of the steps holds each time, shape (T,).
         times: shape (T,), s.
     """
-    method = steps[0].method
-    differential = steps[0].differential
-    of_step = {
-        "begin": np.array([step.start.time for step in steps]),
-        "size": np.array([step.size for step in steps]),
-        "end": np.array([step.end.time for step in steps]),
-        "x": np.array([step.start.x for step in steps]),
-        "v": np.array([step.start.v for step in steps]),
-        "arrived": np.array([step.end.x for step in steps]),
-        "unknowns": np.array([step.unknowns for step in steps]),
-    }
-    of_time = {name: values[numbers] for name, values in of_step.items()}
-    sizes = of_time["size"]
-    shares = (times - of_time["begin"]) / sizes
-    accelerations = np.where(differential, of_time["unknowns"], 0.0)
-    values = np.einsum("ts,tsn->tn", method.values_at(shares), of_time["unknowns"])
-    moved = np.einsum("ts,tsn->tn", method.double_integrals_at(shares), accelerations)
-    displacement = (shares * sizes)[:, None] * of_time["v"] + sizes[:, None] ** 2 * moved
-    x = np.where(differential, of_time["x"] + displacement, values)
-    # The end of a step may have been put right.
-    at_end = times == of_time["end"]
-    return np.where(at_end[:, None], of_time["arrived"], x)
+
+    def __init__(self, steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
+        used, self._step = np.unique(numbers, return_inverse=True)
+        self._steps = [steps[number] for number in used.tolist()]
+        self._method, self._differential = self._steps[0].method, self._steps[0].differential
+        self._size = self._of_each([step.size for step in self._steps])
+        self._share = (times - self._of_each([step.start.time for step in self._steps])) / self._size
+        # The end of a step may have been put right.
+        self._arrived = times == self._of_each([step.end.time for step in self._steps])
+        self._unknowns = np.array([step.unknowns for step in self._steps])
+
+    def positions(self) -> FloatArray:
+        """Positions and algebraic entries, shape (T, n)."""
+        begin = self._of_each([step.start.x for step in self._steps])
+        velocity = self._of_each([step.start.v for step in self._steps])
+        moved = self._summed(self._method.double_integrals_at(self._share))
+        displacement = (self._share * self._size)[:, None] * velocity + self._size[:, None] ** 2 * moved
+        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at(self._share)))
+        return self._with_ends(x, [step.end.x for step in self._steps])
+
+    def rates(self) -> tuple[FloatArray, FloatArray]:
+        """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
+        gained = self._size[:, None] * self._summed(self._method.integrals_at(self._share))
+        velocities = self._of_each([step.start.v for step in self._steps]) + gained
+        accelerations = self._summed(self._method.values_at(self._share))
+        v, a = (np.where(self._differential, rates, 0.0) for rates in (velocities, accelerations))
+        ends = [step.end for step in self._steps]
+        return self._with_ends(v, [end.v for end in ends]), self._with_ends(a, [end.a for end in ends])
+
+    def _of_each(self, values: Sequence[Any]) -> FloatArray:
+        """Values of the steps, for the step of each time."""
+        return np.array(values)[self._step]
+
+    def _summed(self, weights: FloatArray) -> FloatArray:
+        """Sums of the unknowns of the stages with weights, shape (T, s) to (T, n)."""
+        # One after the other: a sum is the same, to the last digit, whatever the other times are.
+        return np.asarray(sum(weight[:, None] * self._unknowns[self._step, k] for k, weight in enumerate(weights.T)))
+
+    def _with_ends(self, values: FloatArray, arrived: Sequence[FloatArray]) -> FloatArray:
+        """Values, but for times at the ends of steps those ends."""
+        return np.where(self._arrived[:, None], self._of_each(arrived), values)
 
 
 @dataclass(frozen=True)
