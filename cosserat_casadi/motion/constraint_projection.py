@@ -6,24 +6,22 @@ is far below the tolerance of the motion.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.calls import chooses, evaluated
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.repeated_call import external
+from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.step import Instants
 
 CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
@@ -40,10 +38,6 @@ CONTRACTED = 0.2
 
 GAPS = "motion_gaps"
 """Name of the rows of the constraints in C."""
-
-
-Near = Callable[[int], tuple[MotionEquations, Instant]]
-"""Number of an instant ↦ the equations of motion there, and an instant nearby."""
 
 
 @dataclass(frozen=True)
@@ -63,57 +57,52 @@ class Closing:
         """Rows of the residual that are constraints on positions alone."""
         return constraint_rows(self.model)
 
-    def closed(self, at: Instants, inputs: FloatArray, near: Near) -> FloatArray:
-        """Unknowns at T instants, each moved by the smallest displacement that closes the constraints, shape (T, size).
+    def closed(self, instant: Instant, inputs: FloatArray, equations: MotionEquations, near: Instant) -> FloatArray:
+        """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
 
         Args:
-            at: instants of the motion, in the unknowns of the model.
-            inputs: inputs at these instants, shape (T, model.inputs.size).
-            near: gives, for the number of an instant, the equations and where the first Jacobian is evaluated: an end
-                of the step that the instant is in, for many instants.
+            instant: of the motion, in the unknowns of the model.
+            inputs: inputs at that instant, shape (model.inputs.size,).
+            equations: of motion, of which some rows are the constraints.
+            near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many instants.
         """
-        x = at.x.copy()
+        x = instant.x
         if not len(self.rows):
             return x
-        best = x.copy()
-        gaps = np.zeros((len(x), len(self.rows)))
-        before = np.full(len(x), np.inf)
-        answers: dict[int, FloatArray] = {}
-        evaluated_here: set[int] = set()
-        left = np.ones(len(x), dtype=bool)
+        best = x
+        before = np.inf
+        answer = None
+        is_here = False
         for _ in range(MOST_CORRECTIONS):
-            (found,) = evaluated(self._gaps, x, inputs)
-            largest = np.abs(found[:, :, 0]).max(axis=1)
-            left &= ~(largest <= CLOSED)
-            nearer = largest < before
-            best[left & nearer] = x[left & nearer]
-            gaps[left & nearer] = found[left & nearer, :, 0]
-            for row in np.flatnonzero(left).tolist():
-                # Where constraints are about to depend on each other corrections may lead away.
-                if not nearer[row] and row in evaluated_here:
-                    x[row] = best[row]
-                    left[row] = False
-                    continue
-                if row not in answers:
-                    answers[row] = self._answer_near(*near(row))
-                elif not nearer[row] or largest[row] > CONTRACTED * before[row]:
-                    here = Instant(float(at.times[row]), best[row], at.v[row], at.a[row])
-                    answers[row] = self._answer(near(row)[0].linearised(here).stiffness)
-                    evaluated_here.add(row)
-                x[row] = best[row] - answers[row] @ gaps[row]
-            if not left.any():
+            gaps = self._gaps(x, inputs)
+            largest = np.abs(gaps).max()
+            if largest <= CLOSED:
                 break
-            before = np.abs(gaps).max(axis=1)
+            leads_away = not largest < before
+            # Where constraints are about to depend on each other corrections may lead away.
+            if leads_away and is_here:
+                return best
+            if leads_away:
+                gaps = self._gaps(best, inputs)
+            else:
+                best = x
+            if answer is None:
+                answer = self._answer_near(near, equations)
+            elif leads_away or largest > CONTRACTED * before:
+                answer = self._answer(equations.linearised(replace(instant, x=best)).stiffness)
+                is_here = True
+            before = np.abs(gaps).max()
+            x = best - answer @ gaps
         return x
 
     @cached_property
-    def _gaps(self) -> ca.Function:
+    def _gaps(self) -> RepeatedCall:
         """(x, inputs) ↦ the rows of the constraints: the rest of the equations takes several times as long."""
         if self.library is not None:
-            return external(GAPS, self.library)
-        return kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
+            return RepeatedCall(external(GAPS, self.library))
+        return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
 
-    def _answer_near(self, equations: MotionEquations, near: Instant) -> FloatArray:
+    def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
         """Displacements that answer to gaps, as :meth:`_answer`, at an end of a step; the last answer is remembered."""
         time, answer = self._remembered.get("last", (None, None))
         if answer is None or time != near.time:

@@ -38,7 +38,7 @@ from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
-from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, Instants, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
 
 DIFFERENTIATED = 0.01
@@ -235,11 +235,12 @@ class History:
 
     def at(self, time: float) -> MotionState:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
-        instants, inputs = self.states(np.array([time]))
-        return MotionState(instants.x[0], instants.v[0], instants.a[0], inputs[0])
+        leg, instant = self.locate(time)
+        inputs = leg.piece.at(instant.time).value
+        return MotionState(self._closed(leg, instant, inputs), instant.v, instant.a, inputs)
 
-    def states(self, times: FloatArray) -> tuple[Instants, FloatArray]:
-        """The states at T times that were reached, as :meth:`at`, and the inputs, shape (T, inputs)."""
+    def states(self, times: FloatArray) -> MotionState:
+        """The states at T times that were reached, as :meth:`at`, a row for each time."""
         x, v, a = np.empty((3, len(times), self.model.size))
         inputs = np.empty((len(times), self.model.inputs.size))
         for leg, rows, held in self._held(times):
@@ -247,21 +248,23 @@ class History:
             if held is not None and self.flight.coordinates is None:
                 parts = held.positions(), *held.rates()
                 x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
-                continue
             for row in np.flatnonzero(rows).tolist():
-                _, instant = self.locate(float(times[row]))
-                x[row], v[row], a[row] = instant.x, instant.v, instant.a
+                instant = Instant(float(times[row]), x[row], v[row], a[row])
+                if held is None or self.flight.coordinates is not None:
+                    _, instant = self.locate(instant.time)
+                x[row], v[row], a[row] = self._closed(leg, instant, inputs[row]), instant.v, instant.a
+        return MotionState(x, v, a, inputs)
 
-        def near(row: int) -> tuple[MotionEquations, Instant]:
-            time = float(times[row])
-            leg, end = self.legs[0], self.legs[0].start.instant
-            if self.steps:
-                leg, step = self.steps[self.number_at(time)]
-                end = min(step.end, step.start, key=lambda end: abs(end.time - time))
-            return leg.equations or equations_of(self.model, leg.piece), self.of_model(end)
-
-        instants = Instants(times, x, v, a)
-        return replace(instants, x=self._closing.closed(instants, inputs, near)), inputs
+    def _closed(self, leg: Leg, instant: Instant, inputs: FloatArray) -> FloatArray:
+        """Unknowns at an instant of a leg with closed constraints."""
+        if not len(self._closing.rows):
+            return instant.x
+        equations = leg.equations or equations_of(self.model, leg.piece)
+        near = instant
+        if self.steps:
+            _, step = self.steps[self.number_at(instant.time)]
+            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - instant.time)))
+        return self._closing.closed(instant, inputs, equations, near)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""

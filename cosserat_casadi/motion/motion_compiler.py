@@ -16,7 +16,7 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.compiling.cache import cache_folder, tallied, tally
-from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler
+from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler, flags_of_machine
 from cosserat_casadi.compiling.description import key_of
 from cosserat_casadi.compiling.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
@@ -304,7 +304,7 @@ def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
     """The shared object with a function; arguments as of :func:`_in_machine_code`."""
     key = _key(model, name)
-    kept = None if key is None else compiled_from(name, key, compiler)
+    kept = None if key is None else compiled_from(name, key, compiler, flags_of_machine())
     if kept is not None or not write:
         return kept
     # The printer of C is needed here alone, and takes its time to be loaded.
@@ -314,7 +314,7 @@ def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | N
     texts = external_sources(functions(model), name, "long long int")
     # Sources that changed meanwhile may have written parts of it.
     origin = None if sources_hash() is None else key
-    return compiled_texts(name, texts, compiler, origin=origin)
+    return compiled_texts(name, texts, compiler, flags=flags_of_machine(), origin=origin)
 
 
 def _key(model: Model, name: str) -> str | None:

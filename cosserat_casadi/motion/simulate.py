@@ -827,7 +827,7 @@ def motion_of(
     times = wanted[(history.begin <= wanted) & (wanted <= history.end.time)]
     if history.stopped is not None:
         times = np.union1d(times, history.end.time)
-    states, inputs = history.states(times)
+    states = history.states(times)
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
     strands = [_strand(Companion(history, 0.0))]
@@ -841,7 +841,7 @@ def motion_of(
         x=states.x,
         v=states.v,
         a=states.a,
-        inputs=inputs,
+        inputs=states.inputs,
         error_estimate=error,
         statistics=history.statistics,
         start=simulator.start.sentence,

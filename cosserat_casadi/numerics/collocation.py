@@ -80,7 +80,7 @@ class Collocation:
 
     def _of_powers(self, powers: FloatArray) -> FloatArray:
         # No product of matrices: it rounds a row by its place among the others.
-        return np.asarray((powers[..., None] * self.polynomials).sum(axis=-2))
+        return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
 
 @cache

@@ -143,7 +143,7 @@ class HeldTimes:
         self._share = (times - self._of_each([step.start.time for step in self._steps])) / self._size
         # The end of a step may have been put right.
         self._arrived = times == self._of_each([step.end.time for step in self._steps])
-        self._unknowns = np.array([step.unknowns for step in self._steps])
+        self._unknowns = self._of_each([step.unknowns for step in self._steps])
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
@@ -169,8 +169,7 @@ class HeldTimes:
 
     def _summed(self, weights: FloatArray) -> FloatArray:
         """Sums of the unknowns of the stages with weights, shape (T, s) to (T, n)."""
-        # One after the other: a sum is the same, to the last digit, whatever the other times are.
-        return np.asarray(sum(weight[:, None] * self._unknowns[self._step, k] for k, weight in enumerate(weights.T)))
+        return np.asarray(np.einsum("ts,tsn->tn", weights, self._unknowns))
 
     def _with_ends(self, values: FloatArray, arrived: Sequence[FloatArray]) -> FloatArray:
         """Values, but for times at the ends of steps those ends."""

@@ -10,7 +10,6 @@ from cosserat_casadi import build, scene_from_dict
 from cosserat_casadi.motion.constraint_projection import CLOSED, Closing
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.simulate import Simulator, started
-from cosserat_casadi.numerics.step import Instants
 from tests.motion import transients
 
 
@@ -26,6 +25,5 @@ def test_a_jacobian_of_elsewhere_that_leads_away_is_replaced() -> None:
     assert np.abs(equations.residual_at(opened)[closing.rows]).max() > 1e3 * CLOSED
     backwards = replace(instant, time=-1.0)
     closing._remembered["last"] = -1.0, -3.0 * closing._answer(equations.linearised(instant).stiffness)
-    at = Instants(np.array([opened.time]), opened.x[None], opened.v[None], opened.a[None])
-    (x,) = closing.closed(at, leg.piece.values_at(at.times), lambda _: (equations, backwards))
+    x = closing.closed(opened, leg.piece.at(instant.time).value, equations, backwards)
     assert np.abs(equations.residual_at(replace(opened, x=x))[closing.rows]).max() <= CLOSED

@@ -74,7 +74,7 @@ def test_all_at_once_vs_one_by_one(scene: Any) -> None:
     expected_x, expected_inputs = one_by_one(history, times)
     assert_allclose(x, expected_x, rtol=1e-13, atol=1e-15)
     assert_allclose(inputs, expected_inputs, rtol=1e-13, atol=1e-15)
-    states, _ = history.states(times)
+    states = history.states(times)
     rates = [(instant.v, instant.a) for _, instant in (history.locate(float(time)) for time in times)]
     assert_allclose(states.v, [v for v, _ in rates], rtol=1e-12, atol=1e-13)
     assert_allclose(states.a, [a for _, a in rates], rtol=1e-12, atol=1e-11)
