@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -77,20 +78,20 @@ def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]
         arguments: in their order, shape (T, entries) each.
     """
     count = len(arguments[0])
-    sparsities = [function.sparsity_out(index) for index in range(function.n_out())]
+    patterns = _patterns(function)
     # CasADi maps over one argument at least; a motion that never started has none.
     if count == 0:
-        return [np.zeros((0, *sparsity.shape)) for sparsity in sparsities]
+        return [np.zeros((0, *pattern.shape)) for pattern in patterns]
     # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
     buffer, evaluate = _mapped(function, count).buffer()
     given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
-    results = [np.zeros(count * sparsity.nnz()) for sparsity in sparsities]
+    results = [np.zeros(count * len(pattern.rows)) for pattern in patterns]
     for number, array in enumerate(given):
         buffer.set_arg(number, array.data)
     for number, array in enumerate(results):
         buffer.set_res(number, array.data)
     evaluate()
-    return [_dense(entries.reshape(count, -1), sparsity) for entries, sparsity in zip(results, sparsities, strict=True)]
+    return [_dense(entries.reshape(count, -1), pattern) for entries, pattern in zip(results, patterns, strict=True)]
 
 
 @lru_cache(maxsize=MOST_MAPPED)
@@ -99,11 +100,26 @@ def _mapped(function: ca.Function, count: int) -> ca.Function:
     return function.map(count)
 
 
-def _dense(entries: FloatArray, sparsity: ca.Sparsity) -> FloatArray:
+class _Pattern(NamedTuple):
+    """Shape of a matrix, and row and column of each of its entries, column after column."""
+
+    shape: tuple[int, int]
+    rows: list[int]
+    columns: list[int]
+
+
+@lru_cache(maxsize=MOST_MAPPED)
+def _patterns(function: ca.Function) -> list[_Pattern]:
+    """The patterns of a function's outputs."""
+    sparsities = [function.sparsity_out(index) for index in range(function.n_out())]
+    return [_Pattern(sparsity.shape, *sparsity.get_triplet()) for sparsity in sparsities]
+
+
+def _dense(entries: FloatArray, pattern: _Pattern) -> FloatArray:
     """Matrices of a pattern from its entries, column after column: shapes (T, nonzeros) to (T, rows, columns)."""
-    stored_rows, stored_columns = sparsity.get_triplet()
-    if sparsity.is_dense():
-        return entries.reshape(-1, *sparsity.shape[::-1]).swapaxes(1, 2)
-    matrices = np.zeros((len(entries), *sparsity.shape))
-    matrices[:, stored_rows, stored_columns] = entries
+    rows, columns = pattern.shape
+    if len(pattern.rows) == rows * columns:
+        return entries.reshape(-1, columns, rows).swapaxes(1, 2)
+    matrices = np.zeros((len(entries), rows, columns))
+    matrices[:, pattern.rows, pattern.columns] = entries
     return matrices

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import Resume
@@ -105,7 +106,9 @@ def equations_of(
         jacobians = KernelJacobians(kernels.derivatives, inputs_at)
 
     unknowns = model.discrete.unknowns
-    eliminated = np.arange(model.size - unknowns.count(BlockKind.FLOW), model.size)
+    eliminated = kept_with(
+        model, "_eliminated", lambda: np.arange(model.size - unknowns.count(BlockKind.FLOW), model.size)
+    )
     return MotionEquations(unknowns.differential, residual, jacobians, kinks=piece.kinks, eliminated=eliminated)
 
 
@@ -339,14 +342,14 @@ class History:
         coordinates = self.flight.coordinates
         return own if coordinates is None else coordinates.positions_of_model(own)
 
-    @cached_property
-    def watched_until(self) -> dict[float, Any]:
-        """States at the times at which paths are compared, by the duration up to which they are."""
-        return {}
+    def once(self, name: str, duration: float, computed: Callable[[], Any]) -> Any:
+        """What is computed of the motion up to a duration (s), once by its name: a search asks several times."""
+        if (name, duration) not in self._known:
+            self._known[name, duration] = computed()
+        return self._known[name, duration]
 
     @cached_property
-    def paths_until(self) -> dict[float, Any]:
-        """Paths of tips and bodies by the duration up to which they are compared: several comparisons ask for them."""
+    def _known(self) -> dict[tuple[str, float], Any]:
         return {}
 
     @cached_property

@@ -810,7 +810,7 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     moved_by = felt(history, search.simulation.duration)
     # Sections find contact, and more modes have more of them.
     if not search.scene.has_contact:
-        left = lacking(history, search.simulation.duration, moved_by)
+        left = lacking(history, search.simulation.duration)
         if max(left, search.last.fronts) <= SPACE_SHARE * search.tolerance:
             return None, left
     fronts = at_fronts(history, search.simulation.duration) if search.last.waves else {}

@@ -328,10 +328,8 @@ class Simulator:
     def paths(self, history: History) -> Paths:
         """Paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
-        if duration not in history.paths_until:
-            states = watched_states(history, duration)
-            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self.library)
-        known: Paths = history.paths_until[duration]
+        states = watched_states(history, duration)
+        known: Paths = history.once("paths", duration, lambda: paths(self.model, states.x, states.inputs, self.library))
         return known
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:

@@ -66,11 +66,13 @@ class WatchedStates(NamedTuple):
 
 def watched_states(history: History, duration: float) -> WatchedStates:
     """The states of a motion at the times at which it is compared with another one of a duration, s."""
-    if duration not in history.watched_until:
+
+    def states() -> WatchedStates:
         times = np.linspace(history.begin, duration, WATCHED)
         times = times[times <= history.end.time]
-        history.watched_until[duration] = WatchedStates(times, *history.rough_positions(times))
-    known: WatchedStates = history.watched_until[duration]
+        return WatchedStates(times, *history.rough_positions(times))
+
+    known: WatchedStates = history.once("watched states", duration, states)
     return known
 
 
