@@ -46,9 +46,6 @@ EXPORT_ANEW = "export the folder anew"
 
 FLAGS: tuple[str, ...] = ("-O2", "-std=c99", "-fPIC")
 
-PROCESSORS = Path("/proc/cpuinfo")
-"""What processors can do, on Linux."""
-
 ENDS = (".c", ".cpp", ".cu")
 """Ends of the names of sources."""
 
@@ -147,17 +144,14 @@ def compiled_from(name: str, origin: str, compiler: str, flags: Sequence[str]) -
 
 
 def flags_of_machine() -> tuple[str, ...]:
-    """Flags for what runs on this machine alone: :data:`FLAGS`, with wider vectors where its processor has them.
-
-    Results are the same: no flag lets a compiler round otherwise.
-    """
+    """:data:`FLAGS` for what runs on this machine alone, with wider vectors if it has them: results are the same."""
     return (*FLAGS, *_wider_vectors())
 
 
 @cache
 def _wider_vectors() -> tuple[str, ...]:
-    # The flags of the first processor stand in the first few lines; of a hundred processors the file is long.
-    with suppress(OSError), PROCESSORS.open() as lines:
+    # The first processor stands in the first few lines; of a hundred processors the file is long.
+    with suppress(OSError), Path("/proc/cpuinfo").open() as lines:
         if platform.machine() == "x86_64" and any("avx2" in line.split() for line in islice(lines, 40)):
             return ("-mavx2",)
     return ()

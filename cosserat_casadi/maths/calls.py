@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -13,6 +12,9 @@ from cosserat_casadi.maths.typing import FloatArray
 
 MOST_MAPPED = 64
 """Maps of functions over many arguments that are kept: as many as a few searches for modes ask for."""
+
+Pattern = tuple[tuple[int, int], list[int], list[int]]
+"""Shape of a matrix, and rows and columns of its entries, column after column."""
 
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
@@ -81,11 +83,11 @@ def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]
     patterns = _patterns(function)
     # CasADi maps over one argument at least; a motion that never started has none.
     if count == 0:
-        return [np.zeros((0, *pattern.shape)) for pattern in patterns]
+        return [np.zeros((0, *shape)) for shape, _, _ in patterns]
     # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
     buffer, evaluate = _mapped(function, count).buffer()
     given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
-    results = [np.zeros(count * len(pattern.rows)) for pattern in patterns]
+    results = [np.zeros(count * len(rows)) for _, rows, _ in patterns]
     for number, array in enumerate(given):
         buffer.set_arg(number, array.data)
     for number, array in enumerate(results):
@@ -100,26 +102,18 @@ def _mapped(function: ca.Function, count: int) -> ca.Function:
     return function.map(count)
 
 
-class _Pattern(NamedTuple):
-    """Shape of a matrix, and row and column of each of its entries, column after column."""
-
-    shape: tuple[int, int]
-    rows: list[int]
-    columns: list[int]
-
-
 @lru_cache(maxsize=MOST_MAPPED)
-def _patterns(function: ca.Function) -> list[_Pattern]:
+def _patterns(function: ca.Function) -> list[Pattern]:
     """The patterns of a function's outputs."""
     sparsities = [function.sparsity_out(index) for index in range(function.n_out())]
-    return [_Pattern(sparsity.shape, *sparsity.get_triplet()) for sparsity in sparsities]
+    return [(sparsity.shape, *sparsity.get_triplet()) for sparsity in sparsities]
 
 
-def _dense(entries: FloatArray, pattern: _Pattern) -> FloatArray:
+def _dense(entries: FloatArray, pattern: Pattern) -> FloatArray:
     """Matrices of a pattern from its entries, column after column: shapes (T, nonzeros) to (T, rows, columns)."""
-    rows, columns = pattern.shape
-    if len(pattern.rows) == rows * columns:
-        return entries.reshape(-1, columns, rows).swapaxes(1, 2)
-    matrices = np.zeros((len(entries), rows, columns))
-    matrices[:, pattern.rows, pattern.columns] = entries
+    shape, rows, columns = pattern
+    if len(rows) == shape[0] * shape[1]:
+        return entries.reshape(-1, *shape[::-1]).swapaxes(1, 2)
+    matrices = np.zeros((len(entries), *shape))
+    matrices[:, rows, columns] = entries
     return matrices

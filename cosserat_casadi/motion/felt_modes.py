@@ -91,10 +91,8 @@ def most_modes(chosen: Mapping[str, Discretisation]) -> int:
 def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     states = watched_states(history, duration)
-    known: ByStrain = history.once(
-        "felt", duration, lambda: _by_strain(history.model, np.abs(states.x).max(axis=0) * displacements(history.model))
-    )
-    return known
+    moved = np.abs(states.x).max(axis=0) * displacements(history.model)
+    return history.once("felt", duration, lambda: _by_strain(history.model, moved))
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
@@ -212,8 +210,7 @@ def lacking(history: History, duration: float) -> float:
     for name, of_rod in moved_by.items():
         for let_through, moved in zip(_let_through(history.model, name), of_rod, strict=True):
             further = max(further, let_through * REST * len(moved) * last_of(moved))
-    late: float = history.once("late", duration, lambda: out_of_phase(history, duration, moved_by))
-    return further + late
+    return further + history.once("late", duration, lambda: out_of_phase(history, duration, moved_by))
 
 
 def lacking_at_fronts(history: History, duration: float) -> float:

@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -41,6 +41,8 @@ from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle,
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
 from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
+
+Known = TypeVar("Known")
 
 DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
@@ -317,8 +319,12 @@ class History:
         x = np.zeros((len(times), self.model.size))
         inputs = np.zeros((len(times), self.model.inputs.size))
         for leg, rows, held in self._held(times):
-            begin = self.of_model(leg.start.instant)
-            x[rows] = begin.x if held is None else self._positions_of_model(held.positions())
+            if held is None:
+                x[rows] = self.of_model(leg.start.instant).x
+                continue
+            own = held.positions()[:, : self.model.size]
+            coordinates = self.flight.coordinates
+            x[rows] = own if coordinates is None else coordinates.positions_of_model(own)
             inputs[rows] = leg.piece.values_at(times[rows])
         return x, inputs
 
@@ -336,17 +342,12 @@ class History:
                 yield leg, rows, HeldTimes(steps, numbers[rows] - first, times[rows])
             first += len(steps)
 
-    def _positions_of_model(self, positions: FloatArray) -> FloatArray:
-        """Unknowns of the model from positions of steps, (T, n) to (T, size)."""
-        own = positions[:, : self.model.size]
-        coordinates = self.flight.coordinates
-        return own if coordinates is None else coordinates.positions_of_model(own)
-
-    def once(self, name: str, duration: float, computed: Callable[[], Any]) -> Any:
+    def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
         """What is computed of the motion up to a duration (s), once by its name: a search asks several times."""
         if (name, duration) not in self._known:
             self._known[name, duration] = computed()
-        return self._known[name, duration]
+        known: Known = self._known[name, duration]
+        return known
 
     @cached_property
     def _known(self) -> dict[tuple[str, float], Any]:

@@ -329,8 +329,7 @@ class Simulator:
         """Paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
         states = watched_states(history, duration)
-        known: Paths = history.once("paths", duration, lambda: paths(self.model, states.x, states.inputs, self.library))
-        return known
+        return history.once("paths", duration, lambda: paths(self.model, states.x, states.inputs, self.library))
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:
         """The motion on this model to an error of its steps.

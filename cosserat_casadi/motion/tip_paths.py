@@ -72,8 +72,7 @@ def watched_states(history: History, duration: float) -> WatchedStates:
         times = times[times <= history.end.time]
         return WatchedStates(times, *history.rough_positions(times))
 
-    known: WatchedStates = history.once("watched states", duration, states)
-    return known
+    return history.once("watched states", duration, states)
 
 
 def function_of_paths(model: Model) -> ca.Function:

@@ -64,22 +64,19 @@ class Collocation:
     def values_at(self, share: float | FloatArray) -> FloatArray:
         """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,), or at k shares, shape (k, s)."""
         powers = np.asarray(share)[..., None] ** np.arange(self.stages)
-        return self._of_powers(powers)
+        # No product of matrices: it rounds a row by its place among the others.
+        return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
     def integrals_at(self, share: float | FloatArray) -> FloatArray:
         """Integrals ∫₀^θ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(1, self.stages + 1)
         powers = np.asarray(share)[..., None] ** exponents / exponents
-        return self._of_powers(powers)
+        return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
     def double_integrals_at(self, share: float | FloatArray) -> FloatArray:
         """Integrals of the integrals, ∫₀^θ ∫₀^σ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(2, self.stages + 2)
         powers = np.asarray(share)[..., None] ** exponents / (exponents * (exponents - 1))
-        return self._of_powers(powers)
-
-    def _of_powers(self, powers: FloatArray) -> FloatArray:
-        # No product of matrices: it rounds a row by its place among the others.
         return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
 

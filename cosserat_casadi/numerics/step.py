@@ -139,26 +139,25 @@ class HeldTimes:
         used, self._step = np.unique(numbers, return_inverse=True)
         self._steps = [steps[number] for number in used.tolist()]
         self._method, self._differential = self._steps[0].method, self._steps[0].differential
-        self._size = self._of_each([step.size for step in self._steps])
-        self._share = (times - self._of_each([step.start.time for step in self._steps])) / self._size
-        # The end of a step may have been put right.
-        self._arrived = times == self._of_each([step.end.time for step in self._steps])
+        self._sizes = self._of_each([step.size for step in self._steps])
+        self._shares = (times - self._of_each([step.start.time for step in self._steps])) / self._sizes
+        self._at_end = times == self._of_each([step.end.time for step in self._steps])
         self._unknowns = self._of_each([step.unknowns for step in self._steps])
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
         begin = self._of_each([step.start.x for step in self._steps])
         velocity = self._of_each([step.start.v for step in self._steps])
-        moved = self._summed(self._method.double_integrals_at(self._share))
-        displacement = (self._share * self._size)[:, None] * velocity + self._size[:, None] ** 2 * moved
-        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at(self._share)))
+        moved = self._summed(self._method.double_integrals_at(self._shares))
+        displacement = (self._shares * self._sizes)[:, None] * velocity + self._sizes[:, None] ** 2 * moved
+        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at(self._shares)))
         return self._with_ends(x, [step.end.x for step in self._steps])
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
-        gained = self._size[:, None] * self._summed(self._method.integrals_at(self._share))
+        gained = self._sizes[:, None] * self._summed(self._method.integrals_at(self._shares))
         velocities = self._of_each([step.start.v for step in self._steps]) + gained
-        accelerations = self._summed(self._method.values_at(self._share))
+        accelerations = self._summed(self._method.values_at(self._shares))
         v, a = (np.where(self._differential, rates, 0.0) for rates in (velocities, accelerations))
         ends = [step.end for step in self._steps]
         return self._with_ends(v, [end.v for end in ends]), self._with_ends(a, [end.a for end in ends])
@@ -168,12 +167,11 @@ class HeldTimes:
         return np.array(values)[self._step]
 
     def _summed(self, weights: FloatArray) -> FloatArray:
-        """Sums of the unknowns of the stages with weights, shape (T, s) to (T, n)."""
         return np.asarray(np.einsum("ts,tsn->tn", weights, self._unknowns))
 
-    def _with_ends(self, values: FloatArray, arrived: Sequence[FloatArray]) -> FloatArray:
-        """Values, but for times at the ends of steps those ends."""
-        return np.where(self._arrived[:, None], self._of_each(arrived), values)
+    def _with_ends(self, values: FloatArray, ends: Sequence[FloatArray]) -> FloatArray:
+        # The end of a step may have been put right.
+        return np.where(self._at_end[:, None], self._of_each(ends), values)
 
 
 @dataclass(frozen=True)
