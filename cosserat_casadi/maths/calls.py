@@ -93,7 +93,7 @@ def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]
     for number, array in enumerate(results):
         buffer.set_res(number, array.data)
     evaluate()
-    return [_dense(entries.reshape(count, -1), pattern) for entries, pattern in zip(results, patterns, strict=True)]
+    return [_dense(entries.reshape(count, -1), *pattern) for entries, pattern in zip(results, patterns, strict=True)]
 
 
 @lru_cache(maxsize=MOST_MAPPED)
@@ -109,9 +109,8 @@ def _patterns(function: ca.Function) -> list[Pattern]:
     return [(sparsity.shape, *sparsity.get_triplet()) for sparsity in sparsities]
 
 
-def _dense(entries: FloatArray, pattern: Pattern) -> FloatArray:
+def _dense(entries: FloatArray, shape: tuple[int, int], rows: list[int], columns: list[int]) -> FloatArray:
     """Matrices of a pattern from its entries, column after column: shapes (T, nonzeros) to (T, rows, columns)."""
-    shape, rows, columns = pattern
     if len(rows) == shape[0] * shape[1]:
         return entries.reshape(-1, *shape[::-1]).swapaxes(1, 2)
     matrices = np.zeros((len(entries), *shape))

@@ -319,13 +319,13 @@ class History:
         x = np.zeros((len(times), self.model.size))
         inputs = np.zeros((len(times), self.model.inputs.size))
         for leg, rows, held in self._held(times):
+            inputs[rows] = leg.piece.values_at(times[rows])
             if held is None:
                 x[rows] = self.of_model(leg.start.instant).x
                 continue
             own = held.positions()[:, : self.model.size]
             coordinates = self.flight.coordinates
             x[rows] = own if coordinates is None else coordinates.positions_of_model(own)
-            inputs[rows] = leg.piece.values_at(times[rows])
         return x, inputs
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
@@ -581,7 +581,8 @@ def integrated(
                 first = max(SHORTER * first, AT_ONCE * pieces[-1].end)
             settings = replace(settings, first=first)
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
-        settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
+        following = pieces[number].end - pieces[number].start if number < len(pieces) else np.inf
+        settings = replace(settings, first=min(legs[-1].integration.next_size, following))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
     return history()
@@ -706,10 +707,3 @@ def check_start(
         )
         problems.append(Problem("motions", what, AT_REST))
     refuse(problems)
-
-
-def piece_length(pieces: Sequence[Piece], number: int) -> float:
-    """Length of a piece, s; infinite where there is none."""
-    if number >= len(pieces):
-        return float("inf")
-    return pieces[number].end - pieces[number].start

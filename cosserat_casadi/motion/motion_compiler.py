@@ -182,7 +182,9 @@ class MotionCompiler:
         if self.steps_fail:
             return None
         try:
-            if not (self.always or steps_are_at_hand() or self._steps_pay(foreseen)):
+            # What steps in Python have taken on this machine so far counts as what the rest of the search foresees.
+            pays = self.always or steps_are_at_hand() or max(foreseen, tallied(stem_of_steps())) > TO_COMPILE_STEPS
+            if not pays:
                 return None
             steps_library()
         except ExportError:
@@ -191,13 +193,6 @@ class MotionCompiler:
             self.steps_fail = True
             return None
         return CompiledSteps
-
-    def _steps_pay(self, foreseen: float) -> bool:
-        """Whether steps in machine code save more time than they take to compile.
-
-        That is foreseen of the rest of the search, s, or where steps in Python have taken so long on this machine.
-        """
-        return max(foreseen, tallied(stem_of_steps())) > TO_COMPILE_STEPS
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""

@@ -339,7 +339,8 @@ class Simulator:
             first: tolerance of a step to begin with, where steps are controlled.
         """
         if self.simulation.step is not None:
-            return self._with_given_step(self.simulation.step)
+            history = self.stepped(self.simulation.step)
+            return self.told_by_half(history) if history.completed else TimedHistory(history, float("nan"))
         if self.has_equal_steps:
             return self.halved(tolerance)
         return self.tightened(self.controlled(first), first, lambda _: tolerance)
@@ -418,10 +419,6 @@ class Simulator:
         # Of two that are struck elsewhere no error below that of a step is believed.
         error = left * distance if alike else max(left * distance, tolerance)
         return TimedHistory(fine, error, tolerance, Companion(timed.history, left), distance)
-
-    def _with_given_step(self, size: float) -> TimedHistory:
-        history = self.stepped(size)
-        return self.told_by_half(history) if history.completed else TimedHistory(history, float("nan"))
 
     def told_by_half(self, history: History, step_tolerance: float = float("nan")) -> TimedHistory:
         """A motion with the error of its steps by one whose steps are half of its longest.

@@ -8,7 +8,7 @@ Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.7.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -148,26 +148,24 @@ class HeldTimes:
         """Positions and algebraic entries, shape (T, n)."""
         begin = self._of_each([step.start.x for step in self._steps])
         velocity = self._of_each([step.start.v for step in self._steps])
-        moved = self._summed(self._method.double_integrals_at(self._shares))
+        moved = self._summed(self._method.double_integrals_at)
         displacement = (self._shares * self._sizes)[:, None] * velocity + self._sizes[:, None] ** 2 * moved
-        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at(self._shares)))
+        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at))
         return self._with_ends(x, [step.end.x for step in self._steps])
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
-        gained = self._sizes[:, None] * self._summed(self._method.integrals_at(self._shares))
+        gained = self._sizes[:, None] * self._summed(self._method.integrals_at)
         velocities = self._of_each([step.start.v for step in self._steps]) + gained
-        accelerations = self._summed(self._method.values_at(self._shares))
-        v, a = (np.where(self._differential, rates, 0.0) for rates in (velocities, accelerations))
+        v, a = (np.where(self._differential, each, 0.0) for each in (velocities, self._summed(self._method.values_at)))
         ends = [step.end for step in self._steps]
         return self._with_ends(v, [end.v for end in ends]), self._with_ends(a, [end.a for end in ends])
 
     def _of_each(self, values: Sequence[Any]) -> FloatArray:
-        """Values of the steps, for the step of each time."""
         return np.array(values)[self._step]
 
-    def _summed(self, weights: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("ts,tsn->tn", weights, self._unknowns))
+    def _summed(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        return np.asarray(np.einsum("ts,tsn->tn", weights(self._shares), self._unknowns))
 
     def _with_ends(self, values: FloatArray, ends: Sequence[FloatArray]) -> FloatArray:
         # The end of a step may have been put right.
