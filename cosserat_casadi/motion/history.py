@@ -343,7 +343,7 @@ class History:
             first += len(steps)
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
-        """What is computed of the motion up to a duration (s), once by its name: a search asks several times."""
+        """A result for the motion up to a duration, s, computed once under its name: a search asks several times."""
         if (name, duration) not in self._known:
             self._known[name, duration] = computed()
         known: Known = self._known[name, duration]

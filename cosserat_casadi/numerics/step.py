@@ -21,14 +21,14 @@ from cosserat_casadi.numerics.motion_equations import Instant
 
 
 @dataclass(frozen=True)
-class Instants:
-    """T instants side by side, such as those at which a step collocates.
+class Stages:
+    """The instants at which a step collocates, side by side.
 
     Attributes:
-        times: shape (T,), s.
-        x: shape (T, n).
-        v: shape (T, n), 1/s.
-        a: shape (T, n), 1/s².
+        times: t₀ + c_i h, shape (s,), s.
+        x: shape (s, n).
+        v: shape (s, n), 1/s.
+        a: shape (s, n), 1/s².
     """
 
     times: FloatArray
@@ -61,14 +61,14 @@ class StepPolynomial:
         return np.where(self.differential, self.unknowns, 0.0)
 
     @property
-    def stages(self) -> Instants:
+    def stages(self) -> Stages:
         """The instants of the stages."""
         a = self.accelerations
         v = np.where(self.differential, self.start.v + self.size * (self.method.matrix @ a), 0.0)
         straight_on = self.start.x + self.size * self.method.nodes[:, None] * self.start.v
         curved = straight_on + self.size**2 * (self.method.matrix_squared @ a)
         x = np.where(self.differential, curved, self.unknowns)
-        return Instants(self.start.time + self.method.nodes * self.size, x, v, a)
+        return Stages(self.start.time + self.method.nodes * self.size, x, v, a)
 
     def arrival(self, time: float) -> Instant:
         """The end, at its time, s; a method whose last stage is not the end extrapolates accelerations too."""
