@@ -356,7 +356,7 @@ def test_wider_vectors_of_this_machine_change_no_digit(tmp_path: Path, monkeypat
     a, b, begin = np.random.default_rng(0).standard_normal((3, 1000))
     found = []
     for flags in (compiler.FLAGS, compiler.flags_of_machine()):
-        path = compiler.compiled_texts("added", {"added.c": source}, find_compiler(), flags=flags)
+        path = compiler.compiled_texts("added", {"added.c": source}, find_compiler("gcc"), flags=flags)
         added = begin.copy()
         ctypes.CDLL(str(path)).added(*(ctypes.c_void_p(array.ctypes.data) for array in (a, b, added)), len(a))
         found.append(added)
