@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import logging
 import os
+import platform
 import shlex
 import shutil
 import signal
@@ -15,7 +16,8 @@ import threading
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import suppress
-from functools import lru_cache
+from functools import cache, lru_cache
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 
@@ -134,11 +136,25 @@ def compiled_texts(
         return shared_object(name, written, beside, compiler, progress, flags=flags, origin=origin)
 
 
-def compiled_from(name: str, origin: str, compiler: str) -> Path | None:
-    """The library of :func:`compiled_texts` of an origin, where the cache has it; else None."""
+def compiled_from(name: str, origin: str, compiler: str, flags: Sequence[str]) -> Path | None:
+    """The library of :func:`compiled_texts` of an origin and with these flags, where the cache has it; else None."""
     with suppress(OSError):
-        return _compiled_before(name, cache_folder(), _stem(name, compiler, FLAGS, [origin.encode()]))
+        return _compiled_before(name, cache_folder(), _stem(name, compiler, flags, [origin.encode()]))
     return None
+
+
+def flags_of_machine() -> tuple[str, ...]:
+    """:data:`FLAGS` for what runs on this machine alone, with wider vectors if it has them: results are the same."""
+    return (*FLAGS, *_wider_vectors())
+
+
+@cache
+def _wider_vectors() -> tuple[str, ...]:
+    # The first processor stands in the first few lines; of a hundred processors the file is long.
+    with suppress(OSError), Path("/proc/cpuinfo").open() as lines:
+        if platform.machine() == "x86_64" and any("avx2" in line.split() for line in islice(lines, 40)):
+            return ("-mavx2",)
+    return ()
 
 
 def _stem(name: str, compiler: str, flags: Sequence[str], contents: Sequence[bytes]) -> str:

@@ -132,16 +132,13 @@ def printed_files(
     if by_casadi:
         generated = _by_casadi(by_casadi, stem, integer)
         if on_device:
-            generated = {file: _qualified(text) for file, text in generated.items()}
+            # Kernels, and the functions that kernels call, are functions of the device.
+            on_hosts = {file: PROTOTYPE.sub(r"SOLVER_DEVICE \g<0>", text) for file, text in generated.items()}
+            generated = {file: HELPER.sub(r"static \g<0>", text) for file, text in on_hosts.items()}
         text = generated[f"{stem}.c"]
         source = (text if described else HIDDEN.format(text=text)) + source
         header = generated[f"{stem}.h"] + header
     return {f"{stem}.c": prologue + source, f"{stem}.h": header, **sources.included}
-
-
-def _qualified(text: str) -> str:
-    """Text of CasADi whose functions are functions of the device: kernels, and the functions that kernels call."""
-    return HELPER.sub(r"static \g<0>", PROTOTYPE.sub(r"SOLVER_DEVICE \g<0>", text))
 
 
 def _description(kernel: PrintedKernel) -> str:

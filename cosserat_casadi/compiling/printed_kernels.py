@@ -116,14 +116,8 @@ class ColumnForm:
 
     @property
     def columns_argument(self) -> int:
-        """Number of the argument with the matrix of columns."""
+        """Number of the argument with the matrix of columns; the next one has the turns of one column."""
         number: int = self.function.n_in() - 2
-        return number
-
-    @property
-    def turns_argument(self) -> int:
-        """Number of the argument with the turns of one column."""
-        number: int = self.function.n_in() - 1
         return number
 
 

@@ -284,7 +284,9 @@ class _Writing:
         """Whether each value depends on the column."""
         found: list[bool] = []
         for number, value in enumerate(self.listing.values):
-            of_turns = self.form is not None and isinstance(value, Read) and value.argument == self.form.turns_argument
+            of_turns = (
+                self.form is not None and isinstance(value, Read) and value.argument == self.form.columns_argument + 1
+            )
             found.append(of_turns or any(found[operand] for operand in self.listing.operands(number)))
         return found
 

@@ -13,6 +13,9 @@ from cosserat_casadi.maths.typing import FloatArray
 MOST_MAPPED = 64
 """Maps of functions over many arguments that are kept: as many as a few searches for modes ask for."""
 
+Pattern = tuple[tuple[int, int], list[int], list[int]]
+"""Shape of a matrix, and rows and columns of its entries, column after column."""
+
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
 
@@ -84,20 +87,20 @@ def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]
         arguments: in their order, shape (T, entries) each.
     """
     count = len(arguments[0])
-    sparsities = [function.sparsity_out(index) for index in range(function.n_out())]
+    patterns = _patterns(function)
     # CasADi maps over one argument at least; a motion that never started has none.
     if count == 0:
-        return [np.zeros((0, *sparsity.shape)) for sparsity in sparsities]
+        return [np.zeros((0, *shape)) for shape, _, _ in patterns]
     # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
     buffer, evaluate = _mapped(function, count).buffer()
     given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
-    results = [np.zeros(count * sparsity.nnz()) for sparsity in sparsities]
+    results = [np.zeros(count * len(rows)) for _, rows, _ in patterns]
     for number, array in enumerate(given):
         buffer.set_arg(number, array.data)
     for number, array in enumerate(results):
         buffer.set_res(number, array.data)
     evaluate()
-    return [_dense(entries.reshape(count, -1), sparsity) for entries, sparsity in zip(results, sparsities, strict=True)]
+    return [_dense(entries.reshape(count, -1), *pattern) for entries, pattern in zip(results, patterns, strict=True)]
 
 
 @lru_cache(maxsize=MOST_MAPPED)
@@ -106,11 +109,17 @@ def _mapped(function: ca.Function, count: int) -> ca.Function:
     return function.map(count)
 
 
-def _dense(entries: FloatArray, sparsity: ca.Sparsity) -> FloatArray:
+@lru_cache(maxsize=MOST_MAPPED)
+def _patterns(function: ca.Function) -> list[Pattern]:
+    """The patterns of a function's outputs."""
+    sparsities = [function.sparsity_out(index) for index in range(function.n_out())]
+    return [(sparsity.shape, *sparsity.get_triplet()) for sparsity in sparsities]
+
+
+def _dense(entries: FloatArray, shape: tuple[int, int], rows: list[int], columns: list[int]) -> FloatArray:
     """Matrices of a pattern from its entries, column after column: shapes (T, nonzeros) to (T, rows, columns)."""
-    stored_rows, stored_columns = sparsity.get_triplet()
-    if sparsity.is_dense():
-        return entries.reshape(-1, *sparsity.shape[::-1]).swapaxes(1, 2)
-    matrices = np.zeros((len(entries), *sparsity.shape))
-    matrices[:, stored_rows, stored_columns] = entries
+    if len(rows) == shape[0] * shape[1]:
+        return entries.reshape(-1, *shape[::-1]).swapaxes(1, 2)
+    matrices = np.zeros((len(entries), *shape))
+    matrices[:, rows, columns] = entries
     return matrices

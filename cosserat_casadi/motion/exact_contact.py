@@ -305,7 +305,9 @@ class ExactContacts:
             return self._stopped(onset, known, touching)
         laid_now = [touch for touch in touching[len(old) :] if touch.facing in laid - known.laid]
         events = [*known.events, *self._impacts(onset, touching, struck, len(old))]
-        events += [self._event("lie_down", onset.before.time, touch) for touch in _one_of_each(laid_now)]
+        # One contact, the last, of each rod with each obstacle.
+        of_each = {touch.facing: touch for touch in laid_now}.values()
+        events += [self._event("lie_down", onset.before.time, touch) for touch in of_each]
         lost = sum(self._energies(touching, struck))
         after = onset.at(struck.v)
         work = after.kinetic() - onset.kinetic() + lost if onset.driven else 0.0
@@ -466,11 +468,6 @@ class _Known:
     laid: frozenset[int]
     left: Touches = ()
     events: tuple[ContactEvent, ...] = ()
-
-
-def _one_of_each(touches: Sequence[MovingContact]) -> list[MovingContact]:
-    """One contact, the last, of each rod with each obstacle."""
-    return list({touch.facing: touch for touch in touches}.values())
 
 
 def _is_flat(gap: SectionGap) -> bool:

@@ -91,7 +91,8 @@ def most_modes(chosen: Mapping[str, Discretisation]) -> int:
 def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     states = watched_states(history, duration)
-    return _by_strain(history.model, np.abs(states.x).max(axis=0) * displacements(history.model))
+    moved = np.abs(states.x).max(axis=0) * displacements(history.model)
+    return history.once("felt", duration, lambda: _by_strain(history.model, moved))
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
@@ -197,20 +198,19 @@ def last_of(moved: FloatArray) -> float:
     return float(moved[-max(2, len(moved) // LAST) :].max())
 
 
-def lacking(history: History, duration: float, moved_by: ByStrain | None = None) -> float:
+def lacking(history: History, duration: float) -> float:
     """Largest displacement over the length that coefficients would make which a strain of a motion lacks.
 
     Args:
         history: the motion.
         duration: its end, s.
-        moved_by: the displacements of :func:`felt`, where they are known.
     """
-    moved_by = felt(history, duration) if moved_by is None else moved_by
+    moved_by = felt(history, duration)
     further = 0.0
     for name, of_rod in moved_by.items():
         for let_through, moved in zip(_let_through(history.model, name), of_rod, strict=True):
             further = max(further, let_through * REST * len(moved) * last_of(moved))
-    return further + out_of_phase(history, duration, moved_by)
+    return further + history.once("late", duration, lambda: out_of_phase(history, duration, moved_by))
 
 
 def lacking_at_fronts(history: History, duration: float) -> float:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume
@@ -37,8 +39,10 @@ from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
-from cosserat_casadi.numerics.step import CarriedStep, TimeStep, positions_at
+from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
+
+Known = TypeVar("Known")
 
 DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
@@ -104,7 +108,9 @@ def equations_of(
         jacobians = KernelJacobians(kernels.derivatives, inputs_at)
 
     unknowns = model.discrete.unknowns
-    eliminated = np.arange(model.size - unknowns.count(BlockKind.FLOW), model.size)
+    eliminated = kept_with(
+        model, "_eliminated", lambda: np.arange(model.size - unknowns.count(BlockKind.FLOW), model.size)
+    )
     return MotionEquations(unknowns.differential, residual, jacobians, kinks=piece.kinks, eliminated=eliminated)
 
 
@@ -238,12 +244,34 @@ class History:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
         leg, instant = self.locate(time)
         inputs = leg.piece.at(instant.time).value
+        return MotionState(self._closed(leg, instant, inputs), instant.v, instant.a, inputs)
+
+    def states(self, times: FloatArray) -> MotionState:
+        """The states at T times that were reached, as :meth:`at`, a row for each time."""
+        x, v, a = np.empty((3, len(times), self.model.size))
+        inputs = np.empty((len(times), self.model.inputs.size))
+        for leg, rows, held in self._held(times):
+            inputs[rows] = leg.piece.values_at(times[rows])
+            if held is not None and self.flight.coordinates is None:
+                parts = held.positions(), *held.rates()
+                x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
+            for row in np.flatnonzero(rows).tolist():
+                instant = Instant(float(times[row]), x[row], v[row], a[row])
+                if held is None or self.flight.coordinates is not None:
+                    _, instant = self.locate(instant.time)
+                x[row], v[row], a[row] = self._closed(leg, instant, inputs[row]), instant.v, instant.a
+        return MotionState(x, v, a, inputs)
+
+    def _closed(self, leg: Leg, instant: Instant, inputs: FloatArray) -> FloatArray:
+        """Unknowns at an instant of a leg with closed constraints."""
+        if not len(self._closing.rows):
+            return instant.x
         equations = leg.equations or equations_of(self.model, leg.piece)
         near = instant
         if self.steps:
-            _, step = self.steps[self.number_at(time)]
-            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time)))
-        return MotionState(self._closing.closed(instant, inputs, equations, near), instant.v, instant.a, inputs)
+            _, step = self.steps[self.number_at(instant.time)]
+            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - instant.time)))
+        return self._closing.closed(instant, inputs, equations, near)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
@@ -290,38 +318,41 @@ class History:
 
         Between the ends of steps constraints are open there by less than the error of the motion.
         """
-        if not self.steps:
-            leg = self.legs[0]
-            x = np.tile(self.of_model(leg.start.instant).x, (len(times), 1))
-            return x, np.tile(leg.piece.at(leg.start.instant.time).value, (len(times), 1))
         x = np.zeros((len(times), self.model.size))
         inputs = np.zeros((len(times), self.model.inputs.size))
+        for leg, rows, held in self._held(times):
+            inputs[rows] = leg.piece.values_at(times[rows])
+            if held is None:
+                x[rows] = self.of_model(leg.start.instant).x
+                continue
+            own = held.positions()[:, : self.model.size]
+            coordinates = self.flight.coordinates
+            x[rows] = own if coordinates is None else coordinates.positions_of_model(own)
+        return x, inputs
+
+    def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
+        """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
+        if not self.steps:
+            yield self.legs[0], np.ones(len(times), dtype=bool), None
+            return
         numbers = np.minimum(np.searchsorted(self._ends, times), len(self.steps) - 1)
         first = 0
         for leg in self.legs:
             steps = leg.integration.steps
-            held = (first <= numbers) & (numbers < first + len(steps))
-            if np.any(held):
-                of_steps = positions_at(steps, numbers[held] - first, times[held])
-                x[held] = self._positions_of_model(of_steps)
-                inputs[held] = leg.piece.values_at(times[held])
+            rows = (first <= numbers) & (numbers < first + len(steps))
+            if np.any(rows):
+                yield leg, rows, HeldTimes(steps, numbers[rows] - first, times[rows])
             first += len(steps)
-        return x, inputs
 
-    def _positions_of_model(self, positions: FloatArray) -> FloatArray:
-        """Unknowns of the model from positions of steps, (T, n) to (T, size)."""
-        own = positions[:, : self.model.size]
-        coordinates = self.flight.coordinates
-        return own if coordinates is None else coordinates.positions_of_model(own)
-
-    @cached_property
-    def watched_until(self) -> dict[float, Any]:
-        """States at the times at which paths are compared, by the duration up to which they are."""
-        return {}
+    def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
+        """A result for the motion up to a duration, s, computed once under its name: a search asks several times."""
+        if (name, duration) not in self._known:
+            self._known[name, duration] = computed()
+        known: Known = self._known[name, duration]
+        return known
 
     @cached_property
-    def paths_until(self) -> dict[float, Any]:
-        """Paths of tips and bodies by the duration up to which they are compared: several comparisons ask for them."""
+    def _known(self) -> dict[tuple[str, float], Any]:
         return {}
 
     @cached_property
@@ -552,7 +583,8 @@ def integrated(
                 first = max(SHORTER * first, AT_ONCE * pieces[-1].end)
             settings = replace(settings, first=first)
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
-        settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
+        following = pieces[number].end - pieces[number].start if number < len(pieces) else np.inf
+        settings = replace(settings, first=min(legs[-1].integration.next_size, following))
     # A cable may become slack or taut in the very end: there is nothing to go on with.
     legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
     return history()
@@ -677,10 +709,3 @@ def check_start(
         )
         problems.append(Problem("motions", what, AT_REST))
     refuse(problems)
-
-
-def piece_length(pieces: Sequence[Piece], number: int) -> float:
-    """Length of a piece, s; infinite where there is none."""
-    if number >= len(pieces):
-        return float("inf")
-    return pieces[number].end - pieces[number].start

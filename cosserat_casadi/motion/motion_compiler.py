@@ -16,7 +16,7 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.compiling.cache import cache_folder, tallied, tally
-from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler
+from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler, flags_of_machine
 from cosserat_casadi.compiling.description import key_of
 from cosserat_casadi.compiling.scalar_program import ScalarProgram, scalar_program
 from cosserat_casadi.errors import ExportError
@@ -183,7 +183,9 @@ class MotionCompiler:
         if self.steps_fail:
             return None
         try:
-            if not (self.always or steps_are_at_hand() or self._steps_pay(foreseen)):
+            # What steps in Python have taken on this machine so far counts as what the rest of the search foresees.
+            pays = self.always or steps_are_at_hand() or max(foreseen, tallied(stem_of_steps())) > TO_COMPILE_STEPS
+            if not pays:
                 return None
             steps_library()
         except ExportError:
@@ -192,13 +194,6 @@ class MotionCompiler:
             self.steps_fail = True
             return None
         return CompiledSteps
-
-    def _steps_pay(self, foreseen: float) -> bool:
-        """Whether steps in machine code save more time than they take to compile.
-
-        That is foreseen of the rest of the search, s, or where steps in Python have taken so long on this machine.
-        """
-        return max(foreseen, tallied(stem_of_steps())) > TO_COMPILE_STEPS
 
     def _compiled(self, model: Model, name: str) -> RepeatedCall | None:
         """A function in machine code; None where it is not at hand and does not pay."""
@@ -305,7 +300,7 @@ def _in_machine_code(model: Model, name: str, compiler: str, *, write: bool) -> 
 def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | None:
     """The shared object with a function; arguments as of :func:`_in_machine_code`."""
     key = _key(model, name)
-    kept = None if key is None else compiled_from(name, key, compiler)
+    kept = None if key is None else compiled_from(name, key, compiler, flags_of_machine())
     if kept is not None or not write:
         return kept
     # The printer of C is needed here alone, and takes its time to be loaded.
@@ -315,7 +310,7 @@ def _library(model: Model, name: str, compiler: str, *, write: bool) -> Path | N
     texts = external_sources(functions(model), name, "long long int")
     # Sources that changed meanwhile may have written parts of it.
     origin = None if sources_hash() is None else key
-    return compiled_texts(name, texts, compiler, origin=origin)
+    return compiled_texts(name, texts, compiler, flags=flags_of_machine(), origin=origin)
 
 
 def _key(model: Model, name: str) -> str | None:

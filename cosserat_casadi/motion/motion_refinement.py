@@ -437,7 +437,7 @@ def _simulated(
     refuse_tubes(subject)
     scene = subject if simulation is None else subject.model_copy(update={"simulation": simulation})
     moving_scene = scene.baked().with_motion_inputs()
-    ladder = () if scene.accuracy.fixed else _ladder(scene)
+    ladder = () if scene.accuracy.fixed else verified_modes(scene, (FEW_MODES,))
     chosen = _uniform(scene, ladder[0]) if ladder else discretise(scene)
     first = moving_model(moving_scene, chosen)
     simulation = scene.simulation
@@ -474,10 +474,11 @@ def _with_fixed(search: _Search) -> Motion:
     space_error = float("inf")
     if witness.start.found:
         # Its steps are controlled in any case: those of the user may be too long for more modes.
+        step_tolerance = timed.tolerance if np.isfinite(timed.tolerance) else TIME_SHARE * search.tolerance
         history = (
             witness.stepped(timed.history.statistics.largest_step)
             if scene.rubs_exactly
-            else witness.controlled(_step_tolerance(search, timed))
+            else witness.controlled(step_tolerance)
         )
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
@@ -659,11 +660,6 @@ def _given_up(search: _Search, why: str) -> Motion:
     return replace(motion, message=f"{motion.message} {why}")
 
 
-def _ladder(scene: Scene) -> tuple[int, ...]:
-    """Modes of every strain in each element, level by level."""
-    return verified_modes(scene, (FEW_MODES,))
-
-
 def _on_level(search: _Search, simulator: Simulator, modes: int) -> tuple[History, float]:
     """The motion on a level of so many modes, and the tolerance of its steps, over the length; nan of given ones.
 
@@ -715,13 +711,6 @@ def _first_step_tolerance(search: _Search) -> float:
         # Steps that happen to end where a rod meets an obstacle err less than their like.
         return min(first, search.tolerance / TIGHTER)
     return first
-
-
-def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
-    """Tolerance of a step that a motion was computed with; where its steps were given, the paths' share."""
-    if np.isfinite(timed.tolerance):
-        return timed.tolerance
-    return TIME_SHARE * search.tolerance
 
 
 def _timed(search: _Search) -> TimedHistory:
@@ -805,7 +794,7 @@ def _next_modes(search: _Search, modes: int) -> tuple[dict[str, Discretisation] 
     moved_by = felt(history, search.simulation.duration)
     # Sections find contact, and more modes have more of them.
     if not search.scene.has_contact:
-        left = lacking(history, search.simulation.duration, moved_by)
+        left = lacking(history, search.simulation.duration)
         if max(left, search.last.fronts) <= SPACE_SHARE * search.tolerance:
             return None, left
     fronts = at_fronts(history, search.simulation.duration) if search.last.waves else {}

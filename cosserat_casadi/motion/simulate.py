@@ -313,11 +313,8 @@ class Simulator:
     def paths(self, history: History) -> Paths:
         """Paths of tips and bodies, by which two motions are compared."""
         duration = self.simulation.duration
-        if duration not in history.paths_until:
-            states = watched_states(history, duration)
-            history.paths_until[duration] = paths(self.model, states.x, states.inputs, self.library)
-        known: Paths = history.paths_until[duration]
-        return known
+        states = watched_states(history, duration)
+        return history.once("paths", duration, lambda: paths(self.model, states.x, states.inputs, self.library))
 
     def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:
         """The motion on this model to an error of its steps.
@@ -327,7 +324,8 @@ class Simulator:
             first: tolerance of a step to begin with, where steps are controlled.
         """
         if self.simulation.step is not None:
-            return self._with_given_step(self.simulation.step)
+            history = self.stepped(self.simulation.step)
+            return self.told_by_half(history) if history.completed else TimedHistory(history, float("nan"))
         if self.has_equal_steps:
             return self.halved(tolerance)
         return self.tightened(self.controlled(first), first, lambda _: tolerance)
@@ -406,10 +404,6 @@ class Simulator:
         # Of two that are struck elsewhere no error below that of a step is believed.
         error = left * distance if alike else max(left * distance, tolerance)
         return TimedHistory(fine, error, tolerance, Companion(timed.history, left), distance)
-
-    def _with_given_step(self, size: float) -> TimedHistory:
-        history = self.stepped(size)
-        return self.told_by_half(history) if history.completed else TimedHistory(history, float("nan"))
 
     def told_by_half(self, history: History, step_tolerance: float = float("nan")) -> TimedHistory:
         """A motion with the error of its steps by one whose steps are half of its longest.
@@ -761,11 +755,7 @@ def motion_of(
     times = wanted[(history.begin <= wanted) & (wanted <= history.end.time)]
     if history.stopped is not None:
         times = np.union1d(times, history.end.time)
-    x, v, a = (np.empty((len(times), model.size)) for _ in range(3))
-    inputs = np.empty((len(times), model.inputs.size))
-    for row, time in enumerate(times.tolist()):
-        state = history.at(time)
-        x[row], v[row], a[row], inputs[row] = state.x, state.v, state.a, state.inputs
+    states = history.states(times)
     duration = simulator.simulation.duration
     others = [one for one in companions if one is not None and one.history.completed]
     strands = [_strand(Companion(history, 0.0))]
@@ -776,10 +766,10 @@ def motion_of(
         outcome=outcome,
         message=message,
         times=times,
-        x=x,
-        v=v,
-        a=a,
-        inputs=inputs,
+        x=states.x,
+        v=states.v,
+        a=states.a,
+        inputs=states.inputs,
         error_estimate=error,
         statistics=history.statistics,
         start=simulator.start.sentence,

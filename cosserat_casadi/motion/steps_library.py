@@ -8,7 +8,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from cosserat_casadi.compiling.c_tables import initialiser, method_words, pairs
-from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler
+from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler, flags_of_machine
 from cosserat_casadi.compiling.scalar_program import cases_in_c
 from cosserat_casadi.compiling.shared_records import POINTER
 from cosserat_casadi.compiling.texts import render, resource
@@ -61,7 +61,8 @@ def steps_library() -> ctypes.CDLL:
     Raises:
         ExportError: there is no compiler, or it fails.
     """
-    path = compiled_texts(NAME, _texts(), find_compiler(), included={"stage_newton.c"}, origin=_origin())
+    flags = flags_of_machine()
+    path = compiled_texts(NAME, _texts(), find_compiler(), {"stage_newton.c"}, flags=flags, origin=_origin())
     library = ctypes.CDLL(str(path))
     assert library.steps_record() == ctypes.sizeof(StepsRecord), "the record differs from that of the C"
     library.steps_taken.argtypes = [ctypes.POINTER(StepsRecord)]
@@ -76,7 +77,7 @@ def steps_are_at_hand() -> bool:
     """
     if steps_are_loaded():
         return True
-    return compiled_from(NAME, _origin(), find_compiler()) is not None
+    return compiled_from(NAME, _origin(), find_compiler(), flags_of_machine()) is not None
 
 
 def steps_are_loaded() -> bool:

@@ -66,12 +66,13 @@ class WatchedStates(NamedTuple):
 
 def watched_states(history: History, duration: float) -> WatchedStates:
     """The states of a motion at the times at which it is compared with another one of a duration, s."""
-    if duration not in history.watched_until:
+
+    def states() -> WatchedStates:
         times = np.linspace(history.begin, duration, WATCHED)
         times = times[times <= history.end.time]
-        history.watched_until[duration] = WatchedStates(times, *history.rough_positions(times))
-    known: WatchedStates = history.watched_until[duration]
-    return known
+        return WatchedStates(times, *history.rough_positions(times))
+
+    return history.once("watched states", duration, states)
 
 
 def function_of_paths(model: Model) -> ca.Function:

@@ -64,19 +64,20 @@ class Collocation:
     def values_at(self, share: float | FloatArray) -> FloatArray:
         """Lagrange polynomials ℓ_j at a share θ of the step, shape (s,), or at k shares, shape (k, s)."""
         powers = np.asarray(share)[..., None] ** np.arange(self.stages)
-        return np.asarray(powers @ self.polynomials)
+        # No product of matrices: it rounds a row by its place among the others.
+        return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
-    def integrals_at(self, share: float) -> FloatArray:
-        """Integrals ∫₀^θ ℓ_j, shape (s,)."""
+    def integrals_at(self, share: float | FloatArray) -> FloatArray:
+        """Integrals ∫₀^θ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(1, self.stages + 1)
-        powers = share**exponents / exponents
-        return np.asarray(powers @ self.polynomials)
+        powers = np.asarray(share)[..., None] ** exponents / exponents
+        return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
     def double_integrals_at(self, share: float | FloatArray) -> FloatArray:
         """Integrals of the integrals, ∫₀^θ ∫₀^σ ℓ_j, shape (s,), or at k shares, shape (k, s)."""
         exponents = np.arange(2, self.stages + 2)
         powers = np.asarray(share)[..., None] ** exponents / (exponents * (exponents - 1))
-        return np.asarray(powers @ self.polynomials)
+        return np.asarray(np.einsum("...k,kj->...j", powers, self.polynomials))
 
 
 @cache

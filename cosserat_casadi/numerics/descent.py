@@ -144,7 +144,9 @@ def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSet
             return x
 
         step = model.step(radius, side)
-        agreement = _agreement(model.change(step), energy.change(x, step))
+        foreseen, actual = model.change(step), energy.change(x, step)
+        # Where no decrease is foreseen, or a number is not finite, none has come about.
+        agreement = actual / foreseen if foreseen < 0.0 and np.isfinite(actual) else -1.0
         if agreement > ACCEPT_ABOVE:
             x = x + step
             # A refused step leaves the model as it is: only the ball shrinks.
@@ -158,13 +160,6 @@ def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSet
         if radius < settings.shortest:
             return None
     return None
-
-
-def _agreement(foreseen: float, actual: float) -> float:
-    """Share of the foreseen decrease that has come about; −1 where none was foreseen or a number is not finite."""
-    if foreseen < 0.0 and np.isfinite(actual):
-        return actual / foreseen
-    return -1.0
 
 
 def _quadratic_model(energy: Energy, x: FloatArray, tolerance: float) -> _QuadraticModel | None:

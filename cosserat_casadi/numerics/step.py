@@ -8,8 +8,9 @@ Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.7.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -123,8 +124,8 @@ class TimeStep(StepPolynomial):
         return self.at_share((time - self.start.time) / self.size, time)
 
 
-def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> FloatArray:
-    """Positions and algebraic entries at T times by the polynomials of the steps that hold them, shape (T, n).
+class HeldTimes:
+    """T times in the steps that hold them, with the motion there by the polynomials of these steps.
 
     :meth:`TimeStep.at` computes the same numbers for one time.
 
@@ -133,28 +134,42 @@ def positions_at(steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times
         numbers: which of the steps holds each time, shape (T,).
         times: shape (T,), s.
     """
-    method = steps[0].method
-    differential = steps[0].differential
-    of_step = {
-        "begin": np.array([step.start.time for step in steps]),
-        "size": np.array([step.size for step in steps]),
-        "end": np.array([step.end.time for step in steps]),
-        "x": np.array([step.start.x for step in steps]),
-        "v": np.array([step.start.v for step in steps]),
-        "arrived": np.array([step.end.x for step in steps]),
-        "unknowns": np.array([step.unknowns for step in steps]),
-    }
-    of_time = {name: values[numbers] for name, values in of_step.items()}
-    sizes = of_time["size"]
-    shares = (times - of_time["begin"]) / sizes
-    accelerations = np.where(differential, of_time["unknowns"], 0.0)
-    values = np.einsum("ts,tsn->tn", method.values_at(shares), of_time["unknowns"])
-    moved = np.einsum("ts,tsn->tn", method.double_integrals_at(shares), accelerations)
-    displacement = (shares * sizes)[:, None] * of_time["v"] + sizes[:, None] ** 2 * moved
-    x = np.where(differential, of_time["x"] + displacement, values)
-    # The end of a step may have been put right.
-    at_end = times == of_time["end"]
-    return np.where(at_end[:, None], of_time["arrived"], x)
+
+    def __init__(self, steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
+        used, self._step = np.unique(numbers, return_inverse=True)
+        self._steps = [steps[number] for number in used.tolist()]
+        self._method, self._differential = self._steps[0].method, self._steps[0].differential
+        self._sizes = self._of_each([step.size for step in self._steps])
+        self._shares = (times - self._of_each([step.start.time for step in self._steps])) / self._sizes
+        self._at_end = times == self._of_each([step.end.time for step in self._steps])
+        self._unknowns = self._of_each([step.unknowns for step in self._steps])
+
+    def positions(self) -> FloatArray:
+        """Positions and algebraic entries, shape (T, n)."""
+        begin = self._of_each([step.start.x for step in self._steps])
+        velocity = self._of_each([step.start.v for step in self._steps])
+        moved = self._summed(self._method.double_integrals_at)
+        displacement = (self._shares * self._sizes)[:, None] * velocity + self._sizes[:, None] ** 2 * moved
+        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at))
+        return self._with_ends(x, [step.end.x for step in self._steps])
+
+    def rates(self) -> tuple[FloatArray, FloatArray]:
+        """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
+        gained = self._sizes[:, None] * self._summed(self._method.integrals_at)
+        velocities = self._of_each([step.start.v for step in self._steps]) + gained
+        v, a = (np.where(self._differential, each, 0.0) for each in (velocities, self._summed(self._method.values_at)))
+        ends = [step.end for step in self._steps]
+        return self._with_ends(v, [end.v for end in ends]), self._with_ends(a, [end.a for end in ends])
+
+    def _of_each(self, values: Sequence[Any]) -> FloatArray:
+        return np.array(values)[self._step]
+
+    def _summed(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        return np.asarray(np.einsum("ts,tsn->tn", weights(self._shares), self._unknowns))
+
+    def _with_ends(self, values: FloatArray, ends: Sequence[FloatArray]) -> FloatArray:
+        # The end of a step may have been put right.
+        return np.where(self._at_end[:, None], self._of_each(ends), values)
 
 
 @dataclass(frozen=True)

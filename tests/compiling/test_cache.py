@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
 import subprocess
@@ -11,8 +12,9 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import ExportError, build, discretise, export, load
 from cosserat_casadi.compiling import cache, compiler
@@ -22,6 +24,7 @@ from cosserat_casadi.compiling.cache import (
     MOST_TALLIED,
     OURS,
     SCRATCH,
+    VARIABLE,
     cache_folder,
     content_hash,
     keep_within,
@@ -341,3 +344,21 @@ def test_a_user_without_a_home_keeps_nothing(monkeypatch: pytest.MonkeyPatch) ->
     folder = cache_folder()
     assert folder.is_dir()
     assert folder.is_relative_to(tempfile.gettempdir())
+
+
+@needs_compiler
+def test_wider_vectors_of_this_machine_change_no_digit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A product and a sum that were rounded as one would differ in the last digit, of some of so many numbers."""
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    source = """void added(const double *a, const double *b, double *c, int n) {
+  for (int i = 0; i < n; i++) c[i] += a[i] * b[i];
+}"""
+    a, b, begin = np.random.default_rng(0).standard_normal((3, 1000))
+    found = []
+    for flags in (compiler.FLAGS, compiler.flags_of_machine()):
+        path = compiler.compiled_texts("added", {"added.c": source}, find_compiler("gcc"), flags=flags)
+        added = begin.copy()
+        ctypes.CDLL(str(path)).added(*(ctypes.c_void_p(array.ctypes.data) for array in (a, b, added)), len(a))
+        found.append(added)
+    assert_array_equal(found[1], found[0])
+    assert compiler.flags_of_machine()[: len(compiler.FLAGS)] == compiler.FLAGS

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import History
@@ -74,6 +74,13 @@ def test_all_at_once_vs_one_by_one(scene: Any) -> None:
     expected_x, expected_inputs = one_by_one(history, times)
     assert_allclose(x, expected_x, rtol=1e-13, atol=1e-15)
     assert_allclose(inputs, expected_inputs, rtol=1e-13, atol=1e-15)
+    states = history.states(times)
+    rates = [(instant.v, instant.a) for _, instant in (history.locate(float(time)) for time in times)]
+    assert_allclose(states.v, [v for v, _ in rates], rtol=1e-12, atol=1e-13)
+    assert_allclose(states.a, [a for _, a in rates], rtol=1e-12, atol=1e-11)
+    # The other times change nothing, to the last digit; constraints are closed at each.
+    assert_array_equal(history.at(float(times[4])).x, states.x[4])
+    assert_allclose(states.x, x, rtol=0, atol=1e-3)
 
 
 def test_a_motion_that_has_no_step_has_its_start() -> None:
