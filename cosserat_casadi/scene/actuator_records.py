@@ -132,7 +132,7 @@ offset = [1.5e-3, 0.0]
     inputs: ClassVar[Mapping[str, InputField]] = {
         "tension": InputField("N", 1, lower=0.0),
         "length": InputField("m", 1, positive=True, continuous=True, nonlinear=True),
-        "pull": InputField("1", 1, lower=-1.0, on_request=True, nonlinear=True),
+        "pull": InputField("1", 1, lower=-1.0, upper=1.0, on_request=True, nonlinear=True),
     }
 
     kind: Literal["tendon"] = Field(description="cable led along the rod")
