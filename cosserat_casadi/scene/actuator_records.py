@@ -50,6 +50,11 @@ class ActuatorRecord(Entry):
         kind: str  # each member declares these two itself, where they stand among its keys
         rod: str
 
+    @property
+    def has_kinks(self) -> bool:
+        """Whether its pull may have a kink in its slope anywhere along the rod."""
+        return False
+
 
 ACTUATORS: Family[ActuatorRecord] = Family("actuators")
 """Kinds of actuators."""
@@ -203,6 +208,11 @@ offset = [1.5e-3, 0.0]
         if "holes" in given and table_of(scene.get("accuracy")).get("rotation") == "permuted":
             problem = "does not go with accuracy.rotation = 'permuted'"
             yield Fault(("holes",), problem, "use a product of exponentials, or a continuous course")
+
+    @property
+    def has_kinks(self) -> bool:
+        """A continuous cable that rubs has one where it is straight."""
+        return self.friction > 0.0 and self.holes is None
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
