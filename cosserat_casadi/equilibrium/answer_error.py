@@ -295,8 +295,8 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         # What the missing modes would do next tells of the first step whether they bounce; the next step may be short
         # by chance then, and is not believed either.
         bounces = before is None and not _contracts(missing_step, balance.missing_step)
-        contracts = not (bounces or bounced)
-        yield Correction(known, missing, change_with_following(solution, balance, following), contracts)
+        change = change_with_following(solution, balance, following)
+        yield Correction(known, missing, change, contracts=not (bounces or bounced))
         before = missing_step
         bounced = bounces
 

@@ -538,12 +538,11 @@ class DiscreteScene:
         """This scene with modes and intervals added, on which the error of an answer shows."""
         nominal = self.nominal
         modes = signal_modes(nominal.scene)
-        touches = bool(nominal.scene.obstacles or self.pairs)
         discretisation = {
             name: enriched(
                 rod.discretisation,
                 modes,
-                nodes_above_modes(nominal.scene, name, touches=touches),
+                nodes_above_modes(nominal.scene, name, touches=bool(nominal.scene.obstacles or self.pairs)),
                 in_layers=name in self.pressed_rods,
             )
             for name, rod in self.rods.items()

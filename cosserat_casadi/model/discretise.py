@@ -120,13 +120,7 @@ def nodes_for(modes: int) -> int:
 
 
 def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
-    """Intervals beyond the modes of a strain on which the error of the answer of a rod shows.
-
-    Args:
-        scene: the scene.
-        rod: name of the rod.
-        touches: whether the scene has obstacles, or rods that touch each other.
-    """
+    """Intervals beyond the modes of a strain on which the error of a rod shows, which touches something or nothing."""
     if any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators):
         return NODES_ABOVE_MODES_BESIDE_KINKS
     return NODES_ABOVE_MODES_IN_CONTACT if touches else NODES_ABOVE_MODES
