@@ -210,7 +210,7 @@ def _faults_of_ends(where: str, name: str, pairs: FloatArray) -> Iterator[Proble
 
 
 def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:
-    """Ranges of the entries that the scene, or what they are, bounds on both sides."""
+    """Ranges of the entries that their physics or the scene bounds on both sides."""
     lower, upper = narrowed(layout.inputs, scene.bounds)
     least, most = physical_range(layout.inputs)
     both = np.flatnonzero(np.isfinite(lower) & np.isfinite(upper) & (lower < upper))
