@@ -27,7 +27,7 @@ from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
-from cosserat_casadi.model.input_bounds import limits_of, narrowed
+from cosserat_casadi.model.input_bounds import limits_of, narrowed, physical_range
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
 from cosserat_casadi.model.unknowns import BlockKind
@@ -66,6 +66,7 @@ class Origin(Enum):
     RANGES = "[ranges]"
     CHOSEN_FOR = "accuracy.chosen_for"
     BOUNDS = "[[bounds]]"
+    PHYSICS = "all that it can be"
     TURN = "turns a rod by about a radian"
     LENGTH = "a tenth of the length"
     GRAVITY = "gravity in any direction"
@@ -209,10 +210,16 @@ def _faults_of_ends(where: str, name: str, pairs: FloatArray) -> Iterator[Proble
 
 
 def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:
-    """Ranges of the entries that the scene bounds on both sides."""
+    """Ranges of the entries that their physics or the scene bounds on both sides."""
     lower, upper = narrowed(layout.inputs, scene.bounds)
+    least, most = physical_range(layout.inputs)
     both = np.flatnonzero(np.isfinite(lower) & np.isfinite(upper) & (lower < upper))
-    return {k: (float(lower[k]), float(upper[k]), Origin.BOUNDS) for k in both.tolist()}
+    found: Entries = {}
+    for k in both.tolist():
+        is_narrowed = lower[k] > least[k] or upper[k] < most[k]
+        origin = Origin.BOUNDS if is_narrowed else Origin.PHYSICS
+        found[k] = (float(lower[k]), float(upper[k]), origin)
+    return found
 
 
 def _scales(scene: scenes.Scene, layout: CaseLayout, entries: Sequence[int]) -> Entries:

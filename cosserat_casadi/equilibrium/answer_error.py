@@ -94,8 +94,9 @@ class Correction:
         known: change of the unknowns of the answer, shape (n,).
         missing: coordinates of the missing modes, shape (missing,).
         change: change of the watched poses and lengths.
-        contracts: whether the missing modes moved by at most half of their step before. A wall that they run into is
-            not in their stiffness: then they bounce, and watched poses may settle by chance.
+        contracts: whether the missing modes moved by at most half of their step before, and would have before the
+            unknowns of the answer followed. A wall that they run into is not in their stiffness: then they bounce, and
+            watched poses may settle by chance.
         settled: whether the correction before it gave about the same change.
     """
 
@@ -288,6 +289,7 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
     known = np.zeros(model.size)
     missing = np.zeros(model.discrete.richer.missing_size)
     before = None
+    bounced = False
     for _ in range(MOST_SWEEPS):
         lacking = richer_balance(solution, known, missing)
         missing_step = lacking.missing_step
@@ -298,10 +300,13 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         balance = richer_balance(solution, known, missing)
         following = _following(solution, inverse, balance.residual)
         known = known + following
-        # What the missing modes would do next tells of the first step whether they bounce.
-        contracts = before is not None or _contracts(missing_step, balance.missing_step)
-        yield Correction(known, missing, change_with_following(solution, balance, following), contracts)
+        # What the missing modes would do next tells of the first step whether they bounce; the next step may be short
+        # by chance then, and is not believed either.
+        bounces = before is None and not _contracts(missing_step, balance.missing_step)
+        change = change_with_following(solution, balance, following)
+        yield Correction(known, missing, change, contracts=not (bounces or bounced))
         before = missing_step
+        bounced = bounces
 
 
 def inverse_jacobian(solution: Solution) -> FloatArray:

@@ -33,7 +33,7 @@ from cosserat_casadi.model.contact_layers import (
     share_of_more_modes,
 )
 from cosserat_casadi.model.contact_pairs import ContactPair, contact_pairs, history_size
-from cosserat_casadi.model.discretise import enriched
+from cosserat_casadi.model.discretise import enriched, nodes_above_modes
 from cosserat_casadi.model.element_ends import moved_ends
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -542,7 +542,7 @@ class DiscreteScene:
             name: enriched(
                 rod.discretisation,
                 modes,
-                meets_obstacles=bool(nominal.scene.obstacles or self.pairs),
+                nodes_above_modes(nominal.scene, name, touches=bool(nominal.scene.obstacles or self.pairs)),
                 in_layers=name in self.pressed_rods,
             )
             for name, rod in self.rods.items()

@@ -36,6 +36,9 @@ NODES_ABOVE_MODES = 3
 NODES_ABOVE_MODES_IN_CONTACT = 8
 """Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""
 
+NODES_ABOVE_MODES_BESIDE_KINKS = 12
+"""Intervals beyond the modes of a strain where the pull of a cable has a kink: the error of intervals falls slowly."""
+
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
 
@@ -116,21 +119,27 @@ def nodes_for(modes: int) -> int:
     return 2 * modes + 2
 
 
+def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
+    """Intervals beyond the modes of a strain on which the error of a rod shows, which touches something or nothing."""
+    if any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators):
+        return NODES_ABOVE_MODES_BESIDE_KINKS
+    return NODES_ABOVE_MODES_IN_CONTACT if touches else NODES_ABOVE_MODES
+
+
 def enriched(
-    discretisation: Discretisation, signal_modes: int, *, meets_obstacles: bool, in_layers: bool = False
+    discretisation: Discretisation, signal_modes: int, above_modes: int, *, in_layers: bool = False
 ) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
         discretisation: of a rod.
         signal_modes: modes below which a rod is blind to what the scene puts along it.
-        meets_obstacles: whether the scene has obstacles.
+        above_modes: intervals beyond the modes, of :func:`nodes_above_modes`.
         in_layers: whether layers press the rod.
     """
     added = ADDED_MODES_IN_LAYERS if in_layers else ADDED_MODES
     modes = tuple(max(count + added, signal_modes) for count in discretisation.modes)
-    nodes_above_modes = NODES_ABOVE_MODES_IN_CONTACT if meets_obstacles else NODES_ABOVE_MODES
-    nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + nodes_above_modes)
+    nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + above_modes)
     transport = discretisation.transport
     if nodes < ENOUGH_GROWTH * discretisation.nodes:
         transport = NEXT_ORDER.get(transport, transport)

@@ -199,7 +199,7 @@ class MotionTangent:
             part = part[rows, :]
         if columns is not None:
             part = part[:, columns]
-        gram = part if is_symbolic(part) else ca.DM(known(part))
+        gram = as_matrix(part)
         # Transposed: the printer's sums then run along the columns of the unknowns, as in the products around this one.
         return ca.horzcat(*[component @ gram.T for component in ca.horzsplit(fields.T, gram.shape[1])]).T
 

@@ -50,6 +50,11 @@ class ActuatorRecord(Entry):
         kind: str  # each member declares these two itself, where they stand among its keys
         rod: str
 
+    @property
+    def has_kinks(self) -> bool:
+        """Whether its pull may have a kink in its slope anywhere along the rod."""
+        return False
+
 
 ACTUATORS: Family[ActuatorRecord] = Family("actuators")
 """Kinds of actuators."""
@@ -132,7 +137,7 @@ offset = [1.5e-3, 0.0]
     inputs: ClassVar[Mapping[str, InputField]] = {
         "tension": InputField("N", 1, lower=0.0),
         "length": InputField("m", 1, positive=True, continuous=True, nonlinear=True),
-        "pull": InputField("1", 1, lower=-1.0, on_request=True, nonlinear=True),
+        "pull": InputField("1", 1, lower=-1.0, upper=1.0, on_request=True, nonlinear=True),
     }
 
     kind: Literal["tendon"] = Field(description="cable led along the rod")
@@ -203,6 +208,11 @@ offset = [1.5e-3, 0.0]
         if "holes" in given and table_of(scene.get("accuracy")).get("rotation") == "permuted":
             problem = "does not go with accuracy.rotation = 'permuted'"
             yield Fault(("holes",), problem, "use a product of exponentials, or a continuous course")
+
+    @property
+    def has_kinks(self) -> bool:
+        """A continuous cable that rubs has one where it is straight."""
+        return self.friction > 0.0 and self.holes is None
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:

@@ -22,6 +22,7 @@ class InputField:
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
         lower: least value that physics allows each number; None without a bound.
+        upper: largest value that physics allows each number, whatever its table says; None without a bound.
         axes: axes of the components: "none" of a number, "world", "section", or "frame" for the axes that the
             record's own ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
@@ -38,6 +39,7 @@ class InputField:
     positive: bool = False
     nonzero: bool = False
     lower: float | None = None
+    upper: float | None = None
     axes: Literal["none", "world", "section", "frame"] = "none"
     geometry: bool = False
     continuous: bool = False

@@ -141,17 +141,19 @@ def _path_faults(motion: InputMotion, declared: InputField, duration: float) -> 
 
 
 def _range_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
-    """The only motion of an input takes it where it cannot be: a length to zero, a tension below it."""
+    """The only motion of an input takes it where it cannot be: a length to zero, a tension below it, a pull above 1."""
     declared = moving.declared
     key = "values" if motion.is_table else "amplitude"
     if declared.nonzero and motion.is_table and not np.all(np.any(motion.knot_values, axis=1)):
         yield Fault((key,), "must not be zero", "w, x, y, z; its norm does not matter")
-    least = _least(motion, moving)
+    least, most = _extremes(motion, moving)
+    unit = "" if declared.unit == "1" else f" {declared.unit}"
     if declared.positive and least <= 0.0:
-        yield Fault((key,), f"{motion.input} must stay > 0, and goes to {least:g} {declared.unit}")
+        yield Fault((key,), f"{motion.input} must stay > 0, and goes to {least:g}{unit}")
     elif declared.lower is not None and least < declared.lower:
-        problem = f"{motion.input} must stay >= {declared.lower:g}, and goes to {least:g} {declared.unit}"
-        yield Fault((key,), problem)
+        yield Fault((key,), f"{motion.input} must stay >= {declared.lower:g}, and goes to {least:g}{unit}")
+    if declared.upper is not None and most > declared.upper:
+        yield Fault((key,), f"{motion.input} must stay <= {declared.upper:g}, and goes to {most:g}{unit}")
 
 
 def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterator[Fault]:
@@ -195,15 +197,17 @@ def _zero_faults(motions: Mapping[int, InputMotion], duration: float) -> Iterato
     yield Fault(("motions", first, "values"), problem, remedy)
 
 
-def _least(motion: InputMotion, moving: _Moving) -> float:
-    """Least value that an input of one number has on its path, at the times of a table; infinite where it has none."""
+def _extremes(motion: InputMotion, moving: _Moving) -> tuple[float, float]:
+    """Least and largest value of an input of one number on its path, at the times of a table; infinite without any."""
     if motion.is_table:
-        return float(motion.knot_values.min())
+        return float(motion.knot_values.min()), float(motion.knot_values.max())
     start = numbers_of(moving.table.get(moving.field))
     if len(start) != 1:
-        return np.inf
-    # 1 − cos goes from 0 to 2.
+        return np.inf, -np.inf
     lowest = -abs(motion.amplitudes)
+    highest = abs(motion.amplitudes)
+    # 1 − cos goes from 0 to 2.
     if motion.wave == "one_minus_cosine":
         lowest = np.minimum(2 * motion.amplitudes, 0.0)
-    return start[0] + float(lowest.min())
+        highest = np.maximum(2 * motion.amplitudes, 0.0)
+    return start[0] + float(lowest.min()), start[0] + float(highest.max())

@@ -170,7 +170,8 @@ class Entry(Record):
 
     def input_upper(self, field: str) -> float:
         """Largest value that physics allows each number of a free field; inf where there is none."""
-        return math.inf
+        upper = self.inputs[field].upper
+        return math.inf if upper is None else upper
 
 
 class HashedTable(dict[str, Any]):

@@ -156,6 +156,7 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
   const int is_old = jacobian != 0;
   real change_before = -1;
   real step_before = -1;
+  int bounced = 0;
   if (is_old) {
     end_updates(jacobian);
   } else {
@@ -176,12 +177,16 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
     /* An old Jacobian that is far from that of the answer tells nothing. */
     if (is_old && !(shortening <= ERROR_FOLLOWED)) return estimated_error(x, inputs, 0, work);
     if (!isfinite(change)) break;
+    /* Where the first step bounces the next one may be short by chance: neither is believed. */
+    const int bounces = is_first && !contracts(step, next);
+    const int believed = !bounces && !bounced;
     const int settled = !is_first && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
-    if (settled) {
+    if (believed && settled) {
       return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x);
     }
     /* A look that leaves the answer within its tolerance need not be repeated. */
-    if (change <= ERROR_ENOUGH && (!is_first || contracts(step, next))) return ERROR_FIRST_LOOK * change + least_error(x);
+    if (believed && change <= ERROR_ENOUGH) return ERROR_FIRST_LOOK * change + least_error(x);
+    bounced = bounces;
     change_before = change;
     step_before = step;
   }

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict
+from cosserat_casadi.accuracy.ranges import Origin, input_ranges
 from tests.equilibria import solve
 from tests.families import mostly_slow
 from tests.moving_scenes import DAMPING, drawn_state, symbols_of
@@ -139,6 +140,18 @@ def test_direction_of_the_last_pull_is_an_input() -> None:
     assert_allclose(free.residual(x, [8.0, 0.0]).full(), without.residual(x, [8.0]).full(), rtol=1e-13, atol=1e-13)
     assert [free.has_potential(np.array(u)) for u in ([8.0, 1.0], [8.0, 0.0], [0.0, 1.0])] == [False, True, True]
     assert free.potential is None
+
+
+def test_the_direction_of_the_last_pull_stays_within_in_and_out() -> None:
+    free = ["cable.tension", "cable.pull"]
+    told = dict(input_ranges(with_tendon(inputs=free)).with_origins())
+    assert told["cable.pull=-1:1"] is Origin.PHYSICS
+    beyond = {"input": "cable.pull", "times": [0.0, 1.0], "values": [-1.0, 1.1]}
+    with pytest.raises(SceneError, match=r"values: cable\.pull must stay <= 1, and goes to 1\.1$"):
+        scene(strain="kirchhoff", actuators=[tendon()], inputs=free, motions=[beyond])
+    wave = {"input": "cable.pull", "amplitude": 0.3, "frequency": 1.0, "wave": "one_minus_cosine"}
+    with pytest.raises(SceneError, match=r"amplitude: cable\.pull must stay <= 1, and goes to 1\.1$"):
+        scene(strain="kirchhoff", actuators=[tendon(pull=0.5)], inputs=free, motions=[wave])
 
 
 def test_without_friction_nothing_is_added() -> None:

@@ -73,7 +73,11 @@ def test_every_operation() -> None:
     function = every_operation()
     written = {function.instruction_id(k) for k in range(function.n_instructions())}
     missing = {*BINARY, *FUNCTIONS, *CHOICES, *REWRITTEN} - written
-    assert missing <= {ca.OP_CONSTPOW, ca.OP_POW}, missing
+    unwritten = {ca.OP_CONSTPOW, ca.OP_POW}
+    # CasADi before 3.8 writes 2 a as a product.
+    if ca.__version__.startswith("3.7."):
+        unwritten.add(ca.OP_TWICE)
+    assert missing <= unwritten, missing
     given = lanes(2)
     given[3, 1] = given[3, 0]
     assert_allclose(run(function, given), by_casadi(function, given), rtol=ROUNDING, atol=0)

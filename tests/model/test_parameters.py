@@ -608,6 +608,18 @@ def test_equations_of_motion_are_those_of_a_scene_of_its_own(case: str) -> None:
     assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
 
 
+def test_motion_of_a_length_that_is_bound_is_that_of_the_argument() -> None:
+    """Disks end elements, whose masses are expressions without a symbol where the length is bound."""
+    disk = {"rod": "wire", "at": [0.3, 0.8], "mass": 0.01, "radius": 0.02}
+    model = resolved(scene_from_dict(tables(WIRE, "wire.length", disks=[disk])))
+    x, v, a, inputs, still = point(model)
+    p = 1.01 * model.parameters.pack()
+    found = model.at(p).dynamics_jacobian(x, v, a, inputs, still, still)
+    for own, other in zip(found, model.dynamics_jacobian(x, v, a, inputs, p, still, still), strict=True):
+        wanted = other.full()
+        assert_allclose(own.full(), wanted, rtol=0, atol=1e-12 * max(np.abs(wanted).max(), 1e-9))
+
+
 MOVED = (
     "places of loads",
     "spans of tendons and chambers",

@@ -34,7 +34,7 @@ from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import with_numbers
-from cosserat_casadi.model.discretise import enriched
+from cosserat_casadi.model.discretise import enriched, nodes_above_modes
 from cosserat_casadi.model.element_ends import element_ends, places_on
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.required_modes import signal_modes
@@ -83,7 +83,9 @@ def richer(grids: Grids, scene: scenes.Scene) -> Grids:
         scene: without contacts.
     """
     modes = signal_modes(scene)
-    return Grids({name: enriched(rod, modes, meets_obstacles=True) for name, rod in grids.rods.items()})
+    return Grids(
+        {name: enriched(rod, modes, nodes_above_modes(scene, name, touches=True)) for name, rod in grids.rods.items()}
+    )
 
 
 @dataclass(frozen=True)
