@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume
+from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume, of_another_scene
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
@@ -114,9 +114,14 @@ class _Told:
         self.carried = CarriedContacts(self.steps.carried(), known, self.stuck)
 
     def recall(self, resume: Resume) -> None:
-        """Take over contacts and memory from where a motion goes on."""
+        """Take over contacts and memory from where a motion goes on.
+
+        Raises:
+            SceneError: they are of another model.
+        """
         carried = resume.contacts
-        assert carried is not None and self.steps.go_on(carried.memory), "of steps with friction"
+        if carried is None or not self._knows(carried) or not self.steps.go_on(carried.memory):
+            raise of_another_scene()
         none, of_tangents = np.zeros(STAGES), np.zeros((STAGES, 2))
         self.stuck = carried.stuck
         self.touches = tuple(
@@ -137,6 +142,14 @@ class _Told:
             for facing, slides, place, height in carried.touches.reshape(-1, KNOWN).tolist()
         )
         self.restart = Restart(self.restart.start, self._phase(self.touches))
+
+    def _knows(self, carried: CarriedContacts) -> bool:
+        """Whether carried contacts are of pairs that the model has."""
+        pairs = range(len(self.steps.facings))
+        touches = carried.touches
+        if touches.size and (touches.ndim != 2 or touches.shape[1] != KNOWN):
+            return False
+        return carried.stuck.issubset(pairs) and all(row[0] in pairs for row in touches.tolist())
 
     def close(self, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan) -> None:
         """End the present leg, with the size of the next step, s. A leg without steps is kept if it ends the motion."""

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import SceneError, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.rubbing_library import RubbingSteps
 from cosserat_casadi.motion.simulate import Simulator, started
@@ -238,6 +239,23 @@ def test_a_block_that_goes_on_slides_and_rests_as_in_one_motion(tmp_path: Path) 
     del smooth["obstacles"][0]["friction"]
     with pytest.raises(SceneError, match="of another scene"):
         simulate(scene_from_dict(smooth), start=file, compiled=False)
+
+
+def test_a_motion_that_rubs_goes_on_from_no_contacts_of_another_scene() -> None:
+    first = simulate(scene_from_dict(thrown_block(1)), compiled=False)
+    assert first.end is not None
+    data = first.end.to_data()
+    strand = data["strands"][0]
+    contacts = strand["resume"]["contacts"]
+    # A contact with an obstacle that is none, or part of one; a pair that is none; part of a memory.
+    for other in ({"touches": [[1.0, 0.0, 0.5, 0.0]]}, {"touches": [[0.0]]}, {"stuck": [1]}, {"memory": [0.0]}):
+        strand["resume"]["contacts"] = contacts | other
+        with pytest.raises(SceneError, match="of another scene"):
+            simulate(scene_from_dict(thrown_block(2)), start=Checkpoint.from_data(data), compiled=False)
+    for size in (None, 0.0):
+        strand["settings"]["size"] = size
+        with pytest.raises(ValueError, match="no size"):
+            Checkpoint.from_data(data)
 
 
 def test_a_motion_that_rubs_is_written_in_parts_that_an_interrupt_leaves(tmp_path: Path) -> None:
