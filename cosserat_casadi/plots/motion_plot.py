@@ -277,7 +277,10 @@ def _draw_imbalance(panel: Any, motion: Motion) -> None:
     if not positive.any():
         _say(panel, "zero")
         return
-    panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), color="0.2", linewidth=1.4)
+    # No line leads to a point that has none beside it.
+    alone = positive & ~np.append(False, positive[:-1]) & ~np.append(positive[1:], False)
+    style: dict[str, Any] = {"color": "0.2", "linewidth": 1.4, "marker": ".", "markevery": alone}
+    panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), **style)
     lowest, highest = panel.get_ylim()
     if lowest < ROUNDING < highest:
         lowest = ROUNDING

@@ -114,7 +114,7 @@ BAD = [
         "accuracy.of_rods[0].sections",
         "nothing is summed at sections",
     ),
-    ("rods_listed", scene(TOUCHING.format("rods = [['finger']]\nexact = true")), "rod_contacts[0].rods[0]", "must be text"),
+    ("rods_listed", scene(TOUCHING.format("rods = [[1]]\nexact = true")), "rod_contacts[0].rods[0]", "must be text"),
     ("exact_word", scene(TOUCHING.format("rods = ['finger']\nexact = 'no'")), "rod_contacts[0].exact", "true or false"),
     ("modes_empty", scene("[accuracy]\nmodes = []"), "accuracy.modes", "at least one"),
     ("nodes_one", scene("[accuracy]\nnodes = 1"), "accuracy.nodes", "must be >= 2"),
