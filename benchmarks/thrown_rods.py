@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -80,7 +81,7 @@ def compared(seed: int) -> Iterator[tuple[float, float, float]]:
     if len(histories) < len(sizes):
         return
     paths = [own.paths(history) for history in histories]
-    apart = [path_distance(one, other) for one, other in zip(paths[:-1], paths[1:], strict=True)]
+    apart = [path_distance(one, other) for one, other in pairwise(paths)]
     for k, history in enumerate(histories[: HALVINGS - 1]):
         true = path_distance(paths[k], paths[-1])
         if true < max(RESOLVED * apart[-1], LEAST):
