@@ -56,7 +56,7 @@ def random_scene(seed: int) -> dict[str, Any]:
     across = random.uniform(-1, 1)
     linear = [across, random.uniform(-0.5, 0.5) if in_space else 0.0, random.uniform(-1.5, 0)]
     angular = [0.0, random.uniform(-8, 8), random.uniform(-5, 5) if in_space else 0.0]
-    floor = {"name": "floor", "kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}
+    floor: dict[str, Any] = {"name": "floor", "kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}
     floor |= {"friction": random.uniform(0.02, 0.7), "restitution": float(random.choice([0.0, 0.0, 0.3, 0.7]))}
     duration = random.uniform(0.08, 0.16)
     return {

@@ -122,22 +122,11 @@ class _Told:
         carried = resume.contacts
         if carried is None or not self._knows(carried) or not self.steps.go_on(carried.memory):
             raise of_another_scene()
-        none, of_tangents = np.zeros(STAGES), np.zeros((STAGES, 2))
+        forces = np.zeros(STAGES), np.zeros(3), np.zeros((STAGES, 2)), 0.0
         self.stuck = carried.stuck
         self.touches = tuple(
             RubbingTouch(
-                int(facing),
-                bool(slides),
-                True,
-                int(facing) not in self.stuck,
-                False,
-                place,
-                place,
-                height,
-                none,
-                np.zeros(3),
-                of_tangents,
-                0.0,
+                int(facing), bool(slides), True, int(facing) not in self.stuck, False, place, place, height, *forces
             )
             for facing, slides, place, height in carried.touches.reshape(-1, KNOWN).tolist()
         )
@@ -146,10 +135,9 @@ class _Told:
     def _knows(self, carried: CarriedContacts) -> bool:
         """Whether carried contacts are of pairs that the model has."""
         pairs = range(len(self.steps.facings))
-        touches = carried.touches
-        if touches.size and (touches.ndim != 2 or touches.shape[1] != KNOWN):
-            return False
-        return carried.stuck.issubset(pairs) and all(row[0] in pairs for row in touches.tolist())
+        rows = carried.touches.tolist()
+        known = all(isinstance(row, list) and len(row) == KNOWN and row[0] in pairs for row in rows)
+        return known and carried.stuck.issubset(pairs)
 
     def close(self, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan) -> None:
         """End the present leg, with the size of the next step, s. A leg without steps is kept if it ends the motion."""
