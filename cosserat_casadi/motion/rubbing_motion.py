@@ -55,8 +55,6 @@ LAST = 1.5
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
 
-NO_COST = IntegrationCost(0, 0, 0, 0, 0)
-
 UNSETTLED = "At t = {time:.6g} s a step of {size:.3g} s was not solved, {where}: damp the rods, or allow more modes."
 
 
@@ -85,7 +83,7 @@ class _Told:
     taken: list[RubbingStep] = field(default_factory=list)
     touches: tuple[RubbingTouch, ...] = ()
     stuck: frozenset[int] = frozenset()
-    cost: IntegrationCost = NO_COST
+    cost: IntegrationCost = field(default_factory=IntegrationCost)
     carried: CarriedContacts | None = None
 
     @property
@@ -144,7 +142,7 @@ class _Told:
         if self.taken or outcome is not StepOutcome.GUARDED:
             integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
             self.legs.append(Leg(self.piece, self.restart, integration, self.plain))
-            self.taken, self.cost = [], NO_COST
+            self.taken, self.cost = [], IntegrationCost()
 
     def stall(self, at: Instant, size: float) -> None:
         """End the motion at an instant from which a step of the size, s, could not be solved."""
