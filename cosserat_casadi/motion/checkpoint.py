@@ -138,9 +138,13 @@ class Checkpoint:
 
         Raises:
             KeyError: an entry is missing.
-            TypeError, ValueError: an entry is of another type.
+            TypeError, ValueError: an entry is of another type, or steps have no size.
         """
         checkpoint: Checkpoint = _value(Checkpoint, data)
+        for strand in checkpoint.strands:
+            size, has_equal_steps = strand.settings.size, strand.resume.contacts is not None
+            if has_equal_steps if size is None else not size > 0.0:
+                raise ValueError("steps have no size")
         return checkpoint
 
 
@@ -164,6 +168,12 @@ def read_checkpoint(path: str | Path) -> Checkpoint | None:
     except (KeyError, TypeError, ValueError, IndexError) as error:
         problem = f"{path} is of a motion that nothing goes on from: it has no state, or not all of one"
         raise SceneError(Problem(WHERE, problem, "write it with cosserat simulate SCENE --output")) from error
+
+
+def of_another_scene() -> SceneError:
+    """The error of a motion that would go on where a motion of another scene ended."""
+    problem = "the motion that it would go on from is of another scene"
+    return SceneError(Problem(WHERE, problem, "give the scene of that motion"))
 
 
 def _data(value: Any) -> Any:

@@ -17,7 +17,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
-from cosserat_casadi.motion.checkpoint import WHERE, Checkpoint, Strand, read_checkpoint
+from cosserat_casadi.motion.checkpoint import Checkpoint, Strand, of_another_scene, read_checkpoint
 from cosserat_casadi.motion.fall_of_errors import is_struck
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
@@ -192,9 +192,7 @@ def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Che
     Raises:
         SceneError: the scene does not have its state.
     """
-    refused = SceneError(
-        Problem(WHERE, "the motion that it would go on from is of another scene", "give the scene of that motion")
-    )
+    refused = of_another_scene()
     if {rod.name for rod in scene.rods} != set(strand.discretisation):
         raise refused
     try:

@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.errors import Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume
+from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume, of_another_scene
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
 from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
@@ -55,8 +55,6 @@ LAST = 1.5
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
 
-NO_COST = IntegrationCost(0, 0, 0, 0, 0)
-
 UNSETTLED = "At t = {time:.6g} s a step of {size:.3g} s was not solved, {where}: damp the rods, or allow more modes."
 
 
@@ -85,7 +83,7 @@ class _Told:
     taken: list[RubbingStep] = field(default_factory=list)
     touches: tuple[RubbingTouch, ...] = ()
     stuck: frozenset[int] = frozenset()
-    cost: IntegrationCost = NO_COST
+    cost: IntegrationCost = field(default_factory=IntegrationCost)
     carried: CarriedContacts | None = None
 
     @property
@@ -114,36 +112,37 @@ class _Told:
         self.carried = CarriedContacts(self.steps.carried(), known, self.stuck)
 
     def recall(self, resume: Resume) -> None:
-        """Take over contacts and memory from where a motion goes on."""
+        """Take over contacts and memory from where a motion goes on.
+
+        Raises:
+            SceneError: they are of another model.
+        """
         carried = resume.contacts
-        assert carried is not None and self.steps.go_on(carried.memory), "of steps with friction"
-        none, of_tangents = np.zeros(STAGES), np.zeros((STAGES, 2))
+        if carried is None or not self._knows(carried) or not self.steps.go_on(carried.memory):
+            raise of_another_scene()
+        forces = np.zeros(STAGES), np.zeros(3), np.zeros((STAGES, 2)), 0.0
         self.stuck = carried.stuck
         self.touches = tuple(
             RubbingTouch(
-                int(facing),
-                bool(slides),
-                True,
-                int(facing) not in self.stuck,
-                False,
-                place,
-                place,
-                height,
-                none,
-                np.zeros(3),
-                of_tangents,
-                0.0,
+                int(facing), bool(slides), True, int(facing) not in self.stuck, False, place, place, height, *forces
             )
             for facing, slides, place, height in carried.touches.reshape(-1, KNOWN).tolist()
         )
         self.restart = Restart(self.restart.start, self._phase(self.touches))
+
+    def _knows(self, carried: CarriedContacts) -> bool:
+        """Whether carried contacts are of pairs that the model has."""
+        pairs = range(len(self.steps.facings))
+        rows = carried.touches.tolist()
+        known = all(isinstance(row, list) and len(row) == KNOWN and row[0] in pairs for row in rows)
+        return known and carried.stuck.issubset(pairs)
 
     def close(self, outcome: StepOutcome = StepOutcome.GUARDED, size: float = np.nan) -> None:
         """End the present leg, with the size of the next step, s. A leg without steps is kept if it ends the motion."""
         if self.taken or outcome is not StepOutcome.GUARDED:
             integration = Integration(self.restart.start.instant, tuple(self.taken), outcome, size, self.cost)
             self.legs.append(Leg(self.piece, self.restart, integration, self.plain))
-            self.taken, self.cost = [], NO_COST
+            self.taken, self.cost = [], IntegrationCost()
 
     def stall(self, at: Instant, size: float) -> None:
         """End the motion at an instant from which a step of the size, s, could not be solved."""

@@ -269,7 +269,7 @@ def _draw_curves(panel: Any, times: FloatArray, curves: dict[str, FloatArray]) -
 
 
 def _draw_imbalance(panel: Any, motion: Motion) -> None:
-    """Draw the magnitude of the imbalance by powers of ten; where it is zero there is no point."""
+    """Draw the magnitude of the imbalance by powers of ten: a line where it is not zero, a point at a single time."""
     panel.grid(alpha=0.3)
     panel.set_ylabel("imbalance /\nlargest energy")
     magnitude = np.abs(motion.energy.imbalance)
@@ -277,10 +277,10 @@ def _draw_imbalance(panel: Any, motion: Motion) -> None:
     if not positive.any():
         _say(panel, "zero")
         return
-    panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), color="0.2", linewidth=1.4)
+    alone = positive & ~np.append(False, positive[:-1]) & ~np.append(positive[1:], False)
+    panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), ".-", color="0.2", lw=1.4, markevery=alone)
     lowest, highest = panel.get_ylim()
-    if lowest < ROUNDING < highest:
-        lowest = ROUNDING
+    lowest = ROUNDING if lowest < ROUNDING < highest else lowest
     if highest < 10 * lowest:
         # Within a power of ten numbers such as 1.3 × 10⁻¹³ would stand between the powers.
         lowest, highest = 10.0 ** np.floor(np.log10([lowest, 10 * highest]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, ClassVar
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, refused_keys, table_of
 from cosserat_casadi.scene.obstacle_records import without_exact_contact
@@ -56,7 +56,7 @@ width = 5e-4
         description="with friction: speed, m/s, below which a contact that sticks creeps, under a "
         "force that grows with the speed",
     )
-    exact: bool = Field(
+    exact: StrictBool = Field(
         False,
         description="whether rods touch without a width, which is found in motion alone: they strike each other",
     )
@@ -81,13 +81,16 @@ width = 5e-4
         if isinstance(rods, list | tuple) and len(rods) > MOST_RODS:
             problem = f"must be one rod or two, got {len(rods)}"
             yield Fault(("rods",), problem, "give a table for each pair, or leave rods out: every two rods then")
-        if not given.get("exact"):
+        exact = given.get("exact", False)
+        if exact is False:
             problem = "is of impacts, which a contact that is smooth does not have"
             yield from refused_keys(given, ("restitution",), problem, "give exact = true, or leave it out")
+        if exact is not True:
             return
         problem = "is of a contact that is smooth"
         yield from refused_keys(given, SMOOTH_KEYS, problem, "leave it out, or leave exact out")
-        if isinstance(rods, list | tuple) and len(set(rods)) == 1:
+        names = rods if isinstance(rods, list | tuple) else []
+        if names and isinstance(names[0], str) and names.count(names[0]) == len(names):
             problem = "exact contact is of two rods, not of one with itself"
             yield Fault(("exact",), problem, "leave it out: contact of a rod with itself is smooth")
 
@@ -107,16 +110,16 @@ width = 5e-4
         if named is None and len(known) < MOST_RODS:
             problem = "missing: the scene has no two rods"
             yield Fault(("rods",), problem, "name the rod that touches itself, as in rods = ['finger']")
-        exact = bool(given.get("exact"))
+        exact = given.get("exact") is True
         if any(("width" not in other) is not exact for _, other in scene.tables("obstacles")):
             kinds = ("exact", "has a width") if exact else ("smooth", "is touched exactly")
             problem = "contact of rods is {}, and an obstacle of the scene {}".format(*kinds)
             remedy = "leave the width of each obstacle out" if exact else "give each obstacle a width, m"
             yield Fault((), problem, f"{remedy}, or leave one of the two out")
-        if any(bool(other.get("exact")) is not exact for _, other in scene.tables("rod_contacts")):
+        if any((other.get("exact") is True) is not exact for _, other in scene.tables("rod_contacts")):
             problem = "is true of some rods that touch rods, and not of all"
             yield Fault(("exact",), problem, "give it for all, or for none")
-        if exact and any("friction" in other for _, other in scene.tables("obstacles")):
+        if exact and any(other.get("friction") for _, other in scene.tables("obstacles")):
             problem = "rods that touch rods exactly have no friction, and an obstacle has"
             yield Fault(("exact",), problem, "give rods and obstacles a width, m, or leave friction out")
         if exact:

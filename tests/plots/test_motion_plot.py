@@ -162,6 +162,14 @@ def test_energies_and_their_imbalance(planar: Motion) -> None:
     assert_allclose(drawn[1:], np.abs(planar.energy.imbalance[1:]), rtol=0, atol=0)
 
 
+def test_an_imbalance_at_one_time_is_a_point(planar: Motion) -> None:
+    last = np.append(np.zeros(len(planar.times) - 1), 1e-9)
+    panel = panels(plot_motion(with_energies(planar, imbalance=last)))["imbalance /\nlargest energy"]
+    (line,) = panel.get_lines()
+    assert line.get_marker() == "."
+    assert np.flatnonzero(line.get_markevery()).tolist() == [len(planar.times) - 1]
+
+
 def test_an_imbalance_within_a_power_of_ten_is_between_two(planar: Motion) -> None:
     """Else numbers such as 1.3e-13 stand at the axis."""
     even = with_energies(planar, imbalance=np.linspace(1.2e-13, 1.8e-13, len(planar.times)))

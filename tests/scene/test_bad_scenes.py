@@ -28,6 +28,7 @@ def scene(after="", *, rods=None, before=""):
 
 
 SUMMED = "[accuracy]\nmodes = 2\nnodes = 4\nsections = 8\n"
+TOUCHING = "[[rod_contacts]]\n{}"
 BAR = '[[obstacles]]\nname = "bar"\nkind = "sphere"\ncentre = [0.1, 0.0, 0.1]\nradius = 0.01\n'
 
 
@@ -113,6 +114,8 @@ BAD = [
         "accuracy.of_rods[0].sections",
         "nothing is summed at sections",
     ),
+    ("rods_listed", scene(TOUCHING.format("rods = [[1]]\nexact = true")), "rod_contacts[0].rods[0]", "must be text"),
+    ("exact_word", scene(TOUCHING.format("rods = ['finger']\nexact = 'no'")), "rod_contacts[0].exact", "true or false"),
     ("modes_empty", scene("[accuracy]\nmodes = []"), "accuracy.modes", "at least one"),
     ("nodes_one", scene("[accuracy]\nnodes = 1"), "accuracy.nodes", "must be >= 2"),
     ("shape_one", scene("[accuracy]\nshape = 1"), "accuracy.shape", "must be true or false, got 1"),
