@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import ceil
 from typing import Any
 
 from cosserat_casadi import scene as scenes
@@ -39,8 +40,14 @@ NODES_ABOVE_MODES_IN_CONTACT = 8
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
 
+HIGHEST_ORDER = "magnus8"
+"""Rotation integrator of the highest order."""
+
 ENOUGH_GROWTH = 1.4
 """Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
+
+ENOUGH_GROWTH_OF_HIGHEST = 1.25
+"""Factor on the intervals that shows five sixths of the error of the highest order, which has none above it."""
 
 
 def discretise(
@@ -132,6 +139,8 @@ def enriched(
     nodes_above_modes = NODES_ABOVE_MODES_IN_CONTACT if meets_obstacles else NODES_ABOVE_MODES
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + nodes_above_modes)
     transport = discretisation.transport
-    if nodes < ENOUGH_GROWTH * discretisation.nodes:
+    if transport == HIGHEST_ORDER:
+        nodes = max(nodes, ceil(ENOUGH_GROWTH_OF_HIGHEST * discretisation.nodes))
+    elif nodes < ENOUGH_GROWTH * discretisation.nodes:
         transport = NEXT_ORDER.get(transport, transport)
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)
