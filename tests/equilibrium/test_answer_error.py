@@ -177,7 +177,7 @@ def spring() -> Scene:
         "intrinsic": {"curvature": [0, 49.6, 4.34]},
         "base": {"position": [0, 0, 0], "quaternion": [0.03084, 0.706434, 0.706434, 0.03084]},
     }
-    return scene(push(force=[4.0, 0.0, 0.0]), rods=[wire])
+    return scene(push(force=[4.0, 0.0, 0.0]), rods=[wire], accuracy={"tolerance": 1e-9})
 
 
 def test_intervals_of_the_highest_order_know_their_error() -> None:

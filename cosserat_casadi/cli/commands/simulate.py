@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -75,7 +77,7 @@ def simulate(
     """
     # Options that stand for a key of the scene come last: they win over --set.
     keys = {"step": step, "duration": duration, "frames": frames, "tolerance": tolerance}
-    overrides = [f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None]
+    given = {key: value for key, value in keys.items() if value is not None}
     problems: list[Problem] = []
     if output is not None:
         with collect_problems(problems):
@@ -89,7 +91,7 @@ def simulate(
     if part is not None:
         with collect_problems(problems):
             check_parts(output, part)
-    checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
+    checked_scene, start_solution = _check_scene(scene, settings, given, start, problems)
 
     motion = _simulate_with_progress(checked_scene, start_solution, compiled, output, part)
     if output is not None and part is None:
@@ -115,17 +117,30 @@ def simulate(
 
 
 def _check_scene(
-    scene_file: Path, settings: tuple[str, ...], start: Path | None, problems: list[Problem]
+    scene_file: Path,
+    settings: list[str] | None,
+    given: Mapping[str, float],
+    start: Path | None,
+    problems: list[Problem],
 ) -> tuple[Scene, StartOfMotion]:
     """The scene, and the solution that the motion starts from where a file names one.
+
+    Args:
+        scene_file: file of the scene.
+        settings: texts of ``--set``.
+        given: values of options that stand for keys of the table ``simulation``.
+        start: file of a result.
+        problems: that were found before.
 
     Raises:
         SceneError: with those problems and every fault of the scene and the result file.
     """
+    overrides = [f"simulation.{key}={value!r}" for key, value in given.items()]
+    options = {f"--set simulation.{key}": f"--{key}" for key in given}
     scene: Scene | None = None
     solution: StartOfMotion = None
     with collect_problems(problems):
-        scene = read_scene(scene_file, settings)
+        scene = read_scene(scene_file, (*(settings or ()), *overrides))
         refuse_tubes(scene)
         if scene.simulation is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or give --duration"
@@ -133,7 +148,7 @@ def _check_scene(
         if start is not None:
             solution = read_start(start, scene)
     if problems or scene is None:
-        raise SceneError(*problems)
+        raise SceneError(*(replace(problem, where=options.get(problem.where, problem.where)) for problem in problems))
     return scene, solution
 
 
