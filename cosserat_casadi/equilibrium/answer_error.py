@@ -212,9 +212,8 @@ def answer_error(solution: Solution) -> AnswerError:
     believed, correction = believed_correction(solution)
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
-    rest = _rest_of_series(solution, correction)
     safety = _safety_of(solution, correction)
-    watched = safety * (correction.change + rest) + ROUNDING
+    watched = safety * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
     corrected = _richer_answer(solution, correction)
     shape_change = _shape_change(solution, corrected)
     # Wrenches of clamps follow strains, which wave with the shape.
@@ -407,22 +406,15 @@ def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
-    without_last = _without_last(solution, correction)
     whole = _corrected(solution, correction.known, correction.missing)
-    fewer = _corrected(solution, correction.known, without_last.missing)
+    fewer = _corrected(solution, correction.known, _without_last(solution, correction).missing)
     return _rest(abs(whole.change - fewer.change), correction.change)
 
 
 def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:
-    """Share of the change of the shape that modes beyond the modes of the richer model add; none after a first look.
+    """Share of a change of the shape that modes beyond the modes of the richer model add; none after a first look.
 
     Between watched sections a shape may wave with the missing modes where these hardly move a tip.
-
-    Args:
-        solution: the answer.
-        correction: its correction.
-        corrected: the answer with the correction.
-        change: of the shape, between these.
     """
     if not correction.settled or change <= ROUNDING:
         return 0.0
@@ -432,8 +424,8 @@ def _share_beyond(solution: Solution, correction: Correction, corrected: Solutio
 
 def _without_last(solution: Solution, correction: Correction) -> Correction:
     """A correction without the two highest degrees."""
-    richer = solution.model.discrete.richer
-    return replace(correction, missing=np.where(richer.is_among_last, 0.0, correction.missing))
+    is_last = solution.model.discrete.richer.is_among_last
+    return replace(correction, missing=np.where(is_last, 0.0, correction.missing))
 
 
 def _rest(last: float, change: float) -> float:

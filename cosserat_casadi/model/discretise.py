@@ -40,9 +40,6 @@ NODES_ABOVE_MODES_IN_CONTACT = 8
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
 
-HIGHEST_ORDER = "magnus8"
-"""Rotation integrator of the highest order."""
-
 ENOUGH_GROWTH = 1.4
 """Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
 
@@ -139,7 +136,7 @@ def enriched(
     nodes_above_modes = NODES_ABOVE_MODES_IN_CONTACT if meets_obstacles else NODES_ABOVE_MODES
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + nodes_above_modes)
     transport = discretisation.transport
-    if transport == HIGHEST_ORDER:
+    if transport == "magnus8":
         nodes = max(nodes, ceil(ENOUGH_GROWTH_OF_HIGHEST * discretisation.nodes))
     elif nodes < ENOUGH_GROWTH * discretisation.nodes:
         transport = NEXT_ORDER.get(transport, transport)

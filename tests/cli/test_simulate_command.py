@@ -251,7 +251,7 @@ def never(scene: Scene, **options: Any) -> Motion:
         (["wire.toml", "--speed", "nan"], ["--speed", "must be > 0, got nan"]),
         (["wire.toml", "--duration", "-1"], ["--duration: must be > 0"]),
         (["wire.toml", "--step", "0.5"], ["--step: must be <= duration"]),
-        (["wire.toml", "--step", "1e-12"], ["simulation.step", "makes more than 10,000,000 steps"]),
+        (["wire.toml", "--step", "1e-12"], ["--step: makes more than 10,000,000 steps"]),
         (["wire.toml", "--from", "missing.json"], ["--from", "missing.json cannot be read"]),
         (["wire.toml", "--from", "wire.toml"], ["--from", "is not JSON"]),
         (["missing.toml"], ["missing.toml"]),
