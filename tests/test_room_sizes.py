@@ -21,7 +21,7 @@ LINES = {
     "constraints": 1_035,
     "control": 2_835,
     "environments": 335,
-    "equilibrium": 7_285,
+    "equilibrium": 7_300,
     "estimation": 1_730,
     "identification": 4_665,
     "loads": 2_260,

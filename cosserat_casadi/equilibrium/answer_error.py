@@ -213,12 +213,14 @@ def answer_error(solution: Solution) -> AnswerError:
     believed, correction = believed_correction(solution)
     if not believed:
         return AnswerError(UNKNOWN, UNKNOWN, UNKNOWN)
-    rest = _rest_of_series(solution, correction)
     safety = _safety_of(solution, correction)
-    watched = safety * (correction.change + rest) + ROUNDING
+    watched = safety * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
     corrected = _richer_answer(solution, correction)
-    shape = safety * (_shape_change(solution, corrected) + rest) + ROUNDING
-    wrench = safety * _wrench_change(solution, corrected, correction) + ROUNDING
+    shape_change = _shape_change(solution, corrected)
+    # Wrenches of clamps follow strains, which wave with the shape.
+    with_rest = safety * (1.0 + _share_beyond(solution, correction, corrected, shape_change))
+    shape = with_rest * shape_change + ROUNDING
+    wrench = with_rest * _wrench_change(solution, corrected, correction) + ROUNDING
     return AnswerError(watched, max(shape, watched), wrench)
 
 
@@ -409,12 +411,31 @@ def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
-    richer = solution.model.discrete.richer
-    without_last = np.where(richer.is_among_last, 0.0, correction.missing)
     whole = _corrected(solution, correction.known, correction.missing)
-    fewer = _corrected(solution, correction.known, without_last)
-    last = abs(whole.change - fewer.change)
-    ratio = float(np.clip(last / correction.change, FASTEST, SLOWEST))
+    fewer = _corrected(solution, correction.known, _without_last(solution, correction).missing)
+    return _rest(abs(whole.change - fewer.change), correction.change)
+
+
+def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:
+    """Share of a change of the shape that modes beyond the modes of the richer model add; none after a first look.
+
+    Between watched sections a shape may wave with the missing modes where these hardly move a tip.
+    """
+    if not correction.settled or change <= ROUNDING:
+        return 0.0
+    fewer = _richer_answer(solution, _without_last(solution, correction))
+    return _rest(_shape_change(fewer, corrected), change) / change
+
+
+def _without_last(solution: Solution, correction: Correction) -> Correction:
+    """A correction without the two highest degrees."""
+    is_last = solution.model.discrete.richer.is_among_last
+    return replace(correction, missing=np.where(is_last, 0.0, correction.missing))
+
+
+def _rest(last: float, change: float) -> float:
+    """The rest of a geometric series of which the two highest degrees give the last part of a change."""
+    ratio = float(np.clip(last / change, FASTEST, SLOWEST))
     return last * ratio / (1 - ratio)
 
 

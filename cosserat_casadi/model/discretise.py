@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import ceil
 from typing import Any
 
 from cosserat_casadi import scene as scenes
@@ -44,6 +45,9 @@ NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 
 ENOUGH_GROWTH = 1.4
 """Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
+
+ENOUGH_GROWTH_OF_HIGHEST = 1.25
+"""Factor on the intervals that shows five sixths of the error of the highest order, which has none above it."""
 
 
 def discretise(
@@ -141,6 +145,8 @@ def enriched(
     modes = tuple(max(count + added, signal_modes) for count in discretisation.modes)
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + above_modes)
     transport = discretisation.transport
-    if nodes < ENOUGH_GROWTH * discretisation.nodes:
+    if transport == "magnus8":
+        nodes = max(nodes, ceil(ENOUGH_GROWTH_OF_HIGHEST * discretisation.nodes))
+    elif nodes < ENOUGH_GROWTH * discretisation.nodes:
         transport = NEXT_ORDER.get(transport, transport)
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)

@@ -14,6 +14,7 @@ from cosserat_casadi.equilibrium import answer_error as estimates
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discretise import summed_at
+from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.strain_density import energy_beyond_hooke, stiffness_beyond_hooke
 from tests.conftest import AWAY, ROOT
@@ -174,6 +175,39 @@ def test_wrench_at_the_clamp_knows_its_error() -> None:
     true = max(moment_error, force_error)
     assert coarse.wrench_error_estimate is not None
     assert LEAST * true < coarse.wrench_error_estimate < MOST_ABOVE * true
+
+
+def spring() -> Scene:
+    """A helical spring of five turns, drawn out by a force along its axis."""
+    wire = {
+        "name": "rod",
+        "length": 0.63,
+        "strain": "kirchhoff",
+        "stiffness": {"bending_x": 0.16, "bending_y": 0.16, "torsion": 0.124},
+        "intrinsic": {"curvature": [0, 49.6, 4.34]},
+        "base": {"position": [0, 0, 0], "quaternion": [0.03084, 0.706434, 0.706434, 0.03084]},
+    }
+    return scene(push(force=[4.0, 0.0, 0.0]), rods=[wire], accuracy={"tolerance": 1e-9})
+
+
+def test_intervals_of_the_highest_order_know_their_error() -> None:
+    """No higher order shows the error of the order, so that the richer model has a quarter more intervals."""
+    drawn = spring()
+    solution = solve(build(drawn, discretise(drawn, 42, 80, "magnus8")))
+    reference = solve(build(drawn, discretise(drawn, 42, 160, "magnus8")), estimate_error=False)
+    assert solution.error_estimate is not None
+    ratio = solution.error_estimate / pose_distance(solution, reference)
+    assert LEAST < ratio < MOST_ABOVE, ratio
+
+
+def test_shape_knows_the_error_of_modes_that_even_the_richer_model_lacks() -> None:
+    """The shape waves between the ends of the spring, with a hundred times the error of the tip."""
+    drawn = spring()
+    solution = solve(build(drawn, discretise(drawn, 27, 84, "magnus8")))
+    reference = solve(build(drawn, discretise(drawn, 44, 100, "magnus8")), estimate_error=False)
+    assert solution.shape_error_estimate is not None
+    ratio = solution.shape_error_estimate / pose_distance(solution, reference, SAMPLES)
+    assert LEAST < ratio < MOST_ABOVE, ratio
 
 
 def test_parameters_move_the_stiffness_of_missing_modes() -> None:

@@ -36,7 +36,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.mjcf.export import LINKS, check_mjcf, mjcf_of
+from cosserat_casadi.mjcf.export import LINKS, Mjcf, check_mjcf, mjcf_of
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout, spread
 from cosserat_casadi.page.page import export_page
@@ -221,10 +221,10 @@ def export(
         assert output is not None
         _export_tubes(read, output, name, batches=batches)
         return
-    if mjcf is not None:
-        _export_mjcf(read, mjcf, links)
+    of_links = None if mjcf is None else mjcf_of(read, links)
     # Sources, page and unit are written from a model whose modes and nodes a solve chooses.
     if output is None and page is None and fmu is None:
+        _write_mjcf(of_links, mjcf)
         return
     given_ranges = asked_ranges(ranges, read)
     # Without exact contact a file is refused, and modes are chosen all over ranges whether they count values or not.
@@ -248,6 +248,7 @@ def export(
     solution = solve(choice.model)
     _check_solved(solution)
     _write(asked, exported_scene, solution, choice, cases, given_ranges)
+    _write_mjcf(of_links, mjcf)
     print_choice(Console(), choice)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False
@@ -318,9 +319,10 @@ def _write(
         console.print(f"wrote {escape(str(asked.page))}; any browser opens it", soft_wrap=True)
 
 
-def _export_mjcf(scene: Scene, path: Path, links: int) -> None:
-    """Write a model of MuJoCo, and name the things of the scene that it lacks."""
-    model = mjcf_of(scene, links)
+def _write_mjcf(model: Mjcf | None, path: Path | None) -> None:
+    """Write a model of MuJoCo where one is asked for, and name the things of the scene that it lacks."""
+    if model is None or path is None:
+        return
     model.write(path)
     for sentence in model.left_out:
         Console(stderr=True).print(escape(sentence), soft_wrap=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -75,7 +77,9 @@ def simulate(
     """
     # Options that stand for a key of the scene come last: they win over --set.
     keys = {"step": step, "duration": duration, "frames": frames, "tolerance": tolerance}
-    overrides = [f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None]
+    overrides = (f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None)
+    # An override is told as the option that it came from.
+    options = {f"--set simulation.{key}": f"--{key}" for key, value in keys.items() if value is not None}
     problems: list[Problem] = []
     if output is not None:
         with collect_problems(problems):
@@ -89,7 +93,7 @@ def simulate(
     if part is not None:
         with collect_problems(problems):
             check_parts(output, part)
-    checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
+    checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), options, start, problems)
 
     motion = _simulate_with_progress(checked_scene, start_solution, compiled, output, part)
     if output is not None and part is None:
@@ -115,7 +119,11 @@ def simulate(
 
 
 def _check_scene(
-    scene_file: Path, settings: tuple[str, ...], start: Path | None, problems: list[Problem]
+    scene_file: Path,
+    overrides: tuple[str, ...],
+    options: Mapping[str, str],
+    start: Path | None,
+    problems: list[Problem],
 ) -> tuple[Scene, StartOfMotion]:
     """The scene, and the solution that the motion starts from where a file names one.
 
@@ -125,7 +133,7 @@ def _check_scene(
     scene: Scene | None = None
     solution: StartOfMotion = None
     with collect_problems(problems):
-        scene = read_scene(scene_file, settings)
+        scene = read_scene(scene_file, overrides)
         refuse_tubes(scene)
         if scene.simulation is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or give --duration"
@@ -133,7 +141,7 @@ def _check_scene(
         if start is not None:
             solution = read_start(start, scene)
     if problems or scene is None:
-        raise SceneError(*problems)
+        raise SceneError(*(replace(found, where=options.get(found.where, found.where)) for found in problems))
     return scene, solution
 
 
