@@ -50,8 +50,8 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
     remedy = "give each obstacle a width, m, for a contact that is smooth"
     if simulation is not None and model.scene.rubs_exactly:
         for pair in OneSided(model).pairs:
-            if pair.rigid:
-                what = "a rigid stop or cable strikes, for which steps with friction of exact contact have no blow"
+            if pair.rigid and not pair.side:
+                what = "a rigid cable strikes, for which steps with friction of exact contact have no blow"
                 yield Problem(pair.name, what, f"give it a stiffness, or {remedy}; or leave friction out")
     yield from _unfit_pairs(model)
     yield from _too_thin(model)

@@ -34,6 +34,7 @@ from cosserat_casadi.motion.rubbing_library import KNOWN, RubbingSteps, RubbingT
 from cosserat_casadi.motion.rubbing_step import RubbingStep
 from cosserat_casadi.motion.step_kernels import StepKernels
 from cosserat_casadi.motion.step_words import STAGES
+from cosserat_casadi.motion.stops_facing import StopFacing
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
 from cosserat_casadi.numerics.guards import crossing
@@ -54,6 +55,9 @@ LAST = 1.5
 
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
+
+OF_STOPS = {"impact": "stop_hit", "lift_off": "stop_left"}
+"""Events of joints and rigid stops, by those of rods and obstacles."""
 
 NO_COST = IntegrationCost(0, 0, 0, 0, 0)
 
@@ -164,19 +168,28 @@ class _Told:
     def _step(
         self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float, end_time: float
     ) -> RubbingStep:
-        """The stretch as a step; behind the n unknowns stand m forces along normals, then 2 m along the tangents."""
+        """The stretch as a step; behind the n unknowns stand m forces along normals, then 2 m along the tangents.
+
+        Pushes of rigid stops are among the n unknowns.
+        """
         method = radau(STAGES)
         differential = self.model.discrete.unknowns.differential
+        of_stages, last = stretch.unknowns.copy(), stretch.end.copy()
+        for touch in pressing:
+            facing = self.steps.facings[touch.facing]
+            if isinstance(facing, StopFacing):
+                of_stages[:, facing.push_entry] = touch.forces
+                last[0, facing.push_entry] = touch.forces[-1]
+        pressing = self._on_obstacles(pressing)
         normal = np.array([touch.forces for touch in pressing]).reshape(-1, STAGES).T
         along = np.array([touch.friction.T for touch in pressing]).reshape(-1, STAGES).T
         forces = np.concatenate([normal, along], axis=1)
         none = np.zeros(forces.shape[1])
-        unknowns = np.concatenate([stretch.unknowns, forces], axis=1)
+        unknowns = np.concatenate([of_stages, forces], axis=1)
         first = method.values_at(0.0) @ unknowns
         x = np.where(differential, stretch.x, first[: len(differential)])
         a = np.where(differential, first[: len(differential)], 0.0)
         start = Instant(time, np.append(x, first[len(x) :]), np.append(stretch.v, none), np.append(a, none))
-        last = stretch.end
         end = Instant(end_time, np.append(last[0], forces[-1]), np.append(last[1], none), np.append(last[2], none))
         return RubbingStep(
             method=method,
@@ -196,8 +209,13 @@ class _Told:
         )
 
     def _phase(self, pressing: Sequence[RubbingTouch]) -> ContactPhase:
-        touches = tuple(MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in pressing)
+        on_obstacles = self._on_obstacles(pressing)
+        touches = tuple(MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in on_obstacles)
         return ContactPhase(touches, self._laid(pressing), Follower(self.steps.facings, touches))
+
+    def _on_obstacles(self, touches: Sequence[RubbingTouch]) -> list[RubbingTouch]:
+        """Contacts without those of joints and rigid stops."""
+        return [own for own in touches if not isinstance(self.steps.facings[own.facing], StopFacing)]
 
     def _laid(self, touches: Sequence[RubbingTouch]) -> frozenset[int]:
         """Indices of the pairs in which a rod lies."""
@@ -222,8 +240,11 @@ class _Told:
 
         def event(kind: str, own: RubbingTouch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
             facing = facings[own.facing]
+            is_stop = isinstance(facing, StopFacing)
+            word = OF_STOPS.get(kind, kind) if is_stop else kind
+            of_body = facing.of_body and not is_stop
             place = min(max(own.place, 0.0), 1.0)
-            return ContactEvent(kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body)
+            return ContactEvent(word, time, facing.owner, facing.obstacle.name, place, energy, impulse, of_body)
 
         for own in struck:
             yield event("impact", own, stretch.taken * own.impulse / total, own.impulse)
