@@ -178,6 +178,28 @@ def test_a_stop_jerks_what_slides_off_a_floor_or_presses_it_on(reach: float) -> 
     assert np.abs(motion.energy.imbalance).max() < 1e-5
 
 
+@pytest.mark.parametrize("reach", mostly_slow(FLOORS, [0.2]))
+def test_a_stop_beside_hardly_any_friction_acts_as_without(reach: float) -> None:
+    """Steps with friction have stops among what touches; they told none before."""
+    tables = sliding(reach)
+    tables["obstacles"][0]["friction"] = 1e-8
+    motion = simulate(scene_from_dict(tables))
+    assert motion.converged
+    angles, blow, leaves = slid(reach, motion.times)
+    (hit,) = [event for event in motion.events if event.owner == "shoulder"]
+    assert (hit.kind, hit.obstacle, hit.of_body) == ("stop_hit", "upper_stop", False)
+    assert_allclose(hit.time, blow, rtol=0, atol=1e-6)
+    across = -FIRST * np.sin(angles[:, 0]) - reach * np.sin(angles[:, 1])
+    assert_allclose(motion.body("lower").position[:, 0], across, rtol=0, atol=2e-6)
+    assert np.abs(motion.energy.imbalance).max() < 1e-5
+    # Nothing but its stop acts along the joint.
+    states = np.array([motion.model.joint["shoulder"](*at) for at in zip(motion.x, motion.inputs, strict=True)])
+    effort, _, push = states.reshape(-1, 3).T
+    held = motion.times > blow
+    assert_allclose(push, effort, rtol=1e-6, atol=1e-9)
+    assert np.all(push[~held] == 0.0) and np.all(push[held] < 0.0)
+
+
 def arm_with_cable() -> Scene:
     """An arm over a floor, whose cable spans its inner half: the bend of the gap jumps at the cable's holes."""
     rod = {
