@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted, parted_by_rows, placed
 from cosserat_casadi.compiling.printed_kernels import Kernel
 from cosserat_casadi.compiling.scalars_in_c import with_calls_in_fours
-from cosserat_casadi.errors import ExportError, refuse
+from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.function_table import PARAMETERS
@@ -101,8 +101,8 @@ def _flows_apart(discrete: DiscreteScene) -> list[int]:
     return [int(owner) for owner in owners]
 
 
-def check_motion(model: Model) -> None:
-    """Refuse a scene that has no motion in C.
+def check_motion(model: Model, *, on_device: bool = False) -> None:
+    """Refuse a scene that has no motion in C, or none beside batches on a GPU.
 
     Raises:
         ExportError: with every fault.
@@ -110,6 +110,9 @@ def check_motion(model: Model) -> None:
     problems = [*immovable(model), *refused_in_motion(model.scene)]
     if model.scene.touches_exactly:
         problems += untouchable(model, None)
+    if on_device and stop_facings(model):
+        remedy = "export the scene twice: with --dynamics, and with --cuda"
+        problems.append(Problem("--cuda", "steps with rigid stops of joints are not written for a GPU", remedy))
     refuse(problems, ExportError)
 
 

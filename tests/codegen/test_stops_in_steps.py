@@ -5,12 +5,14 @@ from __future__ import annotations
 import copy
 from pathlib import Path
 
+import fmpy
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Motion, scene_from_dict, simulate
+from cosserat_casadi import ExportError, Motion, build, export, scene_from_dict, simulate
 from cosserat_casadi.codegen.compiled_motion import StepState
+from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_steps_in_contact import Moving, compare_with_differences
@@ -74,6 +76,30 @@ def test_derivatives_on_and_off_a_stop(moment: float, tmp_path: Path) -> None:
         state = made.compiled.step(state, 2e-3, {"hinge.moment": lifts}, memory=memory).state
     assert bool(made.compiled.step_contacts(memory)) == (moment == 0.0)
     compare_with_differences(made, state, copy.deepcopy(memory), 2e-3, of_load=(1e-2, 1.0, 1e3), least=1e-11)
+
+
+@pytest.mark.parametrize("start", ["unloaded", "equilibrium"])
+def test_an_fmu_takes_these_steps(start: str, tmp_path: Path) -> None:
+    tables = lever(restitution=0.5)
+    tables["simulation"]["start"] = start
+    made = Moving(tables, tmp_path)
+    unit = write_fmu(made.model, tmp_path / "robot.fmu", "robot")
+    height = "lever.position.z"
+    found = fmpy.simulate_fmu(str(unit), stop_time=0.4, step_size=1e-3, output_interval=1e-3, output=[height])
+    state, memory = made.compiled.contact_start(), made.compiled.step_memory()
+    wanted = []
+    for _ in range(400):
+        state = made.compiled.step(state, 1e-3, {}, memory=memory).state
+        wanted.append(float(made.model.body["lever"](state.x, made.model.pack())[0][2]))
+    assert_allclose(found[height][1:], wanted, rtol=0, atol=1e-9)
+    if start == "equilibrium":
+        assert made.compiled.step_contacts(memory)
+        assert_allclose(found[height], found[height][0], rtol=0, atol=1e-9)
+
+
+def test_a_gpu_is_refused_beside_them(tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match="not written for a GPU"):
+        export(build(scene_from_dict(lever())), tmp_path / "robot", dynamics=True, cuda=True)
 
 
 @pytest.mark.parametrize("reach", [0.2, 0.4])
