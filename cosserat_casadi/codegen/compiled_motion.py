@@ -71,7 +71,8 @@ class StepContact:
         obstacle: name of the obstacle; of a joint its key, ``lower_stop`` or ``upper_stop``.
         of_body: whether a body touches.
         place: abscissa X of the section; 0 of a body or a joint.
-        force: on it along the normal of the obstacle, mean of the last stretch of the step, N; push of a stop, N or N m.
+        force: on it along the normal of the obstacle, mean of the last stretch of the step, N; of a stop its push, N or
+            N m.
         friction: on it along the surface, mean of the same stretch, world axes, shape (3,), N.
         slips: whether it slips at the end of the step, as all does without friction; else it sticks.
     """

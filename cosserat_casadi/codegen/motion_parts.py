@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -117,12 +118,12 @@ def check_motion(model: Model, *, on_device: bool = False) -> None:
 
 
 def _stops_apart(
-    model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[ca.MX] = ()
-) -> tuple[ca.MX, Sequence[ca.MX]]:
+    model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[Any] = ()
+) -> tuple[ca.MX, Sequence[Any]]:
     """The equations, and their derivatives by x, v and a, without the pairs of rigid stops.
 
-    Rigid stops push in steps as obstacles do, so that balances along coordinates of joints are without their pushes. The
-    row of a pair says that its push is what such a balance holds. Without rigid stops all is returned as it is.
+    Rigid stops push in steps as obstacles do, so that balances along coordinates of joints are without their pushes.
+    The row of a pair says that its push is what such a balance holds. Without rigid stops all is returned as it is.
     """
     stops = stop_facings(model)
     if not stops:

@@ -352,7 +352,7 @@ class OneSided:
     def gaps_and_gradients(self) -> ca.Function:
         """(x, inputs) ↦ :attr:`gaps`, then their gradients by the n unknowns, column after column, (m + m n)×1.
 
-        Gaps of rigid stops are infinite, as :data:`APART` counts: steps with friction have these stops among what touches.
+        The gap of a rigid stop is :data:`APART`: steps with friction have rigid stops among what touches.
         """
         x, _ = self._symbols
         split = ca.vertsplit(self._gap_rows)

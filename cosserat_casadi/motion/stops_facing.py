@@ -1,8 +1,8 @@
 """Rigid stops of joints among what touches exactly in steps in C.
 
-A stop is a plane, and the coordinate of its joint is a point on the line across it: the way of the joint to its stop is the
-distance of the point from the plane, and the push of the stop is the force along the normal. Steps in C know points,
-surfaces and the law between gaps and forces, so that a stop needs no law of its own.
+A stop is a plane, and the coordinate of its joint is a point on the line across it: the way of the joint to its stop is
+the distance of the point from the plane, and the push of the stop is the force along the normal. Steps in C know
+points, surfaces and the law between gaps and forces, so that stops need no other law.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def stop_facings(model: Model) -> list[StopFacing]:
 
 
 def struck_in_steps(model: Model) -> list[Facing]:
-    """All pairs that steps in C keep apart: what :func:`~cosserat_casadi.motion.facings.facings` has, then rigid stops."""
+    """All pairs that steps in C keep apart: rods and bodies with obstacles, then joints with rigid stops."""
     return [*facings(model), *stop_facings(model)]
 
 

@@ -1,4 +1,4 @@
-"""Rigid stops of joints in steps of motions in C: closed forms, simulated motions, differences, friction beside them."""
+"""Rigid stops of joints in steps in C: closed forms, simulated motions, differences, friction beside them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.slow  # A compiler runs for each scene.
 
 
 def test_a_lever_bounces_and_rests_on_its_stop(tmp_path: Path) -> None:
-    """Its energy is that of its fall, then so much of it as the stop gives back; what it rests with bears its weight."""
+    """A stop gives back its share of the energy of the fall; at last its push bears the weight."""
     share, dt, count = 0.5, 1e-3, 400
     made = Moving(lever(restitution=share, upper_stop=1.0), tmp_path)
     compiled, entry = made.compiled, made.model.discrete.coordinate(made.model.discrete.stops[0].placed).start

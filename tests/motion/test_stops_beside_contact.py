@@ -185,7 +185,7 @@ def test_a_stop_beside_hardly_any_friction_acts_as_without(reach: float) -> None
     tables["obstacles"][0]["friction"] = 1e-8
     motion = simulate(scene_from_dict(tables))
     assert motion.converged
-    angles, blow, leaves = slid(reach, motion.times)
+    angles, blow, _ = slid(reach, motion.times)
     (hit,) = [event for event in motion.events if event.owner == "shoulder"]
     assert (hit.kind, hit.obstacle, hit.of_body) == ("stop_hit", "upper_stop", False)
     assert_allclose(hit.time, blow, rtol=0, atol=1e-6)
