@@ -117,9 +117,7 @@ def check_motion(model: Model, *, on_device: bool = False) -> None:
     refuse(problems, ExportError)
 
 
-def _stops_apart(
-    model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[Any] = ()
-) -> tuple[ca.MX, Sequence[Any]]:
+def _stops_apart(model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[Any] = ()) -> tuple[ca.MX, Sequence[Any]]:
     """The equations, and their derivatives by x, v and a, without the pairs of rigid stops.
 
     Rigid stops push in steps as obstacles do, so that balances along coordinates of joints are without their pushes.

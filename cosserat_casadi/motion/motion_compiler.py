@@ -41,7 +41,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_residual,
 )
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
-from cosserat_casadi.motion.stops_facing import points_in_steps
+from cosserat_casadi.motion.stops_facing import points_of, struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.motion.tip_paths import function_of_paths
 from cosserat_casadi.motion.trajectory import StepStatistics
@@ -349,8 +349,8 @@ def functions_of_limits(model: Model) -> list[ca.Function]:
 
 
 def _points(model: Model) -> list[MovingPoints]:
-    """Points of what touches exactly; with friction of exact contact of joints and rigid stops too."""
-    return points_in_steps(model) if model.scene.rubs_exactly else touching_points(model)
+    """Points of what touches exactly; with friction of rigid stops and cables too."""
+    return points_of(struck_beside_friction(model)) if model.scene.rubs_exactly else touching_points(model)
 
 
 def _residual(model: Model) -> list[ca.Function]:

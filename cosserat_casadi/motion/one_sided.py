@@ -352,11 +352,11 @@ class OneSided:
     def gaps_and_gradients(self) -> ca.Function:
         """(x, inputs) ↦ :attr:`gaps`, then their gradients by the n unknowns, column after column, (m + m n)×1.
 
-        The gap of a rigid stop is :data:`APART`: steps with friction have rigid stops among what touches.
+        The gap of a rigid pair is :data:`APART`: steps with friction have rigid pairs among what touches.
         """
         x, _ = self._symbols
         split = ca.vertsplit(self._gap_rows)
-        rows = [ca.MX(APART) if pair.rigid and pair.side else row for pair, row in zip(self.pairs, split, strict=True)]
+        rows = [ca.MX(APART) if pair.rigid else row for pair, row in zip(self.pairs, split, strict=True)]
         gaps = ca.densify(ca.vertcat(*rows))
         return ca.Function("gaps", self._symbols, [ca.vertcat(gaps, ca.vec(ca.densify(ca.jacobian(gaps, x))))])
 

@@ -40,7 +40,7 @@ from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
-from cosserat_casadi.motion.stops_facing import points_in_steps, struck_in_steps
+from cosserat_casadi.motion.stops_facing import points_of, struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
@@ -143,7 +143,7 @@ class RubbingTouch(NamedTuple):
     """A section or a body that touches in a stretch.
 
     Attributes:
-        facing: index of the pair of a rod or body and an obstacle, or of a joint and a rigid stop.
+        facing: index of the pair of a rod or body and an obstacle, of a joint and a rigid stop, or of a cable.
         slides: whether the place follows the least gap along the rod; else it is a fixed section, or a body.
         presses: whether a force acts.
         slips: whether the point slips in the stretch; else it sticks.
@@ -209,8 +209,8 @@ class RubbingSteps:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.facings = struck_in_steps(model)
-        points = points_in_steps(model)
+        self.facings = struck_beside_friction(model)
+        points = points_of(self.facings)
         most_points = max(own.count for own in points)
         most_looks = max(LOOKS * (len(own.ends) - 1) + 1 for own in self.facings)
         counts = (model.size, model.inputs.size, len(points), len(self.facings))
@@ -255,7 +255,7 @@ class RubbingSteps:
         held.share("is_shape", differential.astype(np.intc))
         held.share("displacements", np.where(differential, displacements(model), 0.0))
         held.record.deepest = float(model.scene.accuracy.tolerance)
-        # Pairs of rigid stops have no gap to close: these stops are among what touches.
+        # Rigid pairs have no gap to close: they are among what touches.
         pairs = OneSided(model)
         if pairs.pairs:
             held.record.pair_count = len(pairs.pairs)

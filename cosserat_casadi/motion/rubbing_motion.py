@@ -30,11 +30,12 @@ from cosserat_casadi.motion.history import (
     equations_of,
 )
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.rubbing_library import KNOWN, RubbingSteps, RubbingTouch, ToldStretch
 from cosserat_casadi.motion.rubbing_step import RubbingStep
 from cosserat_casadi.motion.step_kernels import StepKernels
 from cosserat_casadi.motion.step_words import STAGES
-from cosserat_casadi.motion.stops_facing import StopFacing
+from cosserat_casadi.motion.stops_facing import PairFacing
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
 from cosserat_casadi.numerics.guards import crossing
@@ -55,9 +56,6 @@ LAST = 1.5
 
 ROUNDED = 1e-12
 """Share of a step that counts as rounding."""
-
-OF_STOPS = {"impact": "stop_hit", "lift_off": "stop_left"}
-"""Events of joints and rigid stops, by those of rods and obstacles."""
 
 NO_COST = IntegrationCost(0, 0, 0, 0, 0)
 
@@ -170,14 +168,14 @@ class _Told:
     ) -> RubbingStep:
         """The stretch as a step; behind the n unknowns stand m forces along normals, then 2 m along the tangents.
 
-        Pushes of rigid stops are among the n unknowns.
+        Pushes of rigid stops and tensions are among the n unknowns.
         """
         method = radau(STAGES)
         differential = self.model.discrete.unknowns.differential
         of_stages, last = stretch.unknowns.copy(), stretch.end.copy()
         for touch in pressing:
             facing = self.steps.facings[touch.facing]
-            if isinstance(facing, StopFacing):
+            if isinstance(facing, PairFacing):
                 of_stages[:, facing.push_entry] = touch.forces
                 last[0, facing.push_entry] = touch.forces[-1]
         pressing = self._on_obstacles(pressing)
@@ -214,8 +212,8 @@ class _Told:
         return ContactPhase(touches, self._laid(pressing), Follower(self.steps.facings, touches))
 
     def _on_obstacles(self, touches: Sequence[RubbingTouch]) -> list[RubbingTouch]:
-        """Contacts without those of joints and rigid stops."""
-        return [own for own in touches if not isinstance(self.steps.facings[own.facing], StopFacing)]
+        """Contacts without rigid stops and cables."""
+        return [own for own in touches if not isinstance(self.steps.facings[own.facing], PairFacing)]
 
     def _laid(self, touches: Sequence[RubbingTouch]) -> frozenset[int]:
         """Indices of the pairs in which a rod lies."""
@@ -240,11 +238,14 @@ class _Told:
 
         def event(kind: str, own: RubbingTouch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
             facing = facings[own.facing]
-            is_stop = isinstance(facing, StopFacing)
-            word = OF_STOPS.get(kind, kind) if is_stop else kind
-            of_body = facing.of_body and not is_stop
+            if isinstance(facing, PairFacing):
+                one_sided = OneSided(self.model)
+                closes = kind == "impact"
+                return one_sided.event(
+                    facing.number, time, closes=closes, lost=energy, impulse=impulse / facing.force_unit
+                )
             place = min(max(own.place, 0.0), 1.0)
-            return ContactEvent(word, time, facing.owner, facing.obstacle.name, place, energy, impulse, of_body)
+            return ContactEvent(kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body)
 
         for own in struck:
             yield event("impact", own, stretch.taken * own.impulse / total, own.impulse)
@@ -331,12 +332,13 @@ def _begin(
     model, piece = steps.model, pieces[0]
     x, v = start
     inputs = piece.at(piece.start).value
-    depths = [-facing.deepest(facing.nodes(x, inputs)).gap for facing in steps.facings]
+    obstacles = [facing for facing in steps.facings if not isinstance(facing, PairFacing)]
+    depths = [-facing.deepest(facing.nodes(x, inputs)).gap for facing in obstacles]
     if max(depths) > model.scene.accuracy.tolerance:
         what = f"a rod is inside an obstacle by {max(depths):.2g} (over the length) where the motion starts"
         refuse([Problem("simulation.start", what, "start from another shape, or move the obstacle")])
     found = consistent_start(plain, piece.start, x, v, DIFFERENTIATED * piece.smooth)
-    check_start(model, piece, Restart(found, ContactPhase()), {}, pieces[-1].end)
+    check_start(model, piece, Restart(found, ContactPhase()), sags_by_cable(model, x, inputs), pieces[-1].end)
     return found
 
 

@@ -22,7 +22,7 @@ from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
 from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing
 from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
-from cosserat_casadi.motion.stops_facing import StopFacing, points_in_steps, stop_facings, struck_in_steps
+from cosserat_casadi.motion.stops_facing import StopFacing, points_of, stop_facings, struck_in_steps
 from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
 CONTACT_FILES = (
@@ -45,7 +45,7 @@ FEWEST_TOUCHES = 8
 def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
     """Functions of the points that may touch, then surfaces of the obstacles, by their names in C."""
     found: dict[str, ca.Function] = {}
-    for number, points in enumerate(points_in_steps(model)):
+    for number, points in enumerate(points_of(struck_in_steps(model))):
         found |= {f"{_stem(names, number)}_{word}": function for word, function in points.in_steps.items()}
     for number, obstacle in enumerate(_obstacles(model)):
         name = names.kernel(f"surface_{number}")
@@ -69,7 +69,7 @@ def contact_words(model: Model, names: Names) -> Words:
     faces = struck_in_steps(model)
     if not faces:
         return {"steps_in_contact": False, "contact_rubs": False}
-    points = points_in_steps(model)
+    points = points_of(struck_in_steps(model))
     stops = stop_facings(model)
     rods = [own for own in faces if isinstance(own, RodFacing)]
     nodes = [own.nodes_of_element for own in rods]
@@ -98,7 +98,7 @@ def contact_words(model: Model, names: Names) -> Words:
 def contact_pattern(model: Model) -> ca.Sparsity:
     """Pairs of unknowns by which the gap of something that touches has a second derivative."""
     together = np.zeros((model.size, model.size), dtype=bool)
-    for points in points_in_steps(model):
+    for points in points_of(struck_in_steps(model)):
         positions = points.in_steps["positions"]
         moving = sorted(set(positions.jac_sparsity(0, 0).get_col()))
         together[np.ix_(moving, moving)] = True
@@ -176,7 +176,7 @@ def start_shape(model: Model) -> FloatArray:
 
 def _functions(model: Model, names: Names) -> Iterator[str]:
     """Calls of the kernels."""
-    for number, points in enumerate(points_in_steps(model)):
+    for number, points in enumerate(points_of(struck_in_steps(model))):
         words = {"number": number, "stem": _stem(names, number), "moved_by_inputs": "by_inputs" in points.in_steps}
         yield render("points_in_motion.c.in", words)
     for number in range(len(_obstacles(model))):
@@ -190,7 +190,7 @@ def _functions(model: Model, names: Names) -> Iterator[str]:
 
 def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
     """Tables of points, and of pairs of a rod or body and an obstacle."""
-    points = points_in_steps(model)
+    points = points_of(struck_in_steps(model))
     words = ("positions", "velocities", "gradient", "hessian")
     records = []
     for number, own in enumerate(points):
