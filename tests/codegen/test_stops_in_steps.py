@@ -16,7 +16,8 @@ from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.status import MotionStatus
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.test_steps_in_contact import Moving, compare_with_differences
-from tests.model.test_joint_stops import BOUND, INERTIA, WEIGHT, lever
+from tests.model.test_base_joints import GRAVITY
+from tests.model.test_joint_stops import BOUND, INERTIA, MASS, WEIGHT, lever
 from tests.motion.test_stops_beside_contact import sliding
 
 pytestmark = pytest.mark.slow  # A compiler runs for each scene.
@@ -55,10 +56,36 @@ def test_a_lever_bounces_and_rests_on_its_stop(tmp_path: Path) -> None:
     assert_allclose([angles[-1], rates[-1], pushes[-1]], [-BOUND, 0.0, WEIGHT * np.cos(BOUND)], rtol=0, atol=1e-7)
     (held,) = compiled.step_contacts(memory)
     assert_allclose(held.force, pushes[-1], rtol=1e-9, atol=0)
+    # The way of a solve may lead beyond a stop, which its equations have.
+    assert compiled.solve().converged
     # What begins beyond its stop is told.
     deeper = simulate(scene_from_dict(lever(restitution=share, upper_stop=1.0, lower_stop=-BOUND - 0.01)))
     beyond = StepState(deeper.x[-1], 0 * state.v, 0 * state.a)
     assert compiled.step(beyond, dt, {}).status is MotionStatus.NOT_SOLVED
+
+
+def test_a_body_on_a_slide_strikes_its_stop_and_rests_there(tmp_path: Path) -> None:
+    """A push in N, a way in m: both stops of one joint, of which one is met with √(2 g d) and bears the weight."""
+    way, share, dt = 0.05, 0.5, 1e-3
+    slide = {"kind": "prismatic", "axis": [0, 0, 1], "lower_stop": -way, "upper_stop": way, "restitution": share}
+    made = Moving(lever(**slide), tmp_path)
+    compiled = made.compiled
+    state, memory = compiled.rest(), compiled.step_memory()
+    assert state is not None
+    fall = np.sqrt(2 * way / GRAVITY)
+    rebound = share * np.sqrt(2 * GRAVITY * way)
+    heights = []
+    for number in range(1, 601):
+        state = compiled.step(state, dt, {}, memory=memory).state
+        heights.append(float(made.model.body["lever"](state.x, made.model.pack())[0][2]))
+        since = number * dt - fall
+        fallen = GRAVITY * (number * dt) ** 2 / 2 if since < 0.0 else way - rebound * since + GRAVITY * since**2 / 2
+        if since < 2 * rebound / GRAVITY:
+            assert_allclose(heights[-1], heights[0] + GRAVITY * dt**2 / 2 - fallen, rtol=0, atol=1e-7)
+    assert_allclose(heights[-1], heights[0] - way, rtol=0, atol=1e-5)
+    (held,) = compiled.step_contacts(memory)
+    _, _, push = compiled.joint["hinge"](state.x, compiled.defaults)
+    assert_allclose([held.force, abs(float(push))], MASS * GRAVITY, rtol=1e-6, atol=0)
 
 
 def angles_of(motion: Motion) -> FloatArray:
