@@ -64,14 +64,15 @@ class CompiledStep:
 
 @dataclass(frozen=True)
 class StepContact:
-    """A section or a body that presses on an obstacle at the end of a step.
+    """A section or a body that presses on an obstacle, or a joint on its rigid stop, at the end of a step.
 
     Attributes:
-        owner: name of the rod, or of the body.
-        obstacle: name of the obstacle.
+        owner: name of the rod, of the body, or of the joint.
+        obstacle: name of the obstacle; of a joint its key, ``lower_stop`` or ``upper_stop``.
         of_body: whether a body touches.
-        place: abscissa X of the section; 0 of a body.
-        force: on it along the normal of the obstacle, mean of the last stretch of the step, N.
+        place: abscissa X of the section; 0 of a body or a joint.
+        force: on it along the normal of the obstacle, mean of the last stretch of the step, N; of a stop its push, N or
+            N m.
         friction: on it along the surface, mean of the same stretch, world axes, shape (3,), N.
         slips: whether it slips at the end of the step, as all does without friction; else it sticks.
     """
@@ -276,10 +277,10 @@ class CompiledMotion(LoadedLibrary):
         found = []
         for own in in_c[:count]:
             pair = pairs[own.pair]
-            owner = pair.get("rod") or pair["body"]
+            owner, touched = (pair[word] for word in pair)
             friction = np.array(getattr(own, "friction", (0.0, 0.0, 0.0)))
             slips = bool(getattr(own, "slips", True))
-            found.append(StepContact(owner, pair["obstacle"], "body" in pair, own.place, own.force, friction, slips))
+            found.append(StepContact(owner, touched, "body" in pair, own.place, own.force, friction, slips))
         return found
 
     def rest(

@@ -181,7 +181,7 @@ def folder_files(
         ExportError: the scene has no motion, and that is asked for.
     """
     if dynamics:
-        check_motion(model)
+        check_motion(model, on_device=cuda)
         model = model.in_motion
     else:
         refuse_obstacles(model.scene, "exported C")

@@ -39,6 +39,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.model.strain_margins import APART, VANISHED, margins_of
+from cosserat_casadi.motion.stops_facing import struck_in_steps
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
@@ -180,7 +181,7 @@ class FolderContents:
         linear = DENSE if self.parts is None else BLOCKS
         motion = () if self.motion is None else MOTION_FILES
         passages = PASSAGE_FILES if watches_passages(model) else ()
-        contact = CONTACT_FILES if self.motion is not None and model.scene.touches_exactly else ()
+        contact = CONTACT_FILES if self.motion is not None and struck_in_steps(model) else ()
         friction = FRICTION_FILES if self.motion is not None and model.scene.rubs_exactly else ()
         return (*SHARED, *estimate, *passages, *linear, *motion, *contact, *friction)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -27,6 +28,7 @@ from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.contact_checks import untouchable
 from cosserat_casadi.motion.motion_checks import immovable
+from cosserat_casadi.motion.stops_facing import stop_facings
 
 MATRICES = ("stiffness", "damping", "mass")
 """Derivatives of the equations by x, v and a."""
@@ -60,7 +62,8 @@ class MotionInC:
 def motion_in_c(model: Model, names: Names) -> MotionInC:
     """The equations of motion of a model in parts."""
     state, inputs, factor, arguments = _symbols(model)
-    matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
+    plain = model.inverse_dynamics.call(arguments)[0], model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
+    equations, matrices = _stops_apart(model, arguments[0], *plain)
     pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity() + contact_pattern(model)
     partition = blocks(model.discrete, pattern)
     if partition is not None:
@@ -73,7 +76,7 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
         partition = order = Blocks([0] * model.size, pattern + dense, [0] * model.size)
         if len(filled) < model.size:
             order = replace(partition, owners=_flows_apart(model.discrete))
-    residual = ca.Function("motion", [state, inputs, factor], [model.inverse_dynamics.call(arguments)[0]])
+    residual = ca.Function("motion", [state, inputs, factor], [equations])
     return MotionInC(
         blocks=partition,
         order=order,
@@ -99,8 +102,8 @@ def _flows_apart(discrete: DiscreteScene) -> list[int]:
     return [int(owner) for owner in owners]
 
 
-def check_motion(model: Model) -> None:
-    """Refuse a scene that has no motion in C.
+def check_motion(model: Model, *, on_device: bool = False) -> None:
+    """Refuse a scene that has no motion in C, or none beside batches on a GPU.
 
     Raises:
         ExportError: with every fault.
@@ -108,11 +111,35 @@ def check_motion(model: Model) -> None:
     problems = [*immovable(model), *refused_in_motion(model.scene)]
     if model.scene.touches_exactly:
         problems += untouchable(model, None)
-    for stop in model.discrete.stops:
-        if stop.stiffness is None:
-            remedy = "give the joint a stop_stiffness that the steps resolve, or simulate in Python"
-            problems.append(Problem(stop.owner, "is rigid, and a step of given length finds no impact on it", remedy))
+    if on_device and stop_facings(model):
+        remedy = "export the scene twice: with --dynamics, and with --cuda"
+        problems.append(Problem("--cuda", "steps with rigid stops of joints are not written for a GPU", remedy))
     refuse(problems, ExportError)
+
+
+def _stops_apart(model: Model, x: ca.MX, residual: ca.MX, matrices: Sequence[Any] = ()) -> tuple[ca.MX, Sequence[Any]]:
+    """The equations, and their derivatives by x, v and a, without the pairs of rigid stops.
+
+    Rigid stops push in steps as obstacles do, so that balances along coordinates of joints are without their pushes.
+    The row of a pair says that its push is what such a balance holds. Without rigid stops all is returned as it is.
+    """
+    stops = stop_facings(model)
+    if not stops:
+        return residual, matrices
+    rows = ca.vertsplit(ca.densify(residual))
+    rows_of = [ca.vertsplit(matrix) for matrix in matrices]
+    unit = [ca.MX.eye(model.size)[own.push_entry, :] for own in stops]
+    for own, push in zip(stops, unit, strict=True):
+        rows[own.coordinate_entry] += own.stop.side * x[own.push_entry]
+        for of_positions in rows_of[:1]:
+            of_positions[own.coordinate_entry] += own.stop.side * push
+    for own, push in zip(stops, unit, strict=True):
+        held = own.stop.side * rows[own.coordinate_entry]
+        rows[own.push_entry] = x[own.push_entry] - ca.fmax(held, 0)
+        for number, of_one in enumerate(rows_of):
+            by_one = -own.stop.side * (held > 0) * of_one[own.coordinate_entry]
+            of_one[own.push_entry] = by_one + push if number == 0 else by_one
+    return ca.vertcat(*rows), [ca.vertcat(*of_one) for of_one in rows_of]
 
 
 def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
@@ -150,7 +177,7 @@ def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
     state, inputs, factor, arguments = _symbols(model)
     # In the function's own symbols CasADi sees through the call, and writes a quarter of the derivatives.
     given = model.inverse_dynamics.mx_in()
-    residual = model.inverse_dynamics.call(given)[0]
+    residual, _ = _stops_apart(model, given[0], model.inverse_dynamics.call(given)[0])
     symbols = dict(zip(model.inverse_dynamics.name_in(), given, strict=True))
     by_each = []
     for name_of_order in ("inputs", "inputs_rate", "inputs_acceleration"):

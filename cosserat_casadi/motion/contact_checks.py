@@ -16,7 +16,6 @@ from cosserat_casadi.model.contact_pairs import named_pairs
 from cosserat_casadi.motion.coincident_ends import meetings
 from cosserat_casadi.motion.event_restart import LAID_DOWN
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.tip_paths import watched_states
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -48,11 +47,6 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
     if simulation is not None and simulation.integrator == "gauss":
         yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
     remedy = "give each obstacle a width, m, for a contact that is smooth"
-    if simulation is not None and model.scene.rubs_exactly:
-        for pair in OneSided(model).pairs:
-            if pair.rigid:
-                what = "a rigid stop or cable strikes, for which steps with friction of exact contact have no blow"
-                yield Problem(pair.name, what, f"give it a stiffness, or {remedy}; or leave friction out")
     yield from _unfit_pairs(model)
     yield from _too_thin(model)
     # Bodies that stand for rows of disks are rows again where the contact is smooth.

@@ -31,6 +31,7 @@ from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.displacement import function_of_displacements
 from cosserat_casadi.motion.facings import touching_points
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
+from cosserat_casadi.motion.moving_points import MovingPoints
 from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.motion.step_kernels import (
     MATRICES,
@@ -40,6 +41,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_residual,
 )
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
+from cosserat_casadi.motion.stops_facing import points_of, struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.motion.tip_paths import function_of_paths
 from cosserat_casadi.motion.trajectory import StepStatistics
@@ -346,16 +348,21 @@ def functions_of_limits(model: Model) -> list[ca.Function]:
     return [with_dense_results(model.resolution_index, RESOLUTION), *margins]
 
 
+def _points(model: Model) -> list[MovingPoints]:
+    """Points of what touches exactly; with friction of rigid stops and cables too."""
+    return points_of(struck_beside_friction(model)) if model.scene.rubs_exactly else touching_points(model)
+
+
 def _residual(model: Model) -> list[ca.Function]:
     function = model.inverse_dynamics
     arguments = function.mx_in()
     residual = ca.Function(RESIDUAL, arguments, [ca.densify(function(*arguments))], function.name_in(), ["residual"])
     # Every motion asks for the watched paths, for how far unknowns move them, and for rows on limits and constraints.
     beside = [function_of_paths(model), function_of_displacements(model), *functions_of_flight(model)]
-    for points in touching_points(model):
+    for points in _points(model):
         beside += points.in_iterations
     if model.scene.rubs_exactly:
-        beside += [points.velocities for points in touching_points(model)]
+        beside += [points.velocities for points in _points(model)]
         beside += functions_of_sliding(model)
     # With parameters no motion is computed, and rows have no parameters.
     rows = [] if model.parameters.size else [*functions_of_limits(model), *functions_of_closing(model)]
@@ -364,7 +371,7 @@ def _residual(model: Model) -> list[ca.Function]:
 
 def _jacobians(model: Model) -> list[ca.Function]:
     beside = derivatives_of_flight(model)
-    for points in touching_points(model):
+    for points in _points(model):
         beside += points.in_derivatives
     return [dense_jacobians(model, JACOBIANS), *beside]
 

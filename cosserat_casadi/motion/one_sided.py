@@ -38,6 +38,10 @@ TOUCHING = 1e-9
 """Gap, relative to the rod's length or in rad, from which on a pair counts as closed where a motion starts."""
 
 
+APART = 1e30
+"""Gap of a pair that is never closed."""
+
+
 @dataclass(frozen=True)
 class Pair:
     """A cable or a stop: its push, an unknown, is zero where its gap is open, and never below.
@@ -346,8 +350,15 @@ class OneSided:
 
     @cached_property
     def gaps_and_gradients(self) -> ca.Function:
-        """(x, inputs) ↦ :attr:`gaps`, then their gradients by the n unknowns, column after column, (m + m n)×1."""
-        return ca.Function("gaps", self._symbols, [ca.vertcat(self._gap_rows, self._gradient_entries)])
+        """(x, inputs) ↦ :attr:`gaps`, then their gradients by the n unknowns, column after column, (m + m n)×1.
+
+        The gap of a rigid pair is :data:`APART`: steps with friction have rigid pairs among what touches.
+        """
+        x, _ = self._symbols
+        split = ca.vertsplit(self._gap_rows)
+        rows = [ca.MX(APART) if pair.rigid else row for pair, row in zip(self.pairs, split, strict=True)]
+        gaps = ca.densify(ca.vertcat(*rows))
+        return ca.Function("gaps", self._symbols, [ca.vertcat(gaps, ca.vec(ca.densify(ca.jacobian(gaps, x))))])
 
     @cached_property
     def _gradient_entries(self) -> Matrix:

@@ -36,11 +36,11 @@ from cosserat_casadi.motion.contact_law import (
     without_compiler,
 )
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.facings import facings, touching_points
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
+from cosserat_casadi.motion.stops_facing import points_of, struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
@@ -143,7 +143,7 @@ class RubbingTouch(NamedTuple):
     """A section or a body that touches in a stretch.
 
     Attributes:
-        facing: index of the pair of a rod or body and an obstacle.
+        facing: index of the pair of a rod or body and an obstacle, of a joint and a rigid stop, or of a cable.
         slides: whether the place follows the least gap along the rod; else it is a fixed section, or a body.
         presses: whether a force acts.
         slips: whether the point slips in the stretch; else it sticks.
@@ -209,8 +209,8 @@ class RubbingSteps:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.facings = facings(model)
-        points = touching_points(model)
+        self.facings = struck_beside_friction(model)
+        points = points_of(self.facings)
         most_points = max(own.count for own in points)
         most_looks = max(LOOKS * (len(own.ends) - 1) + 1 for own in self.facings)
         counts = (model.size, model.inputs.size, len(points), len(self.facings))
@@ -255,6 +255,7 @@ class RubbingSteps:
         held.share("is_shape", differential.astype(np.intc))
         held.share("displacements", np.where(differential, displacements(model), 0.0))
         held.record.deepest = float(model.scene.accuracy.tolerance)
+        # Rigid pairs have no gap to close: they are among what touches.
         pairs = OneSided(model)
         if pairs.pairs:
             held.record.pair_count = len(pairs.pairs)
@@ -291,10 +292,10 @@ class RubbingSteps:
         self._held.point("points", Held(of_points))
         of_facings = (RubbingFacingRecord * len(self.facings))()
         sliding = functions_of_sliding(self.model)
-        for record, facing, function in zip(of_facings, self.facings, sliding, strict=True):
+        for number, (record, facing) in enumerate(zip(of_facings, self.facings, strict=True)):
             held = _facing_record(record, facing, self._points.index(facing.points))
             if facing.obstacle.rubs:
-                held.point("slide", _function_record(function, libraries.residual))
+                held.point("slide", _function_record(sliding[number], libraries.residual))
             self._held.keep(held)
         self._held.point("facings", Held(of_facings))
 
@@ -437,6 +438,7 @@ def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dic
         "interface_room": 1,
         "steps_in_contact": True,
         "contact_rubs": True,
+        "has_stops": False,
         "most_touches": MOST_TOUCHES,
         "most_points": most_points,
         "most_looks": most_looks,

@@ -30,10 +30,12 @@ from cosserat_casadi.motion.history import (
     equations_of,
 )
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.one_sided import OneSided, sags_by_cable
 from cosserat_casadi.motion.rubbing_library import KNOWN, RubbingSteps, RubbingTouch, ToldStretch
 from cosserat_casadi.motion.rubbing_step import RubbingStep
 from cosserat_casadi.motion.step_kernels import StepKernels
 from cosserat_casadi.motion.step_words import STAGES
+from cosserat_casadi.motion.stops_facing import PairFacing
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
 from cosserat_casadi.numerics.guards import crossing
@@ -163,19 +165,28 @@ class _Told:
     def _step(
         self, stretch: ToldStretch, pressing: Sequence[RubbingTouch], time: float, end_time: float
     ) -> RubbingStep:
-        """The stretch as a step; behind the n unknowns stand m forces along normals, then 2 m along the tangents."""
+        """The stretch as a step; behind the n unknowns stand m forces along normals, then 2 m along the tangents.
+
+        Pushes of rigid stops and tensions are among the n unknowns.
+        """
         method = radau(STAGES)
         differential = self.model.discrete.unknowns.differential
+        of_stages, last = stretch.unknowns.copy(), stretch.end.copy()
+        for touch in pressing:
+            facing = self.steps.facings[touch.facing]
+            if isinstance(facing, PairFacing):
+                of_stages[:, facing.push_entry] = touch.forces
+                last[0, facing.push_entry] = touch.forces[-1]
+        pressing = self._on_obstacles(pressing)
         normal = np.array([touch.forces for touch in pressing]).reshape(-1, STAGES).T
         along = np.array([touch.friction.T for touch in pressing]).reshape(-1, STAGES).T
         forces = np.concatenate([normal, along], axis=1)
         none = np.zeros(forces.shape[1])
-        unknowns = np.concatenate([stretch.unknowns, forces], axis=1)
+        unknowns = np.concatenate([of_stages, forces], axis=1)
         first = method.values_at(0.0) @ unknowns
         x = np.where(differential, stretch.x, first[: len(differential)])
         a = np.where(differential, first[: len(differential)], 0.0)
         start = Instant(time, np.append(x, first[len(x) :]), np.append(stretch.v, none), np.append(a, none))
-        last = stretch.end
         end = Instant(end_time, np.append(last[0], forces[-1]), np.append(last[1], none), np.append(last[2], none))
         return RubbingStep(
             method=method,
@@ -195,8 +206,13 @@ class _Told:
         )
 
     def _phase(self, pressing: Sequence[RubbingTouch]) -> ContactPhase:
-        touches = tuple(MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in pressing)
+        on_obstacles = self._on_obstacles(pressing)
+        touches = tuple(MovingContact(touch.facing, touch.place, touch.slides, touch.height) for touch in on_obstacles)
         return ContactPhase(touches, self._laid(pressing), Follower(self.steps.facings, touches))
+
+    def _on_obstacles(self, touches: Sequence[RubbingTouch]) -> list[RubbingTouch]:
+        """Contacts without rigid stops and cables."""
+        return [own for own in touches if not isinstance(self.steps.facings[own.facing], PairFacing)]
 
     def _laid(self, touches: Sequence[RubbingTouch]) -> frozenset[int]:
         """Indices of the pairs in which a rod lies."""
@@ -221,6 +237,12 @@ class _Told:
 
         def event(kind: str, own: RubbingTouch, energy: float = 0.0, impulse: float = 0.0) -> ContactEvent:
             facing = facings[own.facing]
+            if isinstance(facing, PairFacing):
+                one_sided = OneSided(self.model)
+                closes = kind == "impact"
+                return one_sided.event(
+                    facing.number, time, closes=closes, lost=energy, impulse=impulse / facing.force_unit
+                )
             place = min(max(own.place, 0.0), 1.0)
             return ContactEvent(kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body)
 
@@ -309,12 +331,13 @@ def _begin(
     model, piece = steps.model, pieces[0]
     x, v = start
     inputs = piece.at(piece.start).value
-    depths = [-facing.deepest(facing.nodes(x, inputs)).gap for facing in steps.facings]
+    obstacles = [facing for facing in steps.facings if not isinstance(facing, PairFacing)]
+    depths = [-facing.deepest(facing.nodes(x, inputs)).gap for facing in obstacles]
     if max(depths) > model.scene.accuracy.tolerance:
         what = f"a rod is inside an obstacle by {max(depths):.2g} (over the length) where the motion starts"
         refuse([Problem("simulation.start", what, "start from another shape, or move the obstacle")])
     found = consistent_start(plain, piece.start, x, v, DIFFERENTIATED * piece.smooth)
-    check_start(model, piece, Restart(found, ContactPhase()), {}, pieces[-1].end)
+    check_start(model, piece, Restart(found, ContactPhase()), sags_by_cable(model, x, inputs), pieces[-1].end)
     return found
 
 

@@ -11,7 +11,6 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import (
-    ExportError,
     Motion,
     SceneError,
     build,
@@ -232,13 +231,6 @@ def test_in_c(tmp_path: Path) -> None:
         state = step.state
         moved.append(-float(library.joint["hinge"](state.x, library.defaults)[1]))
     assert_allclose(moved, elastic_reference(np.linspace(0, 0.4, 401)), rtol=0, atol=2e-3)
-
-
-def test_steps_in_c_refuse_a_rigid_stop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Before functions are written, which takes minutes where a model is large."""
-    monkeypatch.setattr("cosserat_casadi.codegen.export.assembled", None)
-    with pytest.raises(ExportError, match=r"joints\[0\].lower_stop.*is rigid"):
-        export(build(scene_from_dict(lever())), tmp_path / "rigid", dynamics=True)
 
 
 @pytest.mark.parametrize(

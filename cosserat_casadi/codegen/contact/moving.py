@@ -20,8 +20,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
 from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing
-from cosserat_casadi.motion.facings import facings, touching_points
+from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
+from cosserat_casadi.motion.stops_facing import StopFacing, points_of, stop_facings, struck_in_steps
 from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
 CONTACT_FILES = (
@@ -43,16 +44,14 @@ FEWEST_TOUCHES = 8
 
 def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
     """Functions of the points that may touch, then surfaces of the obstacles, by their names in C."""
-    if not model.scene.touches_exactly:
-        return {}
     found: dict[str, ca.Function] = {}
-    for number, points in enumerate(touching_points(model)):
+    for number, points in enumerate(points_of(struck_in_steps(model))):
         found |= {f"{_stem(names, number)}_{word}": function for word, function in points.in_steps.items()}
     for number, obstacle in enumerate(_obstacles(model)):
         name = names.kernel(f"surface_{number}")
         found[name] = _surface_function(obstacle, name)
         found[names.kernel(f"surface_distance_{number}")] = distance_from(obstacle)
-    for number, facing in enumerate(facings(model)):
+    for number, facing in enumerate(struck_in_steps(model)):
         if facing.obstacle.rubs:
             rubbing = SurfaceSliding(facing)
             found[names.kernel(f"rubbing_{number}")] = rubbing.function
@@ -67,10 +66,11 @@ def contact_words(model: Model, names: Names) -> Words:
         model: the exported model, with its motion.
         names: of the library.
     """
-    if not model.scene.touches_exactly:
+    faces = struck_in_steps(model)
+    if not faces:
         return {"steps_in_contact": False, "contact_rubs": False}
-    faces = facings(model)
-    points = touching_points(model)
+    points = points_of(struck_in_steps(model))
+    stops = stop_facings(model)
     rods = [own for own in faces if isinstance(own, RodFacing)]
     nodes = [own.nodes_of_element for own in rods]
     words: Words = {
@@ -78,6 +78,8 @@ def contact_words(model: Model, names: Names) -> Words:
         "contact_rubs": model.scene.rubs_exactly,
         "friction_words": "with Coulomb's friction" if model.scene.rubs_exactly else "without friction",
         "facings": len(faces),
+        "has_stops": bool(stops),
+        "barring": len(faces) - len(stops),
         "most_touches": _most_touches(faces),
         "most_nodes": max([*nodes, 2]),
         "most_points": max(count.count for count in points),
@@ -96,7 +98,7 @@ def contact_words(model: Model, names: Names) -> Words:
 def contact_pattern(model: Model) -> ca.Sparsity:
     """Pairs of unknowns by which the gap of something that touches has a second derivative."""
     together = np.zeros((model.size, model.size), dtype=bool)
-    for points in touching_points(model) if model.scene.touches_exactly else ():
+    for points in points_of(struck_in_steps(model)):
         positions = points.in_steps["positions"]
         moving = sorted(set(positions.jac_sparsity(0, 0).get_col()))
         together[np.ix_(moving, moving)] = True
@@ -105,6 +107,13 @@ def contact_pattern(model: Model) -> ca.Sparsity:
         together[np.ix_(moving, moving)] = True
     rows, columns = np.nonzero(together)
     return ca.Sparsity.triplet(model.size, model.size, rows.tolist(), columns.tolist())
+
+
+def _described(facing: Facing) -> dict[str, str]:
+    """A pair for the manifest."""
+    if isinstance(facing, StopFacing):
+        return {"joint": facing.owner, "stop": facing.obstacle.name}
+    return {"body" if facing.of_body else "rod": facing.owner, "obstacle": facing.obstacle.name}
 
 
 def _words_of(facing: Facing) -> str:
@@ -138,10 +147,10 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
 
 def described_contact(model: Model) -> dict[str, Any]:
     """Entries of the manifest: who may touch what, in the order of the numbers in C, and most sections that touch."""
-    if not model.scene.touches_exactly:
+    faces = struck_in_steps(model)
+    if not faces:
         return {}
-    faces = facings(model)
-    pairs = [{"body" if own.of_body else "rod": own.owner, "obstacle": own.obstacle.name} for own in faces]
+    pairs = [_described(own) for own in faces]
     described: dict[str, Any] = {"contacts": pairs, "most_contacts": _most_touches(faces)}
     return described | ({"contacts_rub": True} if model.scene.rubs_exactly else {})
 
@@ -167,13 +176,13 @@ def start_shape(model: Model) -> FloatArray:
 
 def _functions(model: Model, names: Names) -> Iterator[str]:
     """Calls of the kernels."""
-    for number, points in enumerate(touching_points(model)):
+    for number, points in enumerate(points_of(struck_in_steps(model))):
         words = {"number": number, "stem": _stem(names, number), "moved_by_inputs": "by_inputs" in points.in_steps}
         yield render("points_in_motion.c.in", words)
     for number in range(len(_obstacles(model))):
         kernels = {word: names.kernel(f"{word}_{number}") for word in ("surface", "surface_distance")}
         yield render("surface_in_motion.c.in", {"number": number, **kernels})
-    for number, facing in enumerate(facings(model)):
+    for number, facing in enumerate(struck_in_steps(model)):
         if facing.obstacle.rubs:
             kernels = {word: names.kernel(f"{word}_{number}") for word in ("rubbing", "rubbing_derivatives")}
             yield render("rubbing_in_motion.c.in", {"number": number, **kernels})
@@ -181,7 +190,7 @@ def _functions(model: Model, names: Names) -> Iterator[str]:
 
 def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
     """Tables of points, and of pairs of a rod or body and an obstacle."""
-    points = touching_points(model)
+    points = points_of(struck_in_steps(model))
     words = ("positions", "velocities", "gradient", "hessian")
     records = []
     for number, own in enumerate(points):
@@ -263,7 +272,7 @@ def _surface_function(obstacle: scenes.ObstacleRecord, name: str) -> ca.Function
 def _obstacles(model: Model) -> list[scenes.ObstacleRecord]:
     """Obstacles that something may touch."""
     found: list[scenes.ObstacleRecord] = []
-    for facing in facings(model):
+    for facing in struck_in_steps(model):
         if facing.obstacle not in found:
             found.append(facing.obstacle)
     return found

@@ -1,6 +1,11 @@
 /* Whether states of a scene that is touched exactly are inside an obstacle, or beyond one that a way leads through. Uses of
    the scene: FACING, POINTS. */
 
+/* Number of the pairs, the first, that bar a way. */
+#ifndef BARRING
+#define BARRING FACINGS
+#endif
+
 /* Whether anything is deeper inside an obstacle than a bound, or where that is no number. */
 static int is_inside(const real *x, const real *inputs, real depth, workspace *work) {
   section_gap lowest;
@@ -33,7 +38,7 @@ static real way_of_points(const facing *own, const real *x, const real *inputs, 
    that is no number. */
 static int leads_inside(const real *x, const real *inputs, const real *next, const real *next_inputs, workspace *work) {
   section_gap lowest;
-  for (int number = 0; number < FACINGS; number++) {
+  for (int number = 0; number < BARRING; number++) {
     const facing *own = FACING + number;
     const real longest = way_of_points(own, x, inputs, next, next_inputs, work);
     if (!isfinite(longest)) return 1;
