@@ -508,7 +508,8 @@ def test_a_rod_that_is_thrown_on_the_floor_comes_to_lie(friction: float, dt: flo
 
 @pytest.mark.slow
 def test_the_demo_simulates_a_rod_that_nothing_holds(tmp_path: Path) -> None:
-    base = {"position": [0, 0, 0], "tangent": [1, 0, 0.2], "free": True}
+    # It rocks from end to end for half of the second; twice as steep it rocks for all of it.
+    base = {"position": [0, 0, 0], "tangent": [1, 0, 0.1], "free": True}
     small = {"modes": 2, "nodes": 8, "tolerance": 1e-3}
     made = Moving(scene(floor(-0.05, friction=0.3), rod(base=base), accuracy=small), tmp_path)
     export(made.model, tmp_path / "robot", dynamics=True)

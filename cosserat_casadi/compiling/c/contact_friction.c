@@ -43,10 +43,12 @@ static const real BEYOND_END = (real)1e-2;
 static const real MOST_OF_A_LIFT_OFF = (real)0.999;
 
 /* The search for such an end: size of a stretch in which something turned, 0 before there is one; whether the size at hand
-   is such that it just does; how often it was looked for. */
+   is such that it just does; share of the stretch after which something lifted off at the last look, 0 before there is one;
+   how often it was looked for. */
 typedef struct {
   real turned_after;
   int is_aimed;
+  real lifted_after;
   int looks;
 } turn_search;
 
@@ -523,8 +525,10 @@ static real size_to_the_turn(const step_start *start, real whole, real rest, tur
 }
 
 /* The share of a stretch that was solved after which a force comes to zero: where it pulls at the end, though it presses in
-   the mean. Sections at which a rod lies share its weight as rounding has it. */
-static real share_to_lift_off(const workspace *work) {
+   the mean. Sections at which a rod lies share its weight as rounding has it. A force that takes a rate of the gap at the
+   start, which the stretch before has left, pulls at the end too, and the more the shorter the stretch is: where this share
+   falls from look to look nothing lifts off. */
+static real share_to_lift_off(turn_search *search, const workspace *work) {
   real share = 1;
   for (int k = 0; k < work->touch_count; k++) {
     const touch *own = work->touches + k;
@@ -533,6 +537,8 @@ static real share_to_lift_off(const workspace *work) {
     const real zero = STAGE_NODES[0] + (1 - STAGE_NODES[0]) * first / (first - last);
     if (zero < share) share = zero;
   }
+  if (share <= search->lifted_after) return 1;
+  search->lifted_after = share < 1 ? share : 0;
   return share;
 }
 
@@ -578,7 +584,7 @@ static real to_the_turn(const step_start *start, real whole, real rest, const re
   real share = 1;
   if (search->looks++ < LOOKS_FOR_A_TURN) {
     const real to_end = share_to_the_end(start, unknowns, work);
-    share = share_to_lift_off(work);
+    share = share_to_lift_off(search, work);
     if (to_end < share) share = to_end;
     if (share < MOST_OF_A_LIFT_OFF && start->size * share > LEAST_OF_A_TURN * whole) {
       search->turned_after = 0;

@@ -788,7 +788,7 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
     if (cut > 0) guess_stages(0, 1, &work->end, unknowns);
     if (!begin_stretch(&start, work->end.x, work->end.v, work)) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS
-    turn_search search = {0, 0, 0};
+    turn_search search = {0};
     note_starts(work->end.x, work->end.v, work->stretch_inputs, work->stretch_rates, work);
 #endif
     for (int tries = 0;; tries++) {
@@ -803,9 +803,11 @@ static solver_motion_status part_in_contact(const step_start *whole, int number,
       }
       if (status != SOLVER_MOTION_DONE) return status;
       share = first_blow(&start, unknowns, work);
-      if (!(share > 0) || tries == SETS) return SOLVER_MOTION_NOT_SOLVED;
+      if (!(share > 0) || (share < 1 && tries == SETS)) return SOLVER_MOTION_NOT_SOLVED;
 #ifdef CONTACT_RUBS
-      if (share == 1 && tries < TURNS) share = to_the_turn(&start, whole->size, whole->size - done, unknowns, &search, work);
+      /* The last try is taken where it ends. */
+      if (tries == TURNS) search.looks = LOOKS_FOR_A_TURN;
+      if (share == 1) share = to_the_turn(&start, whole->size, whole->size - done, unknowns, &search, work);
 #endif
       if (share == 1) break;
       work->was_cut = 1;
