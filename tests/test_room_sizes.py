@@ -16,7 +16,7 @@ LINES = {
     "actuators": 465,
     "beside rooms": 605,
     "cli": 4_375,
-    "codegen": 11_675,
+    "codegen": 11_690,
     "compiling": 4_530,
     "constraints": 1_035,
     "control": 2_835,
