@@ -46,6 +46,9 @@ TIMES_OF_ENERGY = 101
 NOT_NEARER = 0.5
 """Share of the distance of two motions from which on the next two, ten times as exact, count as no nearer."""
 
+BLOWS_BESIDE_FRICTION = ("impact", "stop_hit", "taut")
+"""Kinds of events that are blows in steps with friction: of obstacles, of stops, and of cables."""
+
 FAR_APART = 10.0
 """Distance of two motions that count as no nearer, over the error allowed, from which on rounding decides them."""
 
@@ -72,7 +75,7 @@ class FallOfErrors(ABC):
             told: error that the distance to another motion tells.
             before: error that the distance of the other motion to a third one tells; nan where there is none.
         """
-        by_others = np.maximum(told, before) if self.asks_a_third and is_struck(history) else told
+        by_others = np.maximum(told, before) if self.asks_a_third and _has_blows(history) else told
         return float(np.maximum(by_others, self.least(history, paths)))
 
     @abstractmethod
@@ -113,7 +116,7 @@ class RubbingFall(FallOfErrors):
     def factor(self, history: History, other: History) -> float:
         """The factor by the power of the step that the coarser motion errs with."""
         finer = is_finer(history, other)
-        are_struck = is_struck(history if finer else other)
+        are_struck = _has_blows(history if finer else other)
         return (HALVED_WHERE_STRUCK if are_struck else HALVED_WHERE_RUBBING) - finer
 
     def least(self, history: History, paths: Paths) -> float:
@@ -152,6 +155,11 @@ def hangs_on_rounding(history: History, distance: float, before: float, toleranc
         tolerance: error of the paths allowed, over the length.
     """
     return is_struck(history) and distance > max(NOT_NEARER * before, FAR_APART * tolerance)
+
+
+def _has_blows(history: History) -> bool:
+    """Whether a motion with friction has blows, of obstacles, stops or cables."""
+    return any(event.kind in BLOWS_BESIDE_FRICTION for event in history.events)
 
 
 def is_struck(history: History) -> bool:
