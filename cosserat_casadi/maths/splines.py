@@ -54,7 +54,7 @@ def table_coefficients(knots: FloatArray, values: FloatArray, interpolation: Int
     coefficients[1:, 0] = values
     if interpolation == "linear":
         coefficients[1:-1, 1] = np.diff(values, axis=0) / np.diff(knots)[:, None]
-    elif interpolation == "cubic":
+    elif interpolation == "cubic" and len(knots) > 1:
         coefficients[1:-1] = cubic_coefficients(knots, values)
     return coefficients
 
@@ -63,7 +63,7 @@ def cubic_coefficients(knots: FloatArray, values: FloatArray, *, natural: bool =
     """Coefficients of 1, s, s², s³ of the cubic spline through values, shape (k − 1, 4, entries).
 
     Args:
-        knots: ascending, shape (k,).
+        knots: ascending, shape (k,), two or more.
         values: at the knots, shape (k, entries).
         natural: whether the spline has no curvature at its ends, in place of no slope.
     """

@@ -692,7 +692,7 @@ def _seems_last(search: _Search, modes: int) -> bool:
 
     The level is then computed with the more exact steps at once, which the last level before may tell the error of.
     """
-    if not search.levels or search.scene.has_contact or is_struck(search.last.history):
+    if not search.levels or search.scene.has_contact or search.last.waves or is_struck(search.last.history):
         return False
     duration = search.simulation.duration
     lacks = [max(lacking(level.history, duration), level.fronts) for level in search.levels[-2:]]
