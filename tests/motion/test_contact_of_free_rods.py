@@ -202,8 +202,9 @@ def test_a_floor_takes_no_momentum_along_it() -> None:
 
 @pytest.mark.slow
 def test_events_and_tips_converge_with_the_tolerance() -> None:
+    # By tolerances that are close together, a coarse motion that is exact by chance would hide the fall.
     found = []
-    for tolerance in (1e-3, 1e-6, 1e-9):
+    for tolerance in (1e-3, 1e-7, 1e-10):
         text = FREE.format(modes=2, along=2.0, duration=0.14, strain="planar", stuff=THIN, tangent="1, 0, 0.6")
         scene = parse_scene(text.replace("tolerance = 1e-4", f"tolerance = {tolerance}") + FLOOR)
         found.append(simulate(build(scene.with_motion_inputs(), moving=True)))
@@ -214,7 +215,7 @@ def test_events_and_tips_converge_with_the_tolerance() -> None:
     errors = [abs(one.tip().position - exact.tip().position).max() / LENGTH for one in found]
     for error, motion in zip(errors, found, strict=True):
         assert error < motion.error_estimate
-    assert errors[1] < 1e-2 * errors[0]
+    assert errors[1] < 1e-3 * errors[0]
     times = [abs(one.events[-1].time - exact.events[-1].time) for one in found]
     assert times[0] < 1e-4
     assert times[1] < 1e-2 * times[0]
