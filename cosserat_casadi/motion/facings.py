@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.contact_pairs import named_pairs
@@ -30,7 +32,12 @@ def facings(model: Model, libraries: Libraries = INTERPRETED) -> list[Facing]:
 
 def touching_points(model: Model, libraries: Libraries = INTERPRETED) -> list[MovingPoints]:
     """Points of all rods and bodies that may touch; none in a scene without exact contact."""
-    return list(dict.fromkeys(facing.points for facing in facings(model, libraries)))
+    return points_of(facings(model, libraries))
+
+
+def points_of(pairs: Sequence[Facing]) -> list[MovingPoints]:
+    """Points of pairs that may touch, each once."""
+    return list(dict.fromkeys(facing.points for facing in pairs))
 
 
 def _facings(model: Model, libraries: Libraries) -> list[Facing]:

@@ -29,7 +29,7 @@ from cosserat_casadi.motion.centred_coordinates import can_be_centred
 from cosserat_casadi.motion.compiled_steps import CompiledSteps
 from cosserat_casadi.motion.constraint_projection import functions_of_closing
 from cosserat_casadi.motion.displacement import function_of_displacements
-from cosserat_casadi.motion.facings import touching_points
+from cosserat_casadi.motion.facings import points_of, touching_points
 from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_flight
 from cosserat_casadi.motion.moving_points import MovingPoints
 from cosserat_casadi.motion.repeated_call import RepeatedCall, external
@@ -41,7 +41,7 @@ from cosserat_casadi.motion.step_kernels import (
     interpreted_residual,
 )
 from cosserat_casadi.motion.steps_library import stem_of_steps, steps_are_at_hand, steps_are_loaded, steps_library
-from cosserat_casadi.motion.stops_facing import points_of, struck_beside_friction
+from cosserat_casadi.motion.stops_facing import struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.motion.tip_paths import function_of_paths
 from cosserat_casadi.motion.trajectory import StepStatistics

@@ -346,7 +346,8 @@ class OneSided:
 
     @cached_property
     def _gradients(self) -> RepeatedCall:
-        return RepeatedCall(ca.Function("gradients", self._symbols, [self._gradient_entries]))
+        by_unknowns = ca.densify(ca.jacobian(self._gap_rows, self._symbols[0]))
+        return RepeatedCall(ca.Function("gradients", self._symbols, [ca.vec(by_unknowns)]))
 
     @cached_property
     def gaps_and_gradients(self) -> ca.Function:
@@ -359,10 +360,6 @@ class OneSided:
         rows = [ca.MX(APART) if pair.rigid else row for pair, row in zip(self.pairs, split, strict=True)]
         gaps = ca.densify(ca.vertcat(*rows))
         return ca.Function("gaps", self._symbols, [ca.vertcat(gaps, ca.vec(ca.densify(ca.jacobian(gaps, x))))])
-
-    @cached_property
-    def _gradient_entries(self) -> Matrix:
-        return ca.vec(ca.densify(ca.jacobian(self._gap_rows, self._symbols[0])))
 
     @cached_property
     def _symbols(self) -> list[ca.MX]:

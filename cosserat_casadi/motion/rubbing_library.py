@@ -36,11 +36,12 @@ from cosserat_casadi.motion.contact_law import (
     without_compiler,
 )
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.facings import points_of
 from cosserat_casadi.motion.one_sided import OneSided
 from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
-from cosserat_casadi.motion.stops_facing import points_of, struck_beside_friction
+from cosserat_casadi.motion.stops_facing import struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant

@@ -90,11 +90,6 @@ def struck_beside_friction(model: Model) -> list[Facing]:
     return [*facings(model), *pair_facings(model)]
 
 
-def points_of(pairs: list[Facing]) -> list[MovingPoints]:
-    """Points of such pairs, each once."""
-    return list(dict.fromkeys(facing.points for facing in pairs))
-
-
 def _pair_facings(model: Model) -> list[PairFacing]:
     sided = OneSided(model)
     owners: list[CableOfLength | JointStop] = [*sided.cables, *model.discrete.stops]

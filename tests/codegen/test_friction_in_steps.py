@@ -190,21 +190,21 @@ def test_a_block_that_strikes_askew_loses_what_friction_takes(friction: float, t
     assert_allclose(way(made, states)[-1], speed * hit + after * flown, rtol=0, atol=1e-6)
 
 
+def ball_on_a_floor(friction: float, **more: Any) -> dict[str, Any]:
+    """A ball of even density that touches a floor, carried by a rod that weighs next to nothing."""
+    radius, mass = 0.02, 0.5
+    ball = {"name": "ball", "mass": mass, "radius": radius, "inertia": [0.4 * mass * radius**2] * 3}
+    carrier = rod(length=0.05, base=FREE | {"position": [-0.05, 0, 0]}, linear_density=1e-3, rotary_inertia=[1e-12] * 3)
+    joints = [{"body": "ball", "rod": "rod", "kind": "fixed"}]
+    surface = floor(-radius, friction=friction, bodies=["ball"])
+    return scene(surface, carrier, bodies=[ball], joints=joints, accuracy=SMALL, **more)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.5, 0.05])
 def test_a_ball_rolls_down_an_incline_or_slides(friction: float, tmp_path: Path) -> None:
-    radius, mass, angle = 0.02, 0.5, np.radians(20)
-    ball = {"name": "ball", "mass": mass, "radius": radius, "inertia": [0.4 * mass * radius**2] * 3}
-    # The rod that carries it weighs next to nothing.
-    carrier = rod(length=0.05, base=FREE | {"position": [-0.05, 0, 0]}, linear_density=1e-3, rotary_inertia=[1e-12] * 3)
-    tables = scene(
-        floor(-radius, friction=friction, bodies=["ball"]),
-        carrier,
-        bodies=[ball],
-        joints=[{"body": "ball", "rod": "rod", "kind": "fixed"}],
-        accuracy=SMALL,
-        inputs=["weight.acceleration"],
-    )
+    angle = np.radians(20)
+    tables = ball_on_a_floor(friction, inputs=["weight.acceleration"])
     made = Moving(tables, tmp_path)
     memory = made.compiled.step_memory()
     states = run(made, made.compiled.contact_start(), memory, 1e-3, weights(angle, 100))

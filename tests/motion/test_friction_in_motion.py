@@ -22,6 +22,7 @@ from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
+from tests.codegen.test_friction_in_steps import ball_on_a_floor
 from tests.codegen.test_steps_in_contact import LENGTH, floor, rod, scene
 from tests.conftest import ROOT
 from tests.model.test_base_joints import ends
@@ -353,20 +354,9 @@ def test_a_block_that_strikes_askew_loses_what_friction_takes(friction: float) -
 @pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.5, 0.05])
 def test_a_ball_rolls_down_an_incline_or_slides(friction: float) -> None:
-    radius, mass, angle = 0.02, 0.5, np.radians(20)
-    ball = {"name": "ball", "mass": mass, "radius": radius, "inertia": [0.4 * mass * radius**2] * 3}
-    # The rod that carries it weighs next to nothing.
-    carrier = rod(length=0.05, base=FREE | {"position": [-0.05, 0, 0]}, linear_density=1e-3, rotary_inertia=[1e-12] * 3)
-    tables = scene(
-        floor(-radius, friction=friction, bodies=["ball"]),
-        carrier,
-        bodies=[ball],
-        joints=[{"body": "ball", "rod": "rod", "kind": "fixed"}],
-        accuracy=SMALL,
-        loads=[weight(angle)],
-        simulation={"duration": 0.1, "frames": 11, "start": "unloaded", "tolerance": 1e-4},
-    )
-    motion = moved(tables)
+    angle = np.radians(20)
+    simulation = {"duration": 0.1, "frames": 11, "start": "unloaded", "tolerance": 1e-4}
+    motion = moved(ball_on_a_floor(friction, loads=[weight(angle)], simulation=simulation))
     rolls = 5 / 7 * np.sin(angle)
     slides = np.sin(angle) - friction * np.cos(angle)
     (contact,) = motion.contacts[-1]

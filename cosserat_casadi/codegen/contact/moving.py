@@ -20,9 +20,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
 from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing
-from cosserat_casadi.motion.facings import facings
+from cosserat_casadi.motion.facings import facings, points_of
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
-from cosserat_casadi.motion.stops_facing import StopFacing, points_of, stop_facings, struck_in_steps
+from cosserat_casadi.motion.stops_facing import StopFacing, stop_facings, struck_in_steps
 from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
 CONTACT_FILES = (
