@@ -253,7 +253,7 @@ class ClampWrench(StateQuantity[MeasuredBaseWrench]):
 
     def difference(self, site: MeasurementSite) -> Matrix:
         """A force, N, and a moment, N m, world axes, 6×k."""
-        rotation = quaternion_to_matrix(site.system.base(site.record.rod).quaternion)
+        rotation = site.system.base(site.record.rod).rotation
         statics = site.system.rods[site.record.rod].statics
         wrench = ca.vertcat(rotation @ statics.held_force, rotation @ statics.held_moment)
         return ca.repmat(wrench, 1, site.sections) - site.measured

@@ -10,7 +10,6 @@ import numpy as np
 from cosserat_casadi.loads.contact_layer import ContactLayer, push_on_disk
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.contact_layers import LOOSEST_NODES, LOOSEST_POINTS, LOOSEST_SECTIONS, pressed
 from cosserat_casadi.model.contact_pairs import LOOSEST_SPACING, half_of_stretch
@@ -89,9 +88,7 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
     if layer.at is not None:
         assert layer.rod is not None, "a disk is on a rod"
         shape = system.shapes[layer.rod]
-        rotation = quaternion_to_matrix(system.base(layer.rod).quaternion) @ shape.rotation_at(
-            shape.rod.grid.node_at(layer.at)
-        )
+        rotation = system.base(layer.rod).rotation @ shape.rotation_at(shape.rod.grid.node_at(layer.at))
         size = ca.vertcat(layer.radius, layer.thickness)
         gap, _ = push_on_disk(layer)(positions_before(system, layer), rotation, size)
         of_disk: Matrix = -ca.MX(gap) / layer.obstacle.width
@@ -120,11 +117,8 @@ def positions_before(system: System, layer: ContactLayer) -> Matrix:
     if layer.body is not None:
         return system.frame(FrameName("body", layer.body)).position
     assert layer.rod is not None, "a layer is in front of a rod or a body"
-    base, shape = system.base(layer.rod), system.shapes[layer.rod]
-    from_base = quaternion_to_matrix(base.quaternion) @ shape.position
-    nodes = ca.repmat(ca.MX(base.position), 1, shape.rod.grid.size) + from_base
-    positions = system.seen_from(layer.obstacle.body, nodes)
+    positions = system.seen_from(layer.obstacle.body, system.nodes(layer.rod))
     if layer.at is None:
         return positions
-    of_disk: Matrix = positions[:, shape.rod.grid.node_at(layer.at)]
+    of_disk: Matrix = positions[:, system.shapes[layer.rod].rod.grid.node_at(layer.at)]
     return of_disk

@@ -325,9 +325,10 @@ class ModelFunctions:
         World frame but for the internal wrench [moment; force], N m and N, which is in the section's.
         """
         rod = written.system.rods[written.owner]
-        rotation = quaternion_to_matrix(written.system.base(written.owner).quaternion)
+        rotation = written.system.base(written.owner).rotation
         return [
-            *_nodal_poses(written),
+            written.system.nodes(written.owner),
+            written.system.nodal_quaternions(written.owner),
             rod.statics.internal_wrench(),
             rotation @ rod.statics.held_force,
             rotation @ rod.statics.held_moment,
@@ -339,8 +340,8 @@ class ModelFunctions:
 
         World frame.
         """
-        position, quaternion = _nodal_poses(written)
-        by_position = ca.jacobian(ca.vec(position), written["x"])
+        quaternion = written.system.nodal_quaternions(written.owner)
+        by_position = ca.jacobian(ca.vec(written.system.nodes(written.owner)), written["x"])
         by_quaternion = ca.jacobian(ca.vec(quaternion), written["x"])
         return [quaternion, by_position, by_quaternion]
 
@@ -421,16 +422,6 @@ class ModelFunctions:
         """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
         potential = written.system.potential()
         return None if potential is None else [potential]
-
-
-def _nodal_poses(written: Expressions) -> tuple[Matrix, Matrix]:
-    """Positions, 3×M, and quaternions, 4×M, at the nodes of a rod, world frame."""
-    shape = written.system.shapes[written.owner]
-    base = written.system.base(written.owner)
-    count = written.discrete.rods[written.owner].grid.size
-    positions = ca.repmat(base.position, 1, count) + quaternion_to_matrix(base.quaternion) @ shape.position
-    quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
-    return positions, quaternion_product(quaternions, ca.densify(shape.quaternion))
 
 
 def resolution_index(written: Expressions) -> Matrix:
@@ -536,5 +527,5 @@ def _by_strains(written: Expressions, rod: str, node: int) -> Matrix:
     spin = ca.vertcat(ca.DM.zeros(1, count), turned)
     base_quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
     turned_in_world = quaternion_product(base_quaternions, quaternion_product(spin, quaternions) / 2)
-    moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(node)
+    moved_in_world = base.rotation @ tangent.position(node)
     return ca.vertcat(moved_in_world, turned_in_world)

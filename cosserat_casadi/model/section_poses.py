@@ -16,7 +16,7 @@ import numpy as np
 
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.numbers import Scalar, any_symbolic
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.system import System
@@ -52,7 +52,7 @@ class SectionPoses:
         base = self.system.base(self.rod)
         base_positions = ca.repmat(base.position, 1, self.count)
         own_positions = self.system.shapes[self.rod].mean_positions(self.weights)
-        return base_positions + quaternion_to_matrix(base.quaternion) @ own_positions
+        return base_positions + base.rotation @ own_positions
 
     @cached_property
     def quaternions(self) -> Matrix:
@@ -88,7 +88,7 @@ class SectionPoses:
     def _by_strains(self) -> Matrix:
         """Derivatives with the strain coordinates of the rod, 7k×n."""
         tangent = self.system.tangents[self.rod]
-        rotation = quaternion_to_matrix(self.system.base(self.rod).quaternion)
+        rotation = self.system.base(self.rod).rotation
         moved = ca.vertsplit(tangent.displacement(self.weights), 3)
         turned = ca.vertsplit(tangent.quaternion_change(self.weights), 4)
         base_quaternions = ca.MX(ca.repmat(self.system.base(self.rod).quaternion, 1, moved[0].shape[1]))

@@ -21,7 +21,7 @@ from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, sparse_known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene, JointStop
 from cosserat_casadi.model.drag_terms import BodyDrag, RodDrag, drags_of
@@ -288,6 +288,22 @@ class System:
         """Pose of a node's section in the base of its rod."""
         rod_shape = self.shapes[rod]
         return Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node])
+
+    def position_at(self, rod: str, node: int) -> Matrix:
+        """World position of a node of a rod, 3×1, m."""
+        base = self.base(rod)
+        return base.position + base.rotation @ self.shapes[rod].position_at(node)
+
+    def nodes(self, rod: str) -> Matrix:
+        """World positions of the nodes of a rod, 3×M, m."""
+        base, shape = self.base(rod), self.shapes[rod]
+        return ca.repmat(base.position, 1, shape.rod.grid.size) + base.rotation @ shape.position
+
+    def nodal_quaternions(self, rod: str) -> Matrix:
+        """World quaternions of the nodes of a rod, 4×M."""
+        shape = self.shapes[rod]
+        bases = ca.MX(ca.repmat(self.base(rod).quaternion, 1, shape.rod.grid.size))
+        return quaternion_product(bases, ca.densify(shape.quaternion))
 
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""

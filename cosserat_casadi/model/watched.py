@@ -13,7 +13,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.pose_change import rotation_vectors
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.registry import EFFECTS
@@ -150,8 +150,7 @@ def section_poses(system: System, rod: str, X: FloatArray) -> tuple[Matrix, Matr
     if len(X) == 1 and X[0] == 1.0:
         base = system.base(rod)
         shape = system.shapes[rod]
-        position = base.position + quaternion_to_matrix(base.quaternion) @ shape.position_at(-1)
         tip_quaternion = ca.densify(shape.quaternion[:, -1])
-        return position, quaternion_product(ca.densify(base.quaternion), tip_quaternion)
+        return system.position_at(rod, -1), quaternion_product(ca.densify(base.quaternion), tip_quaternion)
     poses = SectionPoses(system, rod, section_weights(system.discrete, rod, X.tolist()))
     return poses.positions, poses.quaternions

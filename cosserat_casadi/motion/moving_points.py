@@ -13,7 +13,6 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.shared_records import Held
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
@@ -213,7 +212,7 @@ def in_stacked_inputs(
 def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The nodes of a rod."""
     number = [record.name for record in model.scene.rods].index(rod)
-    return MovingPoints(model, lambda system: _nodes(system, rod), f"rod_{number}", libraries)
+    return MovingPoints(model, lambda system: system.nodes(rod), f"rod_{number}", libraries)
 
 
 def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = INTERPRETED) -> MovingPoints:
@@ -223,16 +222,9 @@ def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = IN
     shares = model.discrete.rods[rods[0]].energy_unit / model.discrete.unknowns.units
 
     def placed(system: System) -> Matrix:
-        return ca.horzcat(*[_nodes(system, rod) for rod in rods])
+        return ca.horzcat(*[system.nodes(rod) for rod in rods])
 
     return MovingPoints(model, placed, name, libraries, shares)
-
-
-def _nodes(system: System, rod: str) -> Matrix:
-    """World positions of the nodes of a rod, 3×M."""
-    base = system.base(rod)
-    turned = quaternion_to_matrix(base.quaternion) @ system.shapes[rod].position
-    return ca.repmat(ca.MX(base.position), 1, turned.shape[1]) + turned
 
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:

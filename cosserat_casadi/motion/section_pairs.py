@@ -33,7 +33,6 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, reach_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS, expressions_of
@@ -233,7 +232,7 @@ class TouchingPairs:
             return system.body(touching.owner).position
         weights = section_weights(self.model.discrete, touching.owner, touching.places)
         base = system.base(touching.owner)
-        turned = quaternion_to_matrix(base.quaternion) @ (system.shapes[touching.owner].position @ weights)
+        turned = base.rotation @ (system.shapes[touching.owner].position @ weights)
         return ca.repmat(ca.MX(base.position), 1, len(touching.places)) + turned
 
     def _body(self, name: str) -> scenes.Body:

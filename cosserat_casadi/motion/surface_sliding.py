@@ -14,7 +14,6 @@ import casadi as ca
 
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.contact_layer import STANDING
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import System
@@ -116,9 +115,8 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> list[Matrix]:
         pose = system.body(facing.owner)
         return [ca.MX(pose.position), ca.MX(pose.rotation)]
     base, shape = system.base(facing.owner), system.shapes[facing.owner]
-    world = quaternion_to_matrix(base.quaternion)
-    directors = [world @ (director @ weights) for director in shape.directors]
-    return [base.position + world @ (shape.position @ weights), ca.horzcat(*directors)]
+    directors = [base.rotation @ (director @ weights) for director in shape.directors]
+    return [base.position + base.rotation @ (shape.position @ weights), ca.horzcat(*directors)]
 
 
 def functions_of_sliding(model: Model) -> list[ca.Function]:

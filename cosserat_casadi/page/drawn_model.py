@@ -17,7 +17,7 @@ from cosserat_casadi.actuators.routing import drawn_places, offset_at
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.load import Sort
 from cosserat_casadi.maths.numbers import Numbers
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.arrow_records import DrawnPoses, LoadArrows
 from cosserat_casadi.model.build import Model
@@ -137,15 +137,7 @@ class _Picture:
     @cached_property
     def _fields(self) -> dict[str, tuple[Matrix, Matrix]]:
         """World positions 3×M and quaternions 4×M at the nodes of every rod."""
-        fields = {}
-        for rod, shape in self.system.shapes.items():
-            base = self.system.base(rod)
-            rotation = quaternion_to_matrix(base.quaternion)
-            count = self.system.discrete.rods[rod].grid.size
-            bases = ca.repmat(ca.MX(base.quaternion), 1, count)
-            position = ca.repmat(base.position, 1, count) + rotation @ shape.position
-            fields[rod] = position, quaternion_product(bases, ca.densify(shape.quaternion))
-        return fields
+        return {rod: (self.system.nodes(rod), self.system.nodal_quaternions(rod)) for rod in self.system.shapes}
 
     def sections(self, rod: str, X: Numbers) -> tuple[Matrix, Matrix]:
         """World positions 3×k and unit quaternions 4×k of sections: the interpolants through the nodes."""

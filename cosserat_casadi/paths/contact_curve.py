@@ -29,7 +29,6 @@ from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import as_matrix
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.continuation import Path
@@ -214,13 +213,9 @@ class Arrangement:
         written = self.equations.written
         results: list[Matrix] = []
         for name, shape in written.system.shapes.items():
-            base = written.system.base(name)
-            rotation = quaternion_to_matrix(base.quaternion)
-            count = shape.rod.grid.size
-            quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
-            results.append(ca.repmat(base.position, 1, count) + rotation @ shape.position)
-            results.append(rotation @ shape.tangent)
-            results.append(quaternion_product(quaternions, ca.densify(shape.quaternion)))
+            results.append(written.system.nodes(name))
+            results.append(written.system.base(name).rotation @ shape.tangent)
+            results.append(written.system.nodal_quaternions(name))
             moment = written.system.rods[name].statics.internal_wrench()[:3, :]
             results.append(_curvatures(shape.rod, moment))
         return ca.Function("poses", written.arguments, results)

@@ -21,9 +21,8 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs, obstacle_of, pa
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.maths.numbers import as_matrix
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions
 from cosserat_casadi.model.model_functions import resolution_index
 from cosserat_casadi.model.strain_margins import strain_margins
@@ -152,14 +151,11 @@ class ArrangementKernels:
 
     def _nodes(self) -> Matrix:
         """Positions of the nodes of all rods, one after the other, and of bodies that may touch, 3×M, m."""
-        positions = []
-        for name, shape in self._written.system.shapes.items():
-            base = self._written.system.base(name)
-            rotation = quaternion_to_matrix(base.quaternion)
-            positions.append(ca.repmat(base.position, 1, shape.rod.grid.size) + rotation @ shape.position)
-        scene = self._written.system.discrete.scene
+        system = self._written.system
+        positions = [system.nodes(name) for name in system.shapes]
+        scene = system.discrete.scene
         if touches_bodies(scene):
-            positions += [self._written.system.frame(FrameName("body", body.name)).position for body in scene.bodies]
+            positions += [system.body(body.name).position for body in scene.bodies]
         return ca.horzcat(*positions)
 
     def _indices(self) -> Matrix:
@@ -175,13 +171,13 @@ class ArrangementKernels:
 
     def _tips(self) -> Matrix:
         """Position and quaternion of the tip of every rod, then of every body, stacked."""
+        system = self._written.system
         poses = []
-        for name, shape in self._written.system.shapes.items():
-            base = self._written.system.base(name)
-            poses.append(base.position + quaternion_to_matrix(base.quaternion) @ shape.position_at(-1))
-            poses.append(quaternion_product(base.quaternion, ca.densify(shape.quaternion)[:, -1]))
-        for body in self._written.system.discrete.scene.bodies:
-            frame = self._written.system.frame(FrameName("body", body.name))
+        for name, shape in system.shapes.items():
+            poses.append(system.position_at(name, -1))
+            poses.append(quaternion_product(system.base(name).quaternion, ca.densify(shape.quaternion)[:, -1]))
+        for body in system.discrete.scene.bodies:
+            frame = system.body(body.name)
             poses += [frame.position, frame.quaternion]
         return ca.vertcat(*poses)
 
@@ -233,11 +229,8 @@ class ArrangementKernels:
 
     def _normal(self, touch: Touch, node: int) -> Matrix:
         """Normal of the obstacle at a node of the rod that touches it."""
-        base = self._written.system.base(touch.owner)
-        rotation = quaternion_to_matrix(base.quaternion)
-        position = base.position + rotation @ self._written.system.shapes[touch.owner].position_at(node)
         obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
-        normal: Matrix = surface(obstacle)(position)[1]
+        normal: Matrix = surface(obstacle)(self._written.system.position_at(touch.owner, node))[1]
         return normal
 
     def _bends(self) -> Matrix:
@@ -251,8 +244,7 @@ class ArrangementKernels:
             rod = self._written.system.discrete.rods[touch.owner]
             shape = self._written.system.shapes[touch.owner]
             node = rod.grid.node_at(touch.start)
-            base = self._written.system.base(touch.owner)
-            rotation = quaternion_to_matrix(base.quaternion)
+            rotation = self._written.system.base(touch.owner).rotation
             # Rates and strains are counted in the coordinate that integrals run over, which a moving element stretches.
             rates = rod.grid.rates_in(rod.grid.element_of_node[[node]])
             rate = 1.0 if rates is None else as_matrix(rates)[0]
@@ -261,9 +253,8 @@ class ArrangementKernels:
             for director, row in zip(shape.directors, rod.strain_rows(shape.q, (0, 1, 2), shape.ratio), strict=True):
                 if row is not None:
                     curvature = curvature + rotation @ director[:, node] * row[node] / rate
-            position = base.position + rotation @ shape.position_at(node)
             obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
-            _, normal, second = surface(obstacle)(position)
+            _, normal, second = surface(obstacle)(self._written.system.position_at(touch.owner, node))
             length = rod.properties.length
             # The rate of the extension is along the tangent, on which the normal stands.
             bend = ca.dot(tangent, second @ tangent) + ca.dot(normal, length * ca.cross(curvature, tangent))
@@ -273,8 +264,8 @@ class ArrangementKernels:
     def normal_of_body(self, touch: Touch) -> Matrix:
         """Normal of the obstacle at the origin of the body that touches it."""
         system = self._written.system
-        position = system.frame(FrameName("body", touch.owner)).position
-        normal: Matrix = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)[1]
+        obstacle = obstacle_of(system.discrete.scene, touch.obstacle)
+        normal: Matrix = surface(obstacle)(system.body(touch.owner).position)[1]
         return normal
 
     def _forces(self) -> Iterator[tuple[Touch, Matrix, Matrix]]:

@@ -25,7 +25,6 @@ from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import Scalar, as_matrix, is_symbolic, known
-from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
@@ -109,7 +108,7 @@ class Distances:
 
     @cached_property
     def _world_R_base(self) -> Matrix:
-        return quaternion_to_matrix(self.system.base(self.rod).quaternion)
+        return self.system.base(self.rod).rotation
 
     @cached_property
     def _radii(self) -> tuple[Scalar, Scalar]:
