@@ -19,8 +19,7 @@ from doc_tables import put, table
 
 from cosserat_casadi import read_scene
 from cosserat_casadi.accuracy.refine import solve_rods
-from cosserat_casadi.view.questions import Question
-from cosserat_casadi.view.server import RobotServer
+from cosserat_casadi.view.server import Question, RobotServer
 from cosserat_casadi.view.view_session import opened
 from tests.browser import browser
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cosserat_casadi.cli.command_group import LINES
+from cosserat_casadi.cli.main import LINES
 from tests.conftest import ROOT
 from tests.pages import BLOCK, DOCS, PAGES, blocks, commands, prose, run_command, run_program, run_python
 

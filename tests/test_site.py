@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from cosserat_casadi.cli.command_group import LINES
+from cosserat_casadi.cli.main import LINES
 from docs.site.command_reference import command_page
 from docs.site.functions_in_c import functions_page
 from docs.site.gallery import ExampleError, draw_examples, run_example, write_gallery

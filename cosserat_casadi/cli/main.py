@@ -1,4 +1,7 @@
-"""The command line: begin, solve, view, follow a path, simulate, find inputs, identify, sweep, check, export."""
+"""The command line: begin, solve, view, follow a path, simulate, find inputs, identify, sweep, check, export.
+
+A command loads its module when it is run.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,13 @@ import platform
 import signal
 import sys
 from collections.abc import Callable
-from typing import Annotated
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
 from rich.markup import escape
+from typer.core import TyperCommand, TyperGroup
 
-from cosserat_casadi.cli.command_group import CommandGroup
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.signals import (
     StoppedError,
@@ -29,10 +33,62 @@ from cosserat_casadi.cli.terminal import Console, flush_streams, prepare_streams
 from cosserat_casadi.errors import CosseratError, ExportError, SceneError, WriteError
 from cosserat_casadi.spelling import counted
 
+LINES = {
+    "new": "Write a scene with comments, to begin with.",
+    "examples": "List the examples that come with the package, or copy them.",
+    "docs": "Show a page of the documentation.",
+    "solve": "Find the equilibrium of a scene.",
+    "view": "Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion.",
+    "path": "Follow equilibria while an input moves, through folds.",
+    "simulate": "Simulate the motion of a scene over time.",
+    "modes": (
+        "Find frequencies, damping and shapes of small vibrations about the equilibrium, and whether it is stable."
+    ),
+    "inverse": "Find inputs that bring rods and bodies to the targets of a scene.",
+    "identify": "Find numbers of a scene from measurements, and what these leave open.",
+    "estimate": "Find in every measured row what the robot feels: unknown inputs, with their standard deviations.",
+    "sweep": "Solve a scene for every row of a grid or a table of inputs and parameters.",
+    "check": "Validate a scene, say which effects were chosen and what the model and each effect will cost.",
+    "export": "Write a scene as C sources, a page for a browser, an FMU, or a model of MuJoCo.",
+    "tune": "Find one discretisation for ranges of inputs, or for load cases.",
+}
+"""First sentence of the help of every command; the module of a command and its function have its name."""
+
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 
 STOPPED = "Stopped. Files that were not finished were not written."
 """Said of a command that a signal has stopped."""
+
+
+def load_command(name: str) -> Any:
+    """The command of a name, with its arguments and options.
+
+    Raises:
+        KeyError: no command has this name.
+    """
+    if name not in LINES:
+        raise KeyError(name)
+    module = import_module(f"cosserat_casadi.cli.commands.{name}")
+    alone = typer.Typer(add_completion=False, rich_markup_mode="markdown")
+    alone.command(name)(getattr(module, name))
+    return typer.main.get_command(alone)
+
+
+class CommandGroup(TyperGroup):
+    """All commands: known by name and line until a command is run."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        for name, line in LINES.items():
+            self.add_command(TyperCommand(name, help=line))
+
+    def resolve_command(self, context: Any, arguments: list[str]) -> tuple[str | None, Any, list[str]]:
+        """The command that arguments begin with, and the arguments behind it."""
+        name, command, rest = super().resolve_command(context, arguments)
+        if name in LINES:
+            command = load_command(name)
+        return name, command, rest
+
 
 app = typer.Typer(
     cls=CommandGroup,

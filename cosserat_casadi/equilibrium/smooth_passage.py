@@ -28,7 +28,7 @@ from cosserat_casadi.equilibrium.contact.passing_through import (
     seen_from,
 )
 from cosserat_casadi.equilibrium.load_path import between
-from cosserat_casadi.equilibrium.rod_contacts import section_positions
+from cosserat_casadi.equilibrium.smooth_contact import section_positions
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.loads.penetration import section_radius

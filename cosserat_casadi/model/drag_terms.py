@@ -3,7 +3,7 @@
 A load on a rod that a body sees hangs on how the rod moves as the body sees it, one on a body on how the body moves.
 What motion adds to its value at rest is its drag. In the world it is a wrench on the sections, and the opposite on the
 body. At fixed drag the equations are as for dead loads; how the drag changes is added to their derivatives in
-model/scene_motion_equations.py.
+model/motion_functions.py.
 """
 
 from __future__ import annotations

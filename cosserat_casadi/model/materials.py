@@ -16,8 +16,8 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.maths.hermite import HermiteCurve, monotone_curve
 from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, column, is_symbolic, repeated, side_by_side
+from cosserat_casadi.maths.splines import HermiteCurve, monotone_curve
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.sections import SHAPES, sizes_along, sizes_of
 from cosserat_casadi.rod.properties import STRAINS, EnergyBeyondHooke, Field

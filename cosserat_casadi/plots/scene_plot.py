@@ -1,11 +1,13 @@
 """The figure of a solved scene: the deformed rods with their loads, strain and internal wrench along X.
 
-matplotlib is an extra and is imported inside functions only.
+Strain, internal moment and internal force are in section axes. matplotlib is an extra and is imported inside functions
+only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -18,9 +20,9 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.arrow_records import LoadArrows
 from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas, add_canvas
+from cosserat_casadi.plots.colours import AXES, rod_style
 from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.obstacle_drawing import draw_obstacles
-from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import (
     body_outline,
@@ -31,8 +33,140 @@ from cosserat_casadi.plots.scenery import (
     draw_supports,
     draw_targets,
 )
-from cosserat_casadi.plots.solved_shapes import RodShapes, in_world, rod_shapes
+from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world, rod_shapes
 from cosserat_casadi.results.presentation import figure_of
+
+STROKES = ("-", "--", "-.")
+"""Strokes of the components x, y, z where colours tell the rods apart."""
+
+ZERO = 1e-9
+"""Share of the largest component below which a component is not drawn."""
+
+ROUNDING = 1e-12
+"""Share of the scale of its rod below which a component is rounding, where all components are."""
+
+LEVEL = 1e-3
+"""Share of its value below which the variation of a curve is taken for rounding."""
+
+
+@dataclass(frozen=True)
+class PanelQuantity:
+    """Quantity that a panel shows.
+
+    Attributes:
+        name: strain, moment or force.
+        labels: of its components; beyond the third they are linear strains.
+        axis_label: with the unit.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    axis_label: str
+
+
+QUANTITIES = (
+    PanelQuantity("strain", ("K_x", "K_y", "K_z", "Γ_x", "Γ_y", "Γ_z − 1"), "curvature, 1/m"),
+    PanelQuantity("moment", ("M_x", "M_y", "M_z"), "moment, N m"),
+    PanelQuantity("force", ("N_x", "N_y", "N_z"), "force, N"),
+)
+
+
+def draw_panel(panel: Any, solution: Solution, quantity: PanelQuantity) -> None:
+    """Draw the components of a quantity that are not zero, of all rods."""
+    rods = solution.model.discrete.rods
+    values = {name: _values(solution, name, quantity.name) for name in rods}
+    scales = {name: _scale(solution, name, quantity.name) for name in rods}
+    panel.set_ylabel(quantity.axis_label)
+    shown = [panel]
+    linear_axes = panel
+    if quantity.name == "strain" and any(np.any(of_rod[:, 3:]) for of_rod in values.values()):
+        # Shear and stretch have no unit and are small beside curvatures: an axis of their own, on the right.
+        linear_axes = panel.twinx()
+        shown.append(linear_axes)
+
+    labelled: set[str] = set()
+    for index, (name, discrete_rod) in enumerate(rods.items()):
+        for component, label in enumerate(quantity.labels):
+            curve = values[name][:, component]
+            # A component that rounding alone has filled would take a colour and a line of the legend.
+            rounding = max(ZERO * np.abs(values[name]).max(), ROUNDING * scales[name])
+            if np.abs(curve).max() <= rounding:
+                continue
+            axes = linear_axes if component >= 3 else panel
+            style = _curve_style(len(rods), index, component)
+            axes.plot(SAMPLES, curve, label=label if len(rods) == 1 else None, **style)
+            if len(rods) > 1 and label not in labelled:
+                # Strokes tell components and are named once, in grey; the picture beside names the rods.
+                axes.plot([], [], color="0.3", linestyle=style["linestyle"], label=label)
+            labelled.add(label)
+        # Fields may jump where one element ends and the next begins.
+        for element_end in discrete_rod.grid.known_places[1:-1]:
+            panel.axvline(element_end, color="0.6", linewidth=0.8)
+
+    panel.set_xlim(-0.01, 1.01)
+    panel.grid(alpha=0.3)
+    _finish_panel(shown)
+
+
+def _curve_style(rod_count: int, rod_index: int, component: int) -> dict[str, Any]:
+    """Colours tell the components of one rod, else the rods, as in the picture beside; strokes tell the rest."""
+    style: dict[str, Any] = {"color": AXES[component % 3], "linestyle": "-"}
+    if rod_count > 1:
+        style |= {**rod_style(rod_index), "markersize": 4, "linestyle": STROKES[component % 3]}
+    if component >= 3:
+        style["linestyle"] = ":"
+    return style
+
+
+def _finish_panel(shown: list[Any]) -> None:
+    """Legend and limits of the axes of one panel, the one on the right last."""
+    handles = [handle for axes in shown for handle in axes.get_legend_handles_labels()[0]]
+    if not handles:
+        panel = shown[0]
+        panel.text(0.5, 0.5, "zero", ha="center", va="center", color="0.5", transform=panel.transAxes)
+        panel.set_yticks([])
+        return
+    # Above the panel: inside it would cover a curve sooner or later.
+    # The power of ten of an axis stands in its corner.
+    place = {"loc": "lower left", "bbox_to_anchor": (0.1, 1.0), "borderaxespad": 0.1}
+    shown[-1].legend(handles=handles, fontsize=9, ncols=3, frameon=False, **place)
+    for axes in shown:
+        _hide_rounding(axes)
+    if len(shown) > 1:
+        shown[1].set_ylabel("shear, stretch (dotted)")
+
+
+def _hide_rounding(axes: Any) -> None:
+    """Widen the limits about a constant, which is then a level line and not its rounding errors."""
+    low, high = axes.get_ylim()
+    largest = max(abs(low), abs(high))
+    if high - low >= LEVEL * largest:
+        return
+    middle = (low + high) / 2
+    margin = 0.1 * largest
+    axes.set_ylim(middle - margin, middle + margin)
+
+
+def _scale(solution: Solution, name: str, quantity: str) -> float:
+    """Scale of a quantity of a rod: a radian along it, 1/m; or force times length, N m; or moment over length, N."""
+    length = solution.model.length(name, solution.inputs)
+    if quantity == "strain":
+        return float(1 / length)
+    wrench = solution.internal_wrench(SAMPLES, name)
+    moment = max(np.abs(wrench[:, :3]).max(), length * np.abs(wrench[:, 3:]).max())
+    return float(moment if quantity == "moment" else moment / length)
+
+
+def _values(solution: Solution, name: str, quantity: str) -> FloatArray:
+    """Components at SAMPLES, shape (len(SAMPLES), 6) for the strain, else (len(SAMPLES), 3)."""
+    if quantity == "strain":
+        strain = solution.strain(SAMPLES, name)
+        # The stretch is 1 in the unloaded rod: what is left is the extension.
+        strain[:, 5] -= 1.0
+        return strain
+    wrench = solution.internal_wrench(SAMPLES, name)
+    # Angular part first: [M; N].
+    return {"moment": wrench[:, :3], "force": wrench[:, 3:]}[quantity]
 
 
 def plot_solution(solution: Solution) -> Any:

@@ -147,7 +147,7 @@ PRESENTATIONS = {
     "SobolIndices": Presentation(
         data="results.sweep_data:sobol_result",
         facts="results.facts:sobol_facts",
-        figure="plots.sobol_plot:plot_sobol",
+        figure="plots.sweep_plot:plot_sobol",
     ),
     "TubeSolution": Presentation(
         data="results.tubes_file:tubes_result",

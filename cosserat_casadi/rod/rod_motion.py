@@ -13,7 +13,7 @@ from functools import cache, cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths.increment_rates import IncrementRates
+from cosserat_casadi.maths.magnus import IncrementRates
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix, check_shape

@@ -39,18 +39,20 @@ from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import representative_rows
 from cosserat_casadi.sweeps.scratch import Scratch
-from cosserat_casadi.sweeps.shards import TOLD, Shard, shard_files
 from cosserat_casadi.sweeps.store import Memory, Store, StoreChangedError
 from cosserat_casadi.sweeps.table import Table, read_table, table_of
 from cosserat_casadi.sweeps.variants import Variants, variants_of
 from cosserat_casadi.sweeps.work import (
     COMPILED_ROWS,
     MODELLED_ROWS,
+    TOLD,
     Answer,
     Chunk,
     LibraryWithPython,
     Part,
+    Shard,
     chunks,
+    shard_files,
 )
 
 IN_LANES_FROM = 1_250_000

@@ -1,11 +1,18 @@
-"""The work of a sweep in chunks: rows that are solved together, kept together, and never solved again."""
+"""The work of a sweep in chunks: rows that are solved together, kept together, and never solved again.
+
+Shards are parts of this work that machines do for themselves, and that are merged into one file of results. A shard
+keeps its finished rows in its file beside the results, as an unfinished sweep does. So a shard that was killed goes on,
+and shards on one file system need no word between them.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -14,6 +21,7 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.rows import RowLibrary
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium.smooth_passage import has_barriers
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.sweeps.arguments import COMPILED_FROM, IN_CONTACT_FROM, touches_in_c
@@ -21,6 +29,12 @@ from cosserat_casadi.sweeps.device_rows import DeviceRows
 from cosserat_casadi.sweeps.row_model import RowModel
 from cosserat_casadi.sweeps.sampling import from_neighbour_to_neighbour
 from cosserat_casadi.sweeps.variants import Variants
+
+MOST = 100_000
+"""Shards into which a sweep may be cut."""
+
+TOLD = 5
+"""Shards that a sentence names."""
 
 COMPILED_ROWS = 512
 """Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""
@@ -31,6 +45,56 @@ MODELLED_ROWS = 16
 
 STALLED = OUTCOMES.index(Outcome.LOAD_STALLED)
 """Outcome of rows that stop before an obstacle or a rod."""
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A part of a sweep that is cut into several.
+
+    Attributes:
+        number: from 1 to count.
+        count: parts that the sweep is cut into.
+    """
+
+    number: int
+    count: int
+
+    @classmethod
+    def read(cls, text: str) -> Shard:
+        """The shard that a word such as ``3/64`` means.
+
+        Raises:
+            SceneError: it means none.
+        """
+        match = re.fullmatch(r"0*([0-9]{1,6})/0*([0-9]{1,6})", text.strip())
+        number, count = (int(word) for word in match.groups()) if match else (0, 0)
+        if not 1 <= number <= count <= MOST:
+            problem = f"{text!r} is no shard"
+            raise SceneError(Problem("--shard", problem, f"such as 3/64, the third of 64; at most {MOST} shards"))
+        return cls(number, count)
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.count}"
+
+    def has(self, chunk: Chunk) -> bool:
+        """Whether a chunk of the sweep is of this shard: chunks are dealt out one by one, so that all take as long."""
+        return chunk.number % self.count == self.number - 1
+
+    def file(self, output: Path) -> Path:
+        """File in which a shard keeps its finished rows, beside the file of the results."""
+        width = len(str(self.count))
+        return output.with_name(f"{output.name}.shard-{self.number:0{width}}-of-{self.count}")
+
+
+def shard_files(output: Path) -> dict[Shard, Path]:
+    """The files of all shards that have begun, in their order."""
+    pattern = re.compile(re.escape(output.name) + r"\.shard-([0-9]{1,6})-of-([0-9]{1,6})")
+    found: dict[Shard, Path] = {}
+    for path in sorted(output.parent.iterdir()):
+        match = pattern.fullmatch(path.name)
+        if match is not None:
+            found[Shard(int(match.group(1)), int(match.group(2)))] = path
+    return found
 
 
 @dataclass(frozen=True)

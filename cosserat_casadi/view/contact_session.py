@@ -19,8 +19,7 @@ from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.drawn_contact import ALONG_LINE
 from cosserat_casadi.page.drawn_model import drawn_numbers
 from cosserat_casadi.page.page_facts import page_facts
-from cosserat_casadi.view.answers import accuracy_of, state_of
-from cosserat_casadi.view.robot_session import RobotSession
+from cosserat_casadi.view.robot_session import RobotSession, accuracy_of, state_of
 
 
 class ContactSession(RobotSession):

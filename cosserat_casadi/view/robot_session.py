@@ -1,4 +1,7 @@
-"""A session of a page in the browser: moves, the error, inputs that bring a tip to a point."""
+"""A session of a page in the browser: moves, the error, inputs that bring a tip to a point.
+
+Data that go to and from a page are inputs as it sends them, and equilibria as it draws them.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +15,14 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.accuracy.refine import solve
+from cosserat_casadi.codegen.compiled_results import CompiledSolution
 from cosserat_casadi.control.inverse import search
 from cosserat_casadi.control.inverse_result import Inverse, with_verdict
 from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
+from cosserat_casadi.equilibrium.solution import Equilibrium
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.page.slider_ranges import Slider, movable, sliders
-from cosserat_casadi.view.answers import accuracy_of, stacked_inputs
 
 SAME = 1e-5
 """Largest difference of unknowns between two solves of one equilibrium."""
@@ -27,6 +31,50 @@ ELSEWHERE = "These inputs have an equilibrium at the point, and lead the robot t
 
 OF_EVERY_SESSION = frozenset({"move", "reset", "derivatives", "eigenvalues", "accuracy"})
 """Questions that every session answers."""
+
+
+def stacked_inputs(inputs: Sequence[float | None]) -> FloatArray:
+    """Stacked inputs; NaN for null, which JSON has in place of a number."""
+    return np.array([np.nan if value is None else value for value in inputs], dtype=np.float64)
+
+
+def state_of(found: Equilibrium[Any] | CompiledSolution, drawn: FloatArray, *, anew: bool) -> dict[str, Any]:
+    """The end of a solve for a page.
+
+    Args:
+        found: how the solve ended, in Python or in C.
+        drawn: drawn parts of the equilibrium, shape (k,).
+        anew: whether it was solved from the unloaded scene, because the last equilibrium led nowhere.
+    """
+    return {
+        "found": found.converged,
+        "label": found.outcome.label,
+        "text": found.outcome.value,
+        "anew": anew,
+        "loadFactor": found.load_factor,
+        "iterations": found.iterations,
+        "drawn": drawn.tolist(),
+    }
+
+
+def accuracy_of(solution: Equilibrium[Any] | None) -> dict[str, Any]:
+    """The estimated error of an equilibrium for a page: in words, and whether it is within the tolerance.
+
+    Args:
+        solution: with its estimates; None where there is no equilibrium.
+    """
+    if solution is None or solution.within_tolerance is None:
+        return {"within": None, "text": "", "refines": False}
+    accuracy = solution.model.scene.accuracy
+    error = solution.judged_error
+    if error is None or not solution.converged:
+        return {"within": False, "text": solution.message, "refines": False}
+    text = f"Estimated error {error:.1g} of the length, asked {accuracy.tolerance:g}."
+    if not solution.within_tolerance:
+        text += " " + solution.remedy
+    scene = solution.model.scene
+    refines = not (solution.within_tolerance or accuracy.fixed_by_hand or scene.touches_exactly or scene.tubes)
+    return {"within": solution.within_tolerance, "text": text, "refines": refines}
 
 
 @dataclass

@@ -34,9 +34,8 @@ from cosserat_casadi.numerics.progress import StageProgress
 from cosserat_casadi.page.drawn_model import DrawnModel, drawn_numbers
 from cosserat_casadi.page.page_facts import page_facts
 from cosserat_casadi.tubes.tube_solution import TubeSolution
-from cosserat_casadi.view.answers import accuracy_of, stacked_inputs, state_of
 from cosserat_casadi.view.contact_session import ContactSession
-from cosserat_casadi.view.robot_session import OF_EVERY_SESSION, RobotSession
+from cosserat_casadi.view.robot_session import OF_EVERY_SESSION, RobotSession, accuracy_of, stacked_inputs, state_of
 from cosserat_casadi.view.tube_session import TubeSession
 
 NAME = "viewed"

@@ -6,8 +6,7 @@ from typing import Any
 
 from typer.main import get_command
 
-from cosserat_casadi.cli.command_group import LINES, load_command
-from cosserat_casadi.cli.main import app
+from cosserat_casadi.cli.main import LINES, app, load_command
 
 WORDS = """# Every command and option
 

@@ -16,9 +16,8 @@ from rich.console import Console
 
 import cosserat_casadi
 from cosserat_casadi import SceneError, __version__, read_scene, solve
-from cosserat_casadi.cli.command_group import LINES, load_command
 from cosserat_casadi.cli.commands.new import TEMPLATES, Template
-from cosserat_casadi.cli.main import app, run
+from cosserat_casadi.cli.main import LINES, app, load_command, run
 from cosserat_casadi.cli.shipped import examples, pages
 from cosserat_casadi.errors import CosseratError, ExportError, Problem
 from tests.conftest import ROOT

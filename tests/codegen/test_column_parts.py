@@ -12,7 +12,6 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Discretisation, Model, build, export, scene_from_dict
 from cosserat_casadi.accuracy.cost import MOST_IN_COLUMNS
-from cosserat_casadi.codegen import column_parts
 from cosserat_casadi.codegen.assembled import Assembled, assembled
 from cosserat_casadi.codegen.blocks import INTERFACE
 from cosserat_casadi.codegen.columns import in_columns, on_path
@@ -130,7 +129,7 @@ def carried_rods(count: int) -> Model:
 )
 def test_a_chain_costs_the_sum_of_its_links(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
     """A moving base is computed with its rod: links of a chain share code, in loops too where they are long."""
-    monkeypatch.setattr(column_parts, "MOST_IN_COLUMNS", most)
+    monkeypatch.setattr("cosserat_casadi.codegen.assembled.MOST_IN_COLUMNS", most)
     model = carried_rods(5)
     parts = in_parts(model)
     x = np.random.default_rng(3).normal(scale=0.3, size=model.size)

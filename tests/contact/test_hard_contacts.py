@@ -10,8 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, discretise, export, parse_scene, solve
-from cosserat_casadi.equilibrium.contact.cushion_barriers import Barriers
-from cosserat_casadi.equilibrium.contact.cushions import cushioned
+from cosserat_casadi.equilibrium.contact.cushions import Barriers, cushioned
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.equilibrium.contact.passing_through import SECTIONS, is_inside_between
 from cosserat_casadi.equilibrium.load_path import load_path

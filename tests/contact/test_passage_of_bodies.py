@@ -8,7 +8,7 @@ import pytest
 from cosserat_casadi import Solution, build, parse_scene, solve
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Touch
-from cosserat_casadi.equilibrium.contact.cushion_barriers import Barriers
+from cosserat_casadi.equilibrium.contact.cushions import Barriers
 from cosserat_casadi.equilibrium.contact.passing_through import passes_through
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.outcome import Outcome

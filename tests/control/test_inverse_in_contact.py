@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, build, inverse, scene_from_dict, solve
-from cosserat_casadi.control import contact_problem
-from cosserat_casadi.control.contact_problem import ContactProblem
-from cosserat_casadi.control.inverse import inverse_problem
+from cosserat_casadi.control.inverse import ContactProblem, inverse_problem
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
@@ -65,7 +65,7 @@ def test_a_search_that_comes_no_nearer_ends(monkeypatch: pytest.MonkeyPatch) -> 
     """With derivatives of the wrong sign no step helps: what is told is the start."""
     own = ContactEquations.arguments_moved
     monkeypatch.setattr(ContactEquations, "arguments_moved", lambda *given: -own(*given))
-    monkeypatch.setattr(contact_problem, "MOST_DAMPING", 1e3)
+    monkeypatch.setattr(import_module("cosserat_casadi.control.inverse"), "MOST_DAMPING", 1e3)
     scene = over_ball([0.8, 0, -0.4], start=-1.0)
     model = build(scene)
     start = solve(model, estimate_error=False)

@@ -12,7 +12,7 @@ from scipy.linalg import eigh, null_space
 
 from cosserat_casadi import Model, Scene, SceneError, build
 from cosserat_casadi.control import lifted, stability_margin
-from cosserat_casadi.control.spectrum import Spectrum
+from cosserat_casadi.control.soft_minimum import Spectrum
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from cosserat_casadi.model.unknowns import BlockKind
 from tests.equilibria import solve

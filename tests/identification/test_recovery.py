@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from benchmarks.identification import one_try
 from benchmarks.validation import PAGE, SCENES, STUDIES, marks, pages_tables, validated
 from cosserat_casadi import Model, build, identify, modes_of, read_scene, solve
-from cosserat_casadi.identification.fit_discretisation import FitDiscretisation, with_discretisation
 from cosserat_casadi.identification.measured_cases import read_cases
+from cosserat_casadi.identification.model_identification import FitDiscretisation, with_discretisation
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import WIRE, MadeUp

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.interpolate import PchipInterpolator
 
-from cosserat_casadi.maths.hermite import HermiteCurve, monotone_curve
+from cosserat_casadi.maths.splines import HermiteCurve, monotone_curve
 
 TABLES = {
     "two points": ([-1.0, 2.0], [-0.5, 1.0]),

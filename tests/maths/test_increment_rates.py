@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm, expm_frechet
 
 from cosserat_casadi.maths import magnus
-from cosserat_casadi.maths.increment_rates import IncrementRates
+from cosserat_casadi.maths.magnus import IncrementRates
 from tests.reference.rods import hat
 
 RATE = np.array([0.4, 0.9, -0.7])

@@ -25,9 +25,9 @@ from cosserat_casadi.sweeps.outcome_file import write_sweep
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.run import Plan, plan_sweep, run_shard, run_sweep
 from cosserat_casadi.sweeps.scratch import Scratch
-from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.store import Store, StoreChangedError
 from cosserat_casadi.sweeps.table import read_table, table_of
+from cosserat_casadi.sweeps.work import Shard
 from tests.conftest import ROOT
 from tests.families import mostly_slow
 from tests.sweeps.conftest import PLANAR

@@ -16,9 +16,9 @@ from cosserat_casadi.cli.exit_codes import REFUSED
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.choice import Choice
 from cosserat_casadi.sweeps.run import Plan, merge_shards, plan_sweep, run_shard
-from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.store import StoreChangedError
 from cosserat_casadi.sweeps.table import table_of
+from cosserat_casadi.sweeps.work import Shard
 from tests.commands import cosserat
 from tests.sweeps.conftest import PLANAR
 

@@ -15,7 +15,7 @@ from scipy import stats
 
 from cosserat_casadi import SceneError, sobol_indices, sobol_table, sweep
 from cosserat_casadi.cli.reports.sweep import print_sobol
-from cosserat_casadi.plots.sobol_plot import plot_sobol
+from cosserat_casadi.plots.sweep_plot import plot_sobol
 from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.sweeps.sobol import estimates
 from tests.commands import cosserat

@@ -26,7 +26,7 @@ from cosserat_casadi import (
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.tubes.compiled import CompiledTubes
-from cosserat_casadi.codegen.tubes.kernels import TubeKernels
+from cosserat_casadi.codegen.tubes.sources import TubeKernels
 from cosserat_casadi.compiling.compiler import find_compiler
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.input_bounds import ranges_of_inputs

@@ -24,9 +24,9 @@ from cosserat_casadi.sweeps.outcome_file import record_file
 from cosserat_casadi.sweeps.outcome_table import Sweep
 from cosserat_casadi.sweeps.run import SAMPLES, Plan, merge_shards, output_problems, plan_sweep, run_shard, run_sweep
 from cosserat_casadi.sweeps.scratch import Scratch
-from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.sobol import sobol_indices
 from cosserat_casadi.sweeps.table import Table, asked_table
+from cosserat_casadi.sweeps.work import Shard
 
 
 def sweep(

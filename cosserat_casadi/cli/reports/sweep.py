@@ -17,8 +17,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.spelling import counted
 from cosserat_casadi.sweeps.outcome_file import STABLE, record_file
 from cosserat_casadi.sweeps.outcome_table import ERROR, Sweep
-from cosserat_casadi.sweeps.shards import Shard
 from cosserat_casadi.sweeps.sobol import SobolIndices
+from cosserat_casadi.sweeps.work import Shard
 
 ROUNDING = float(np.finfo(np.float64).eps)
 """Difference of poses, over the length of the longest rod and in rad, that is below the last digit of numbers."""
