@@ -32,11 +32,11 @@ from cosserat_casadi.accuracy.assess import (
     NoEquilibrium,
     Verdict,
     assess,
+    min_modes,
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import REFERENCE_MODES, Level, layer_nodes, layer_sections, nodes_for_turn
-from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.resolution import TELLING, Resolution
 from cosserat_casadi.accuracy.scene_solver import SceneSolver, corrected_from
 from cosserat_casadi.equilibrium.answer_error import with_notes

@@ -1,6 +1,6 @@
 """Identification of a model's unknowns from its measurements, and the error that modes and nodes leave in it.
 
-Measurements are of equilibria, vibrations and motions; modes and nodes are those that serve them.
+Measurements are of equilibria, vibrations and motions; modes and nodes are chosen to serve these measurements.
 """
 
 from __future__ import annotations

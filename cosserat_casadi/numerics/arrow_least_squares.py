@@ -8,7 +8,10 @@ Nielsen, *Damping parameter in Marquardt's method*, DTU 1999 (damping); C. Kanzo
 Comput. Appl. Math. 172, 2004 (projection on bounds).
 
 Where derivatives jump between a state and the one that a step leads to, a step that fails is followed by one along the
-kink (numerics/kinks.py). Where none along it lessens the sum, and both sides rise from it, the sum is least.
+kink. Where none along it lessens the sum, and both sides rise from it, the sum is least. A kink is a surface in the
+unknowns over which residuals are continuous and derivatives jump. Two states on either side of a kink have linear
+models r₁ + J₁ (x − x₁) and r₂ + J₂ (x − x₂), which are equal on it: so J₁ − J₂ = u gᵀ has rank one, g is normal to the
+kink, and uᵀ of the difference of both models is zero there.
 """
 
 from __future__ import annotations
@@ -23,8 +26,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.kinks import kink_row
 from cosserat_casadi.numerics.robust_loss import Loss
+
+WEIGHT = 1e6
+"""Weight of the row that keeps a step on a kink, relative to the rows of the block."""
 
 MOST_ITERATIONS = 200
 """Steps tried, at most."""
@@ -61,6 +66,24 @@ ROUNDING = 1e-9
 
 MEETING = 1e-4
 """Difference of both sides of a kink, relative to one more than half the sum of squares, up to which it is known."""
+
+
+def kink_row(here: FloatArray, there: FloatArray, change: FloatArray, scales: FloatArray) -> FloatArray:
+    """The row of a linear model that is zero on the kink between two states, shape (1, 1 + n).
+
+    Args:
+        here: residual and derivatives at one state, shape (m, 1 + n).
+        there: residual and derivatives at the other state, shape (m, 1 + n).
+        change: change of the unknowns, from here to there, shape (n,).
+        scales: sizes of the derivatives by each unknown, shape (n,).
+    """
+    jump = here - there
+    jump[:, 0] += there[:, 1:] @ change
+    directions, sizes, _ = np.linalg.svd(jump[:, 1:] / scales)
+    row = directions[:, :1].T @ jump
+    if sizes[0] == 0.0:
+        return np.zeros_like(row)
+    return np.asarray(WEIGHT * float(np.linalg.norm(here[:, 1:] / scales)) / sizes[0] * row)
 
 
 class FitState(Protocol):

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from cosserat_casadi import Outcome, Scene, Solution, build, discretise, scene_from_dict
-from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
+from cosserat_casadi.accuracy.assess import min_modes, node_residual
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from tests.catalogue.cases import helical_form
 from tests.equilibria import solve
