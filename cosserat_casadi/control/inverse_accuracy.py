@@ -111,7 +111,6 @@ def inverse_rows(
     for targets in rows:
         check_targets(targets)
     model = levels.first()
-    fixed = scene.accuracy.fixed
     settled: dict[int, Inverse] = {}
     pending: dict[int, Inverse] = {}
     starts: dict[int, Equilibrium[Any]] = {}
@@ -134,23 +133,29 @@ def inverse_rows(
             # One solve at the same inputs tells what the level leaves, and is where a next search would start.
             reference = levels.reference(result.solution, finer)
             judged = replace(result, solution=levels.judged(result.solution, reference))
-            shape_error = judged.solution.largest_error
-            if fixed and (shape_error is None or shape_error > LARGEST_SHAPE_ERROR):
-                # As a solve on modes and nodes that the user fixed: without an estimate nothing vouches for the gaps.
-                settled[row] = _unresolved(judged)
-            elif fixed:
-                settled[row] = with_verdict(judged, stable)
-            elif _error_within(judged) or judged.starts_left_out or judged.cut_short:
-                # A search that took too long for its starts is not repeated on more modes, where it takes longer still.
-                settled[row] = with_verdict(judged, stable)
-            else:
+            ended = _ended(judged, stable, fixed=scene.accuracy.fixed)
+            if ended is None:
                 starts[row] = reference
+            else:
+                settled[row] = ended
         if not starts:
             break
         model = finer
     for row in starts:
         settled[row] = _unresolved(pending[row])
     return [settled[row] for row in range(len(rows))]
+
+
+def _ended(judged: Inverse, stable: bool, *, fixed: bool) -> Inverse | None:
+    """The result of a row whose error was estimated; None where more modes and nodes serve it better."""
+    shape_error = judged.solution.largest_error
+    if fixed and (shape_error is None or shape_error > LARGEST_SHAPE_ERROR):
+        # As a solve on modes and nodes that the user fixed: without an estimate nothing vouches for the gaps.
+        return _unresolved(judged)
+    # A search that took too long for its starts is not repeated on more modes, where it takes longer still.
+    if fixed or _error_within(judged) or judged.starts_left_out or judged.cut_short:
+        return with_verdict(judged, stable)
+    return None
 
 
 def _searched(

@@ -11,7 +11,6 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.ranges import Given
 from cosserat_casadi.actuators.routing import offset_at
-from cosserat_casadi.control.targets import TARGET_KINDS
 from cosserat_casadi.equilibrium.contact.body_obstacles import seen_positions
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import variations
@@ -27,7 +26,7 @@ from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
 from cosserat_casadi.page.slider_ranges import Slider, movable, sliders
 from cosserat_casadi.plots.arrows import STYLES
 from cosserat_casadi.plots.colours import BODIES, OBSTACLES, TARGETS, actuator_colour, rod_colour
-from cosserat_casadi.plots.scenery import body_corners, places_in
+from cosserat_casadi.plots.scenery import body_corners, places_in, target_points
 from cosserat_casadi.plots.solved_shapes import RodShapes, rod_shapes
 
 DIGITS = 6
@@ -162,14 +161,6 @@ def _colours() -> dict[str, str]:
     """Colours of bodies, targets and obstacles, and of the arrows of each sort."""
     of_arrows = {sort: style.colour for sort, style in STYLES.items()}
     return {"body": BODIES, "target": TARGETS, "obstacle": OBSTACLES, **of_arrows}
-
-
-def target_points(scene: scenes.Scene) -> list[Sequence[float]]:
-    """Points of the targets of a scene, world axes, m."""
-    points: list[Sequence[float]] = []
-    for target in scene.targets:
-        points += TARGET_KINDS[target.kind].points(target)
-    return points
 
 
 def _stability(model: Model) -> dict[str, Any] | None:

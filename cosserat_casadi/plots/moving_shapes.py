@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +13,7 @@ from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.pose_series import poses_of, section_poses
+from cosserat_casadi.motion.pose_series import Poses, poses_of, section_poses
 from cosserat_casadi.plots.canvas import FLAT
 from cosserat_casadi.plots.colours import BODIES, disk_colour
 from cosserat_casadi.plots.scene_view import View, view_of
@@ -81,27 +82,8 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
     rods = {name: section_poses(model, name, SECTIONS, x, inputs).position for name in model.discrete.rods}
     outlines = {}
     colours = {}
-    followed = {}
-    carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
-    held = {support.rod for support in model.scene.supports}
-    for name, lines in rods.items():
-        if name in held:
-            # The tip rests; the middle does not.
-            followed[name] = lines[:, len(SECTIONS) // 2]
-        elif name not in carrying:
-            # The tips of rods that carry a body go where the body goes, whose own path says it once.
-            followed[name] = lines[:, -1]
-    unloaded = model.discrete.unloaded
-    # A rod that nothing holds has no mark.
-    marks = [(base_style(unloaded, rod.name), rods[rod.name][:, :1]) for rod in model.scene.rods if not rod.base.free]
     bodies = {body.name: poses_of(model.body[body.name], x, inputs) for body in model.scene.bodies}
-    disks = {body.name for body in model.scene.bodies if body.thickness is not None}
-    for joint in model.scene.joints:
-        for place in joint.places:
-            if place.body in bodies and place.body not in disks:
-                poses = bodies[place.body]
-                arms = rotations(poses.quaternion) @ np.array(place.position)
-                marks.append((joint_style(joint), (poses.position + arms)[:, None]))
+    followed = _followed(model, rods)
     for body in model.scene.listed_bodies:
         poses = bodies[body.name]
         world_R_body = rotations(poses.quaternion)
@@ -127,4 +109,37 @@ def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatA
             courses[actuator.name] = sections.position + np.einsum(
                 "tkij,jk->tki", across, known(offset_at(actuator, X)[0])
             )
-    return MovingShapes(times, rods, outlines, colours, courses, followed, tuple(marks))
+    return MovingShapes(times, rods, outlines, colours, courses, followed, tuple(_marks(model, rods, bodies)))
+
+
+def _followed(model: Model, rods: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """The point of each rod whose path is drawn."""
+    followed = {}
+    carrying = {joint.rod for joint in model.scene.joints if joint.at == 1.0}
+    held = {support.rod for support in model.scene.supports}
+    for name, lines in rods.items():
+        if name in held:
+            # The tip rests; the middle does not.
+            followed[name] = lines[:, len(SECTIONS) // 2]
+        elif name not in carrying:
+            # The tips of rods that carry a body go where the body goes, whose own path says it once.
+            followed[name] = lines[:, -1]
+    return followed
+
+
+def _marks(
+    model: Model, rods: dict[str, FloatArray], bodies: dict[str, Poses]
+) -> Iterator[tuple[dict[str, Any], FloatArray]]:
+    """Style and place of the marks of clamps, and of joints of bodies that are no disks."""
+    unloaded = model.discrete.unloaded
+    for rod in model.scene.rods:
+        # A rod that nothing holds has no mark.
+        if not rod.base.free:
+            yield base_style(unloaded, rod.name), rods[rod.name][:, :1]
+    disks = {body.name for body in model.scene.bodies if body.thickness is not None}
+    for joint in model.scene.joints:
+        for place in joint.places:
+            if place.body in bodies and place.body not in disks:
+                poses = bodies[place.body]
+                arms = rotations(poses.quaternion) @ np.array(place.position)
+                yield joint_style(joint), (poses.position + arms)[:, None]

@@ -230,8 +230,11 @@ def disk_rim(row: Disks | Body) -> FloatArray:
 
 def draw_targets(canvas: Canvas, scene: Scene) -> None:
     """Mark the points that an inverse problem wants to reach."""
-    points: list[Sequence[float]] = []
-    for target in scene.targets:
-        points += TARGET_KINDS[target.kind].points(target)
+    points = target_points(scene)
     if points:
         canvas.markers(np.array(points), label="targets", **TARGET_STYLE)
+
+
+def target_points(scene: Scene) -> list[Sequence[float]]:
+    """Points of the targets of a scene, world axes, m."""
+    return [point for target in scene.targets for point in TARGET_KINDS[target.kind].points(target)]

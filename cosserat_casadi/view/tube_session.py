@@ -16,9 +16,10 @@ from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.input_bounds import ranges_of_inputs
 from cosserat_casadi.page.drawn_model import SECTIONS
-from cosserat_casadi.page.page_facts import facts_of_every_page, rounded, target_points
+from cosserat_casadi.page.page_facts import facts_of_every_page, rounded
 from cosserat_casadi.page.slider_ranges import Slider
 from cosserat_casadi.plots.colours import rod_colour
+from cosserat_casadi.plots.scenery import target_points
 from cosserat_casadi.scene.input_fields import column_suffixes
 from cosserat_casadi.tubes.robot import robot_of
 from cosserat_casadi.tubes.tube_arrows import ALONG, arrows_on, borne_loads, sort_of

@@ -97,6 +97,31 @@ class _Met:
             ends.append(tuple(None if end in places else end for end in discretisation.breaks))
         return state.signature, tuple(ends)
 
+    def check(self) -> None:
+        """Refuse lines of contact that begin where the rod does or that a load inside them splits, and too many states.
+
+        Raises:
+            ExportError: there are some.
+        """
+        touches = [touch for state in self.states.values() for touch in state.touches]
+        from_base = sorted({(touch.owner, touch.obstacle) for touch in touches if touch.starts_at_base})
+        split = sorted({(touch.owner, touch.obstacle, X) for touch in touches for X in touch.seams})
+        problems = []
+        for rod, obstacle in from_base:
+            problem = f"it lies on {obstacle!r} from its base on: such a line of contact is not written in C"
+            problems.append(Problem(f"rods.{rod}", problem, "give the obstacle a width, m, or move it off the base"))
+        for rod, obstacle, X in split:
+            problem = (
+                f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: not written in "
+                "C"
+            )
+            problems.append(Problem("loads", problem, "give each obstacle a width, m, for a contact that is smooth"))
+        count = len(self.states)
+        if not problems and count > MOST_ARRANGEMENTS:
+            problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
+            problems.append(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
+        refuse(problems, ExportError)
+
 
 def chosen_arrangements(
     model: Model,
@@ -150,11 +175,7 @@ def chosen_arrangements(
         met.add(state_in(case.model.scene))
         before = values
     met.add(ContactState(()))
-    _refuse_lines(list(met.states.values()))
-    count = len(met.states)
-    if count > MOST_ARRANGEMENTS:
-        problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
-        raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
+    met.check()
     start = list(met.states).index(met.key(first))
     answers, finer = (
         [ContactEquations(named, given, own_grids, state, theta) for state in met.states.values()]
@@ -181,27 +202,6 @@ def _check(solution: Solution, what: str) -> None:
     """
     if not solution.converged:
         raise ExportError(Problem("--over", f"{what}: {solution.message}", "leave it out, or lead there by others"))
-
-
-def _refuse_lines(states: Sequence[ContactState]) -> None:
-    """Refuse lines of contact that begin where the rod does, and lines that a load inside them splits.
-
-    Raises:
-        ExportError: there are some.
-    """
-    touches = [touch for state in states for touch in state.touches]
-    from_base = sorted({(touch.owner, touch.obstacle) for touch in touches if touch.starts_at_base})
-    split = sorted({(touch.owner, touch.obstacle, X) for touch in touches for X in touch.seams})
-    problems = []
-    for rod, obstacle in from_base:
-        problem = f"it lies on {obstacle!r} from its base on: such a line of contact is not written in C"
-        problems.append(Problem(f"rods.{rod}", problem, "give the obstacle a width, m, or move it off the base"))
-    for rod, obstacle, X in split:
-        problem = (
-            f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: not written in C"
-        )
-        problems.append(Problem("loads", problem, "give each obstacle a width, m, for a contact that is smooth"))
-    refuse(problems, ExportError)
 
 
 def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:
