@@ -36,7 +36,7 @@ from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_clu
 from cosserat_casadi.motion.relaxing_rows import branch_rows, integrated
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.numerics.continuation import ContinuationSettings
-from cosserat_casadi.numerics.progress import Progress, Report
+from cosserat_casadi.numerics.progress import Progress, Report, not_told
 from cosserat_casadi.result import Result
 from cosserat_casadi.spelling import named
 
@@ -275,7 +275,7 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
     marginal = marginal_contact(solution)
     if marginal:
         return _without_modes(solution, ModesOutcome.MARGINAL_CONTACT, marginal)
-    tell = report or _untold
+    tell = report or not_told
     tell(f"equations of motion of {model.size} unknowns")
     motions = small_motions(model, solution.x, solution.inputs, contacts=pressing_contacts(solution))
     check_mass(motions)
@@ -309,10 +309,6 @@ def modes_at(solution: Solution, count: int | None = None, *, report: Report | N
         pairs.values,
         slowest,
     )
-
-
-def _untold(stage: str) -> None:
-    """Take no note of a stage that nobody asked for."""
 
 
 def modes_of(
