@@ -334,28 +334,8 @@ class _Writing:
     def _write_loop(self, k: int, steps: Sequence[Step]) -> None:
         """Write a loop over the entries that the steps compute."""
         count = len(steps[0].results[0].numbers)
-        inside: dict[bytes, ca.SX] = {}
-        read: dict[bytes, ca.SX] = {}
-        operands_read: list[Numbers] = []
-        for step in steps:
-            entries = []
-            for numbers in (operand.numbers for operand in step.operands):
-                key = numbers.tobytes()
-                if key not in inside and key not in read:
-                    constant = self._one_constant(numbers)
-                    if constant is not None:
-                        entries.append(constant)
-                        continue
-                    read[key] = ca.SX.sym("read")
-                    operands_read.append(numbers)
-                entries.append(inside[key] if key in inside else read[key])
-            assert step.operation is not None, "loops are of operations alone"
-            apply = ca.SX.unary if len(entries) == 1 else ca.SX.binary
-            inside[step.results[0].numbers.tobytes()] = apply(step.operation, *entries)
         kept = [step.results[0].numbers for step in steps if self._last_use_of(step.results[0].numbers) > k]
-        stored = [inside[numbers.tobytes()] for numbers in kept]
-        symbols = ca.vertcat(*read.values())
-        listing = Listing(ca.Function("turn", [symbols], [ca.densify(ca.vertcat(*ca.cse(stored)))]))
+        listing, operands_read = self._turn_of_loop(steps, kept)
         in_fours = count >= LANES and listing.has_fours
         arithmetic = FOURS if in_fours else SINGLE
         variables = ("FOUR", "b") if in_fours else ("casadi_real", "a")
@@ -385,6 +365,30 @@ class _Writing:
             self.functions.append(LOOP.format(name=name, count=count, lines=lines))
         self.lines.append(f"  MADE({name})(w);")
         self.statements += len(block.statements)
+
+    def _turn_of_loop(self, steps: Sequence[Step], kept: Sequence[Numbers]) -> tuple[Listing, list[Numbers]]:
+        """The operations of a turn, whose results are of the kept entries; and the entries that it reads, in order."""
+        inside: dict[bytes, ca.SX] = {}
+        read: dict[bytes, ca.SX] = {}
+        operands_read: list[Numbers] = []
+        for step in steps:
+            entries = []
+            for numbers in (operand.numbers for operand in step.operands):
+                key = numbers.tobytes()
+                if key not in inside and key not in read:
+                    constant = self._one_constant(numbers)
+                    if constant is not None:
+                        entries.append(constant)
+                        continue
+                    read[key] = ca.SX.sym("read")
+                    operands_read.append(numbers)
+                entries.append(inside[key] if key in inside else read[key])
+            assert step.operation is not None, "loops are of operations alone"
+            apply = ca.SX.unary if len(entries) == 1 else ca.SX.binary
+            inside[step.results[0].numbers.tobytes()] = apply(step.operation, *entries)
+        stored = [inside[numbers.tobytes()] for numbers in kept]
+        symbols = ca.vertcat(*read.values())
+        return Listing(ca.Function("turn", [symbols], [ca.densify(ca.vertcat(*ca.cse(stored)))])), operands_read
 
     def _one_constant(self, numbers: Numbers) -> ca.SX | None:
         """The constant that all entries are; None where they are no constants, or several."""

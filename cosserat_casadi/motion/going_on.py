@@ -133,12 +133,7 @@ def go_on(
         if told.outcome is StepOutcome.INTERRUPTED:
             message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
             return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
-        factor = strand.factor
-        if is_struck(history) or is_struck(told):
-            factor = max(factor, _factor_after_impacts(simulator, strand, history, told))
-        elif has_jumps and strand.by_modes:
-            modes, others = (most_modes(one.discretisation) for one in (first, strand))
-            factor = max(factor, told_by_modes(modes, others, ORDER_OF_WAVES))
+        factor = max(strand.factor, _later_factor(simulator, strand, history, told, has_jumps=has_jumps))
         left = factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
         if strand.by_modes:
             by_other_modes = max(by_other_modes, left)
@@ -158,17 +153,20 @@ def go_on(
     return motion if given is None else replace(motion, tolerance=None)
 
 
-def _factor_after_impacts(simulator: Simulator, strand: Strand, history: History, told: History) -> float:
-    """Error of a motion over its distance from another one, from above, where either was struck as they went on.
+def _later_factor(simulator: Simulator, strand: Strand, history: History, told: History, *, has_jumps: bool) -> float:
+    """Error of a motion over its distance from another one, from above, by what happened as they went on.
 
     Args:
         simulator: the simulator of the motion.
         strand: the strand of the other one.
         history: the motion.
         told: the other one.
+        has_jumps: whether inputs jumped in a scene that is not damped.
     """
     modes = most_modes(history.model.discretisation)
     others = most_modes(strand.discretisation)
+    if not is_struck(history) and not is_struck(told):
+        return told_by_modes(modes, others, ORDER_OF_WAVES) if has_jumps and strand.by_modes else strand.factor
     if modes != others:
         return told_by_modes(modes, others, UNKNOWN_ORDER)
     if strand.discretisation != history.model.discretisation:

@@ -279,31 +279,18 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     groups: list[tuple[list[Any], Path]] = []
     for i, entry in enumerate(list_of(scene.get("parameters"))):
         groups.append((_listed_names(entry), ("parameters", i)))
-    parameters = len(groups)
+    parameters = [group for group, _ in groups]
     first: dict[str, int] = {}
     for i, table in scene.tables("unknowns"):
         key = "parameter" if "parameter" in table else "input"
         names = _listed_names(table.get(key))
         if not names or not all(isinstance(name, str) for name in names):
             continue
-        again = next((name for name in names if first.setdefault(name, i) != i), None)
-        if again is not None:
-            yield Fault(("unknowns", i, key), f"unknowns[{first[again]}] is {shown(again)} already", "name it once")
-        elif key == "parameter":
-            listed_groups = [group for group, _ in groups[:parameters]]
-            shared = [group for group in listed_groups if group != names and set(map(str, group)) & set(names)]
-            if shared:
-                problem = f"{shown(names)} and {shown(shared[0])} of parameters share numbers"
-                yield Fault(("unknowns", i, "parameter"), problem, "tie the same numbers in both, or leave one out")
-            elif names not in listed_groups:
-                groups.append((names, ("unknowns", i, "parameter")))
-        else:
-            # Of parameters the rules of `parameters` tell.
-            for other in first:
-                if other != names[0] and overlap(names[0], other):
-                    problem = f"{shown(names[0])} and unknowns[{first[other]}] share numbers"
-                    yield Fault(("unknowns", i, "input"), problem, "name each number once")
-                    break
+        fault = _fault_of_unknown(("unknowns", i, key), names, first, parameters)
+        if fault is not None:
+            yield fault
+        elif key == "parameter" and names not in parameters:
+            groups.append((names, ("unknowns", i, "parameter")))
     if not groups:
         return
     holders = holders_of(
@@ -315,6 +302,34 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     paths = [path if len(group) == 1 else (*path, j) for group, path in groups for j in range(len(group))]
     yield from parameter_faults(names, paths, holders, free_names(scene), requested_fields(scene))
     yield from tie_faults([(group, path) for group, path in groups if len(group) > 1], holders)
+
+
+def _fault_of_unknown(
+    path: tuple[str, int, str], names: Sequence[str], first: dict[str, int], parameters: Sequence[list[Any]]
+) -> Fault | None:
+    """An unknown has numbers of an earlier one, or some of a list of parameters; None where it has not.
+
+    Args:
+        path: of its names.
+        names: the names of its numbers.
+        first: number of the unknown that each name is of; the names are added.
+        parameters: lists of names of parameters.
+    """
+    _, number, key = path
+    again = next((name for name in names if first.setdefault(name, number) != number), None)
+    if again is not None:
+        return Fault(path, f"unknowns[{first[again]}] is {shown(again)} already", "name it once")
+    if key == "parameter":
+        shared = [group for group in parameters if group != names and set(map(str, group)) & set(names)]
+        if shared:
+            problem = f"{shown(names)} and {shown(shared[0])} of parameters share numbers"
+            return Fault(path, problem, "tie the same numbers in both, or leave one out")
+        return None
+    # Of parameters the rules of `parameters` tell.
+    for other in first:
+        if other != names[0] and overlap(names[0], other):
+            return Fault(path, f"{shown(names[0])} and unknowns[{first[other]}] share numbers", "name each number once")
+    return None
 
 
 def _listed_names(given: Any) -> list[Any]:
