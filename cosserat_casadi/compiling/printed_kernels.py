@@ -23,7 +23,6 @@ PROTOTYPE = """{qualified} {name}(const casadi_real** arg, casadi_real** res, ca
 #define {name}_SZ_W {reals}
 """
 
-
 CALLEE = """static void MADE({name}_turn)(const casadi_real *given, casadi_real *made){body}
 static void MADE({name})(const casadi_real *given, casadi_real *made, int turns) {{
   int turn;
@@ -69,12 +68,10 @@ COLUMNS = """static void MADE({name})(const casadi_real *w, const casadi_real *t
 
 CALL_OF_COLUMNS = "    EVERY_LANE(MADE({name}_{part})(w, turns + lane, columns + lane, passed + lane))"
 
-
 INTEGERS = """#undef INTEGERS
 #define INTEGERS(first) ({stem}_integers + (first))
 """
 """How kernels read tables of whole numbers."""
-
 
 NUMBERS = """#undef C
 #define C {stem}_numbers

@@ -19,7 +19,6 @@ LONGEST = 300
 LONGEST_OF_NUMBERS = 400
 """Statements on numbers in one function: what compilers take grows faster than its length."""
 
-
 CHOICE, SUM, PRODUCT, ATOM = range(4)
 """How tightly expressions bind in C: choices and comparisons, sums, products, and what needs no parentheses."""
 

@@ -16,7 +16,6 @@ INCLUDED = re.compile(r"@\{include (\S+)\}\n")
 SECTION = re.compile(r"@\{if (not )?(\w+)\}\n((?:(?!@\{if ).)*?)@\{end\}\n", re.DOTALL)
 """Lines of a template without sections in them: ``@{if word}`` or ``@{if not word}``, the lines, ``@{end}``."""
 
-
 DEVICE = re.compile(r"(?:SOLVER|@\{MACRO\})_DEVICE ")
 """The qualifier before functions of a header, which compilers for GPUs need."""
 

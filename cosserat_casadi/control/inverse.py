@@ -64,97 +64,6 @@ LONGEST = 60.0
 """Seconds after which a search begins no further start, and says so: on many tendons one alone may take a minute."""
 
 
-@dataclass(frozen=True)
-class _AtPlaces:
-    """A model as targets ask for it: functions of unknowns and inputs, the places of contact being given."""
-
-    model: Model
-    places: ca.MX
-
-    def __getattr__(self, name: str) -> Any:
-        member = getattr(self.model, name)
-        if name == "lengths" or not self.places.shape[0]:
-            return member
-        # Parameters stand behind the inputs.
-        return {owner: self._at_places(function) for owner, function in member.items()}
-
-    def _at_places(self, function: ca.Function) -> Callable[..., Any]:
-        return lambda x, inputs, *more: function(x, inputs, self.places, *more)
-
-
-@dataclass(frozen=True)
-class ContactProblem(SoughtInputs):
-    """Decision variables alone: the unknowns follow by solves."""
-
-    def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
-        """Damped steps between equilibria, each with its own contacts."""
-        here = self._at(start, change)
-        if not here.solution.converged:
-            return here
-        lower, upper = self.ranges()
-        linear = self._linearised(here.solution)
-        damping = FIRST_DAMPING
-        turns = 0
-        while turns < MOST_TURNS and linear is not None and damping < MOST_DAMPING:
-            errors, moved = linear
-            # The damped change within ranges after which least is left of the errors.
-            damped = np.vstack([moved, np.sqrt(damping) * np.eye(len(change))])
-            padded = np.concatenate([errors, np.zeros(len(change))])
-            step = shortest(damped, padded, lower - change, upper - change)
-            if float(np.abs(step).max(initial=0.0)) <= SETTLED:
-                break
-            turns += 1
-            there = self._at(here.solution, change + step)
-            before, after = gap_left(here), gap_left(there)
-            expected = before - float(np.linalg.norm(errors + moved @ step))
-            # Off a stable branch steps would go far for little.
-            leaves = there.unstable and not here.unstable
-            if after < before and before - after >= NEARER * expected and not leaves:
-                damping /= EASED
-                here, change = there, change + step
-                linear = self._linearised(here.solution)
-            else:
-                damping *= TIGHTENED
-        return replace(here, rounds=turns)
-
-    def _at(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
-        return self.judged(start if start.converged else None, change, rounds=0)
-
-    def _linearised(self, solution: Equilibrium[Any]) -> tuple[FloatArray, FloatArray] | None:
-        """Errors of an equilibrium, shape (m,), and what changes of n inputs in their scales move them by, (m, n).
-
-        None where its contacts leave it no derivatives.
-        """
-        assert isinstance(solution, Solution), "rods alone touch obstacles"
-        equations, z = equations_at(solution)
-        model = equations.model
-        x = ca.MX.sym("x", model.size)
-        inputs = ca.MX.sym("inputs", model.inputs.size)
-        places = model.parameters.symbol
-        wanted = ca.MX(wanted_poses(self.targets))
-        errors = weighted_errors(_AtPlaces(model, places), self.targets, wanted, x, inputs)
-        symbols = [x, inputs, places]
-        by_arguments = ca.horzcat(*[ca.jacobian(errors, symbol) for symbol in symbols])
-        function = ca.Function("errors", symbols, [errors, by_arguments])
-        values, by_all = (part.full() for part in function(*equations.arguments(z)))
-        by_variables = np.eye(len(equations.given))[:, self.variables.indices] * self.scale
-        unmoved = np.zeros((0, len(self.scale)))
-        by_z = equations.moved(z, by_variables, unmoved)
-        moved = by_all @ equations.arguments_moved(by_z, by_variables, unmoved)
-        return (values[:, 0], moved) if np.all(np.isfinite(moved)) else None
-
-
-def contact_problem(
-    model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Solution, stable: bool
-) -> ContactProblem:
-    """The problem of a model of rods in exact contact, with the arguments of :func:`lifted_problem`."""
-    variables = decision_variables(model)
-    given = given_inputs(start.model, start.inputs)
-    if stable:
-        check_potential(start.model, start.inputs)
-    return ContactProblem(model, targets, variables, scales(model, variables, start), variables.clipped(given))
-
-
 def inverse(
     model: SystemFunctions,
     *,
@@ -300,3 +209,94 @@ def _from_relaxed(problem: SoughtInputs, result: Inverse) -> Inverse:
     if second.solution.stable:
         return second
     return result
+
+
+@dataclass(frozen=True)
+class _AtPlaces:
+    """A model as targets ask for it: functions of unknowns and inputs, the places of contact being given."""
+
+    model: Model
+    places: ca.MX
+
+    def __getattr__(self, name: str) -> Any:
+        member = getattr(self.model, name)
+        if name == "lengths" or not self.places.shape[0]:
+            return member
+        # Parameters stand behind the inputs.
+        return {owner: self._at_places(function) for owner, function in member.items()}
+
+    def _at_places(self, function: ca.Function) -> Callable[..., Any]:
+        return lambda x, inputs, *more: function(x, inputs, self.places, *more)
+
+
+@dataclass(frozen=True)
+class ContactProblem(SoughtInputs):
+    """Decision variables alone: the unknowns follow by solves."""
+
+    def solve(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
+        """Damped steps between equilibria, each with its own contacts."""
+        here = self._at(start, change)
+        if not here.solution.converged:
+            return here
+        lower, upper = self.ranges()
+        linear = self._linearised(here.solution)
+        damping = FIRST_DAMPING
+        turns = 0
+        while turns < MOST_TURNS and linear is not None and damping < MOST_DAMPING:
+            errors, moved = linear
+            # The damped change within ranges after which least is left of the errors.
+            damped = np.vstack([moved, np.sqrt(damping) * np.eye(len(change))])
+            padded = np.concatenate([errors, np.zeros(len(change))])
+            step = shortest(damped, padded, lower - change, upper - change)
+            if float(np.abs(step).max(initial=0.0)) <= SETTLED:
+                break
+            turns += 1
+            there = self._at(here.solution, change + step)
+            before, after = gap_left(here), gap_left(there)
+            expected = before - float(np.linalg.norm(errors + moved @ step))
+            # Off a stable branch steps would go far for little.
+            leaves = there.unstable and not here.unstable
+            if after < before and before - after >= NEARER * expected and not leaves:
+                damping /= EASED
+                here, change = there, change + step
+                linear = self._linearised(here.solution)
+            else:
+                damping *= TIGHTENED
+        return replace(here, rounds=turns)
+
+    def _at(self, start: Equilibrium[Any], change: FloatArray) -> Inverse:
+        return self.judged(start if start.converged else None, change, rounds=0)
+
+    def _linearised(self, solution: Equilibrium[Any]) -> tuple[FloatArray, FloatArray] | None:
+        """Errors of an equilibrium, shape (m,), and what changes of n inputs in their scales move them by, (m, n).
+
+        None where its contacts leave it no derivatives.
+        """
+        assert isinstance(solution, Solution), "rods alone touch obstacles"
+        equations, z = equations_at(solution)
+        model = equations.model
+        x = ca.MX.sym("x", model.size)
+        inputs = ca.MX.sym("inputs", model.inputs.size)
+        places = model.parameters.symbol
+        wanted = ca.MX(wanted_poses(self.targets))
+        errors = weighted_errors(_AtPlaces(model, places), self.targets, wanted, x, inputs)
+        symbols = [x, inputs, places]
+        by_arguments = ca.horzcat(*[ca.jacobian(errors, symbol) for symbol in symbols])
+        function = ca.Function("errors", symbols, [errors, by_arguments])
+        values, by_all = (part.full() for part in function(*equations.arguments(z)))
+        by_variables = np.eye(len(equations.given))[:, self.variables.indices] * self.scale
+        unmoved = np.zeros((0, len(self.scale)))
+        by_z = equations.moved(z, by_variables, unmoved)
+        moved = by_all @ equations.arguments_moved(by_z, by_variables, unmoved)
+        return (values[:, 0], moved) if np.all(np.isfinite(moved)) else None
+
+
+def contact_problem(
+    model: SystemFunctions, targets: tuple[scenes.Target, ...], start: Solution, stable: bool
+) -> ContactProblem:
+    """The problem of a model of rods in exact contact, with the arguments of :func:`lifted_problem`."""
+    variables = decision_variables(model)
+    given = given_inputs(start.model, start.inputs)
+    if stable:
+        check_potential(start.model, start.inputs)
+    return ContactProblem(model, targets, variables, scales(model, variables, start), variables.clipped(given))

@@ -109,6 +109,9 @@ def estimate_model(
     if model.scene.estimation.draws:
         drawn = search.sampled(found, covariance, model.scene.estimation.draws)
         covariance = np.where(drawn.sound[:, None, None], drawn.covariance, covariance)
+    outcomes = []
+    for ending, is_determined, word in zip(found.outcome.tolist(), determined.tolist(), beyond, strict=True):
+        outcomes.append((word or NOT_DETERMINED) if ending == 0 and not is_determined else ENDINGS[ending])
     values = np.where(determined[:, None], found.unknowns[:, :own], np.nan)
     inputs[:, indices] = np.where(determined[:, None], found.unknowns, np.nan)
     sensors = sensor_names(model, sections, table.at)
@@ -117,7 +120,7 @@ def estimate_model(
         cases=tuple(case.where for case in cases),
         labels=layout.own_labels,
         units=_units(layout.own),
-        outcomes=tuple(_outcomes(found, determined, beyond)),
+        outcomes=tuple(outcomes),
         values=values,
         covariance=covariance + added,
         cost=found.cost,
@@ -149,12 +152,6 @@ def _measured(cases: Sequence[Case]) -> list[tuple[int, int, float]]:
         for entry, value in enumerate(datum.values)
         if np.isfinite(value)
     ]
-
-
-def _outcomes(found: Estimates, determined: npt.NDArray[np.bool_], beyond: Sequence[str]) -> Iterator[str]:
-    """How the search of each row ended, in a word."""
-    for ending, is_determined, word in zip(found.outcome.tolist(), determined.tolist(), beyond, strict=True):
-        yield (word or NOT_DETERMINED) if ending == 0 and not is_determined else ENDINGS[ending]
 
 
 def _beyond_obstacles(model: Model, found: Estimates, inputs: FloatArray) -> list[str]:

@@ -68,24 +68,6 @@ MEETING = 1e-4
 """Difference of both sides of a kink, relative to one more than half the sum of squares, up to which it is known."""
 
 
-def kink_row(here: FloatArray, there: FloatArray, change: FloatArray, scales: FloatArray) -> FloatArray:
-    """The row of a linear model that is zero on the kink between two states, shape (1, 1 + n).
-
-    Args:
-        here: residual and derivatives at one state, shape (m, 1 + n).
-        there: residual and derivatives at the other state, shape (m, 1 + n).
-        change: change of the unknowns, from here to there, shape (n,).
-        scales: sizes of the derivatives by each unknown, shape (n,).
-    """
-    jump = here - there
-    jump[:, 0] += there[:, 1:] @ change
-    directions, sizes, _ = np.linalg.svd(jump[:, 1:] / scales)
-    row = directions[:, :1].T @ jump
-    if sizes[0] == 0.0:
-        return np.zeros_like(row)
-    return np.asarray(WEIGHT * float(np.linalg.norm(here[:, 1:] / scales)) / sizes[0] * row)
-
-
 class FitState(Protocol):
     """Residuals of a problem at some unknowns, with all that its Jacobian needs.
 
@@ -669,3 +651,21 @@ class ArrowFit(Generic[StateType]):
         left = arrow.decrease(values - search.values)
         bound = max(ROUNDING, self._least_decrease(search))
         return FitOutcome.CONVERGED if left <= bound else FitOutcome.STALLED
+
+
+def kink_row(here: FloatArray, there: FloatArray, change: FloatArray, scales: FloatArray) -> FloatArray:
+    """The row of a linear model that is zero on the kink between two states, shape (1, 1 + n).
+
+    Args:
+        here: residual and derivatives at one state, shape (m, 1 + n).
+        there: residual and derivatives at the other state, shape (m, 1 + n).
+        change: change of the unknowns, from here to there, shape (n,).
+        scales: sizes of the derivatives by each unknown, shape (n,).
+    """
+    jump = here - there
+    jump[:, 0] += there[:, 1:] @ change
+    directions, sizes, _ = np.linalg.svd(jump[:, 1:] / scales)
+    row = directions[:, :1].T @ jump
+    if sizes[0] == 0.0:
+        return np.zeros_like(row)
+    return np.asarray(WEIGHT * float(np.linalg.norm(here[:, 1:] / scales)) / sizes[0] * row)

@@ -41,7 +41,6 @@ def _ascending(value: str) -> str:
 
 Range = Annotated[str, AfterValidator(_ascending)]
 
-
 Nodes = Annotated[Whole, Field(ge=2, le=MOST_NODES)]
 Sections = Annotated[Whole, Field(ge=1, le=MOST_SECTIONS)]
 Rotation = Literal["magnus4", "magnus6", "magnus8", "permuted"]

@@ -71,7 +71,6 @@ def _base_side_first(value: tuple[float, float]) -> tuple[float, float]:
 Offset = Annotated[tuple[PowerComponent, PowerComponent], listed(2, "2 components, x and y")]
 Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_base_side_first)]
 
-
 PULLS = {"in": 1.0, "out": -1.0}
 """Directions of the last pull, with the sign of the friction in it."""
 

@@ -26,7 +26,6 @@ LONGEST_TEXT = 60
 LONGEST_LIST = 12
 """Names that a remedy lists."""
 
-
 LARGEST_LENGTH = 1e60
 """Largest length, m, and largest curvature, 1/m: their fourth powers are numbers of double precision."""
 
@@ -44,7 +43,6 @@ LENGTHS = SIZES | {
 
 PROFILE_KEYS = ("base", "tip", "legendre", "powers")
 """Keys of a table of what varies along the rod, below the key of the quantity."""
-
 
 SINGULAR = {
     "obstacles": "obstacle",

@@ -49,7 +49,6 @@ def _as_input_column(value: Any) -> Any:
 
 MeasuredInput = Annotated[InputColumn, BeforeValidator(_as_input_column)]
 
-
 TEXT = Tag("⟨text⟩")
 NUMBER = Tag("⟨number⟩")
 BY_TYPE = Discriminator(lambda value: TEXT.tag if isinstance(value, str) else NUMBER.tag)

@@ -16,7 +16,6 @@ from cosserat_casadi.maths.typing import FloatArray
 MOST_TOLD = 20
 """Faults of one table that are told; a file may have one in every row."""
 
-
 SEPARATORS = (";", "\t")
 """Separators of columns in tables of other programs; no name of a column has them."""
 

@@ -19,7 +19,6 @@ NAMED_LISTS = tuple(SINGULAR)
 MOST_NAMES = 12
 """Names that a remedy lists."""
 
-
 _NOTHING = "there is no {} to set"
 """Problem of a key that leads to nothing."""
 

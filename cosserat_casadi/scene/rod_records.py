@@ -169,7 +169,6 @@ linear_density = 0.01
 Row6 = Annotated[tuple[Number, Number, Number, Number, Number, Number], listed(6, "6 numbers")]
 StiffnessMatrix = Annotated[tuple[Row6, Row6, Row6, Row6, Row6, Row6], listed(6, "6 rows of 6 numbers")]
 
-
 ShareOfStiffness = Annotated[Number, Field(gt=0, lt=1)]
 
 

@@ -20,7 +20,6 @@ TOLERANCE = 1e-3
 FRAMES = 101
 """Rows of a result where the scene says neither how many nor when."""
 
-
 MOST_STEPS = 10_000_000
 """Steps of one size that a scene may ask for: their polynomials take some 10 GB."""
 

@@ -42,59 +42,8 @@ COMPILED_ROWS = 512
 MODELLED_ROWS = 16
 """Rows of a chunk that is solved in Python."""
 
-
 STALLED = OUTCOMES.index(Outcome.LOAD_STALLED)
 """Outcome of rows that stop before an obstacle or a rod."""
-
-
-@dataclass(frozen=True)
-class Shard:
-    """A part of a sweep that is cut into several.
-
-    Attributes:
-        number: from 1 to count.
-        count: parts that the sweep is cut into.
-    """
-
-    number: int
-    count: int
-
-    @classmethod
-    def read(cls, text: str) -> Shard:
-        """The shard that a word such as ``3/64`` means.
-
-        Raises:
-            SceneError: it means none.
-        """
-        match = re.fullmatch(r"0*([0-9]{1,6})/0*([0-9]{1,6})", text.strip())
-        number, count = (int(word) for word in match.groups()) if match else (0, 0)
-        if not 1 <= number <= count <= MOST:
-            problem = f"{text!r} is no shard"
-            raise SceneError(Problem("--shard", problem, f"such as 3/64, the third of 64; at most {MOST} shards"))
-        return cls(number, count)
-
-    def __str__(self) -> str:
-        return f"{self.number}/{self.count}"
-
-    def has(self, chunk: Chunk) -> bool:
-        """Whether a chunk of the sweep is of this shard: chunks are dealt out one by one, so that all take as long."""
-        return chunk.number % self.count == self.number - 1
-
-    def file(self, output: Path) -> Path:
-        """File in which a shard keeps its finished rows, beside the file of the results."""
-        width = len(str(self.count))
-        return output.with_name(f"{output.name}.shard-{self.number:0{width}}-of-{self.count}")
-
-
-def shard_files(output: Path) -> dict[Shard, Path]:
-    """The files of all shards that have begun, in their order."""
-    pattern = re.compile(re.escape(output.name) + r"\.shard-([0-9]{1,6})-of-([0-9]{1,6})")
-    found: dict[Shard, Path] = {}
-    for path in sorted(output.parent.iterdir()):
-        match = pattern.fullmatch(path.name)
-        if match is not None:
-            found[Shard(int(match.group(1)), int(match.group(2)))] = path
-    return found
 
 
 @dataclass(frozen=True)
@@ -198,3 +147,53 @@ def solve_parts(parts: Sequence[Part]) -> FloatArray:
     """Results of all rows of a chunk; they depend on these arguments alone."""
     results = [answer.solve(inputs) for answer, inputs in parts]
     return np.vstack(results)
+
+
+@dataclass(frozen=True)
+class Shard:
+    """A part of a sweep that is cut into several.
+
+    Attributes:
+        number: from 1 to count.
+        count: parts that the sweep is cut into.
+    """
+
+    number: int
+    count: int
+
+    @classmethod
+    def read(cls, text: str) -> Shard:
+        """The shard that a word such as ``3/64`` means.
+
+        Raises:
+            SceneError: it means none.
+        """
+        match = re.fullmatch(r"0*([0-9]{1,6})/0*([0-9]{1,6})", text.strip())
+        number, count = (int(word) for word in match.groups()) if match else (0, 0)
+        if not 1 <= number <= count <= MOST:
+            problem = f"{text!r} is no shard"
+            raise SceneError(Problem("--shard", problem, f"such as 3/64, the third of 64; at most {MOST} shards"))
+        return cls(number, count)
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.count}"
+
+    def has(self, chunk: Chunk) -> bool:
+        """Whether a chunk of the sweep is of this shard: chunks are dealt out one by one, so that all take as long."""
+        return chunk.number % self.count == self.number - 1
+
+    def file(self, output: Path) -> Path:
+        """File in which a shard keeps its finished rows, beside the file of the results."""
+        width = len(str(self.count))
+        return output.with_name(f"{output.name}.shard-{self.number:0{width}}-of-{self.count}")
+
+
+def shard_files(output: Path) -> dict[Shard, Path]:
+    """The files of all shards that have begun, in their order."""
+    pattern = re.compile(re.escape(output.name) + r"\.shard-([0-9]{1,6})-of-([0-9]{1,6})")
+    found: dict[Shard, Path] = {}
+    for path in sorted(output.parent.iterdir()):
+        match = pattern.fullmatch(path.name)
+        if match is not None:
+            found[Shard(int(match.group(1)), int(match.group(2)))] = path
+    return found
