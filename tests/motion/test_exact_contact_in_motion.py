@@ -304,7 +304,7 @@ def test_a_start_that_is_not_found_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     assert begun.found, begun.sentence
     assert begun.phases is not None
     assert all(touch.place > 0.25 for touch in begun.phases.touches)
-    monkeypatch.setattr("cosserat_casadi.motion.motion_start.MOST_TURNS", 1)
+    monkeypatch.setattr("cosserat_casadi.motion.start_in_contact.MOST_TURNS", 1)
     refused = given_start(model, at_rest)
     assert not refused.found
     assert "on at most 4 modes of a strain" in refused.sentence
