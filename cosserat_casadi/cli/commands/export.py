@@ -278,17 +278,14 @@ def _checked(
     kind = ExportError if problems else SceneError
     with collect_problems(problems):
         scene = read_scene(scene_file, tuple(settings or ()))
-    if scene is None:
-        raise kind(*problems)
-    if scene.tubes:
-        with collect_problems(problems):
+        if scene.tubes:
             check_tubes({**asked.source_options, "--range": bool(ranges), **dict.fromkeys(asked.files, True)})
-    else:
-        with collect_problems(problems):
+        else:
+            with collect_problems(problems):
+                check_period(scene, asked.period)
             given_ranges = asked_ranges(ranges, scene)
-        with collect_problems(problems):
-            check_period(scene, asked.period)
-    refuse(problems, kind)
+    if problems or scene is None:
+        raise kind(*problems)
     return scene, given_ranges
 
 
