@@ -77,15 +77,6 @@ class SceneError(CosseratError):
         super().__init__("\n".join(str(problem) for problem in problems))
 
 
-@contextmanager
-def collect_problems(problems: list[Problem], kind: type[SceneError | ExportError] = SceneError) -> Iterator[None]:
-    """Keep the problems of a refusal, and let the checks go on: a user sees every fault of a command line at once."""
-    try:
-        yield
-    except kind as error:
-        problems.extend(error.problems)
-
-
 class SolveError(CosseratError):
     """No equilibrium was found and the caller asked for an exception."""
 
@@ -104,6 +95,15 @@ class ExportError(CosseratError):
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
         super().__init__("\n".join(str(problem) for problem in problems))
+
+
+@contextmanager
+def collect_problems(problems: list[Problem]) -> Iterator[None]:
+    """Keep the problems of a refusal, and let the checks go on: a user sees every fault of a command line at once."""
+    try:
+        yield
+    except (SceneError, ExportError) as error:
+        problems.extend(error.problems)
 
 
 def refuse(problems: Iterable[Problem], kind: type[SceneError | ExportError] = SceneError) -> None:

@@ -153,9 +153,9 @@ def check_export(directory: Path, name: str) -> set[str]:
     """
     problems: list[Problem] = []
     stale: set[str] = set()
-    with collect_problems(problems, ExportError):
+    with collect_problems(problems):
         library_names(name)
-    with collect_problems(problems, ExportError):
+    with collect_problems(problems):
         stale = check_folder(directory)
     refuse(problems, ExportError)
     return stale

@@ -155,7 +155,8 @@ def stability_note(stability: Stability, critical: bool) -> str:
         return ""
     if stability.negative == 1:
         return " It is unstable: a variation releases energy."
-    return f" It is unstable: {stability.negative} independent variations release energy."
+    # The variations of a model are some of those of the rod.
+    return f" It is unstable: at least {stability.negative} independent variations release energy."
 
 
 def _is_alike_beside(solution: Solution, jacobian: FloatArray, variation: FloatArray) -> bool:

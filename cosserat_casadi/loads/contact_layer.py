@@ -215,11 +215,11 @@ def _drag(load: ContactLayer, section: Section, normal: Matrix, pressing: Matrix
     if in_motion:
         slip = load.obstacle.slip_speed
         velocity = section.velocity + ca.cross(section.angular_velocity, touching)
-        sliding = _along_surface(velocity, normal)
+        sliding = along_surface(velocity, normal)
         return _Drag(sliding, ca.sqrt(ca.sumsqr(sliding) + slip**2), slip, slip)
     start, turned = section.data[1:4], ca.reshape(section.data[4:], 3, 3)
     moved = section.position - start + (section.rotation @ turned.T - ca.DM.eye(3)) @ touching
-    way = _along_surface(moved, normal)
+    way = along_surface(moved, normal)
     nothing = NOTHING * load.obstacle.width
     reach = max(load.obstacle.coefficients) * pressing / load.stiffness + nothing
     return _Drag(way, ca.fmax(ca.sqrt(ca.sumsqr(way) + nothing**2), reach), reach, nothing)
@@ -235,20 +235,34 @@ def _friction(load: ContactLayer, section: Section, normal: Matrix, pressing: Ma
         pressing: force along it, not negative, N/m.
         drag: how the section has moved along the obstacle.
     """
-    along, back, across = load.obstacle.coefficients
-    weighted = across * drag.way
-    if not along == back == across:
-        direction = _along_surface(section.rotation[:, 2], normal)
-        # A rod that stands on the surface slides in no direction of its own.
-        direction = direction / ca.sqrt(ca.sumsqr(direction) + STANDING**2)
-        forward = ca.dot(direction, drag.way)
-        share = forward / ca.sqrt(forward**2 + drag.blur**2)
-        coefficient = (along * (1 + share) + back * (1 - share)) / 2
-        weighted = weighted + (coefficient - across) * forward * direction
+    direction = along_surface(section.rotation[:, 2], normal)
+    weighted = weighted_way(load.obstacle.coefficients, drag.way, direction, drag.blur)
     friction: Matrix = -pressing / drag.length * weighted
     if _remembers(section) and not _moves(section):
         friction = _is_known(section) * friction
     return friction
+
+
+def weighted_way(
+    coefficients: tuple[float, float, float], way: Matrix, direction: Matrix, blur: Matrix | float
+) -> Matrix:
+    """A way along an obstacle times the coefficient of friction of each of its parts, 3×1.
+
+    Args:
+        coefficients: along the rod, back, and across it.
+        way: how the touching point has moved, or moves, along the surface, 3×1.
+        direction: part of the tangent of the rod along the surface, 3×1.
+        blur: way along the rod within which forward and back are not told apart.
+    """
+    along, back, across = coefficients
+    if along == back == across:
+        return across * way
+    # A rod that stands on the surface slides in no direction of its own.
+    direction = direction / ca.sqrt(ca.sumsqr(direction) + STANDING**2)
+    forward = ca.dot(direction, way)
+    share = forward / ca.sqrt(forward**2 + blur**2)
+    coefficient = (along * (1 + share) + back * (1 - share)) / 2
+    return across * way + (coefficient - across) * forward * direction
 
 
 def _moves(section: Section) -> bool:
@@ -266,7 +280,7 @@ def _is_known(section: Section) -> Matrix:
     return ca.sumsqr(section.data[4:]) / 3
 
 
-def _along_surface(vector: Matrix, normal: Matrix) -> Matrix:
+def along_surface(vector: Matrix, normal: Matrix) -> Matrix:
     """The part of a vector across the normal, 3×1."""
     return vector - ca.dot(normal, vector) * normal
 

@@ -21,7 +21,7 @@ from cosserat_casadi.constraints.section_constraint import ConstraintPoses
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, sparse_known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene, JointStop
 from cosserat_casadi.model.drag_terms import BodyDrag, RodDrag, drags_of
@@ -570,7 +570,7 @@ class System:
     def _base_R_world(self) -> dict[str, Matrix]:
         """Rotations from the world into the bases of the rods, 3×3 each; sparse where they are constant."""
         # Zeros of a constant base, an upright rod's above all, cost no product.
-        return {rod: sparse_known(quaternion_to_matrix(self.base(rod).quaternion)).T for rod in self.discrete.rods}
+        return {rod: sparse_known(self.base(rod).rotation).T for rod in self.discrete.rods}
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:

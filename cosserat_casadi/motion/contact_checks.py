@@ -33,10 +33,6 @@ CLOSER = 17
 """Times, both ends among them, at which a motion is looked at more closely where the way between two is barred."""
 
 
-RUBS_IN_STEPS = "friction of exact contact acts in motions of simulate and in steps in C, not in stages of motions"
-"""The problem of stages of scenes that rub on obstacles without a width."""
-
-
 def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem]:
     """Problems of a scene with exact contact in motion: settings and members that are refused beside it.
 

@@ -15,6 +15,13 @@ being none. With another coefficient e the gap is that at
 
 which gives the share e of the speed back (L. Paoli, M. Schatzman, *SIAM J. Numer. Anal.* 40 (2002) 702–733). Stages of
 more instants have no such pairs: a force at the first instant throws back a section without restitution.
+
+Coulomb's friction adds no unknown. The point of a section that touches moves by w along the surface within a stage, at
+its velocity at the end, and is held by
+
+    −μ N w / √(w² + a ε²),
+
+so a section that sticks creeps by less than √a ε, over the length, within a stage.
 """
 
 from __future__ import annotations
@@ -22,26 +29,30 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import pair_kernel
-from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs, reach_of
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs, support_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import distance_from, surface
+from cosserat_casadi.loads.contact_layer import along_surface, weighted_way
 from cosserat_casadi.loads.obstacle_load import section_radii
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.function_table import PARAMETERS, expressions_of
+from cosserat_casadi.model.function_table import PARAMETERS, Expressions, expressions_of
 from cosserat_casadi.model.section_poses import section_weights
 from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.coincident_ends import watched_ends
 
 SECTIONS = 8
 """Stretches of a rod, at whose ends are the sections that may touch an obstacle."""
+
+STILL = 1e-12
+"""Way within a stage, over the length, beside which a section sticks without smoothing: friction has derivatives."""
 
 
 @dataclass(frozen=True)
@@ -201,14 +212,90 @@ class TouchingPairs:
         kernel = pair_kernel(slack=True, softness=1.0).map(self.count)
         smoothings = p[-1] * ca.DM(np.sqrt(self.softness))
         residual, _, _ = kernel(ca.vertcat(*gaps).T, moved_by.T, smoothings.T)
+        if self._rubbing:
+            ways = ca.DM(self._lengths) * smoothings
+            forces = ca.DM(self.force_units) * moved_by
+            pushes += self._friction(x[own], inputs, *self._parameters(p), v[own], rate, forces, ways)
         rows: Matrix = ca.vertcat(-pushes / ca.DM(self.model.discrete.unknowns.units), residual.T)
         return rows
 
-    def _gaps(self, touching: tuple[TouchingSections, ...], name: str) -> ca.Function:
+    @cached_property
+    def _friction(self) -> ca.Function:
+        """(x, inputs, v, rate, forces, ways of creep), with parameters behind inputs, ↦ friction on the unknowns, J."""
+        written = self._written
+        v, rate = ca.MX.sym("v", self.model.size), ca.MX.sym("rate", self.model.inputs.size)
+        forces, ways = ca.MX.sym("forces", 1, self.count), ca.MX.sym("ways", 1, self.count)
+        poses = [self._poses(written.system, touching) for touching, _ in self._rubbing]
+        stacked = ca.vec(ca.horzcat(*poses))
+        moved = ca.jtimes(stacked, written["x"], v) + ca.jtimes(stacked, written["inputs"], rate)
+        rates = ca.vertsplit(moved, np.cumsum([0, *[pose.numel() for pose in poses]]).tolist())
+        pulls = []
+        for (touching, span), pose, changes in zip(self._rubbing, poses, rates, strict=True):
+            creep = (ways[span] + STILL * self._length(touching)) / self.duration
+            drag = self._drag(touching).map(len(touching.places))
+            change = ca.reshape(changes, *pose.shape)
+            pulls.append(ca.vec(drag(pose, change, self._radii(touching).T, forces[span], creep)))
+        held = ca.jtimes(stacked, written["x"], ca.vertcat(*pulls), True)
+        arguments = [*written.symbols.values(), v, rate, forces.T, ways.T]
+        return ca.Function("friction_of_pairs", arguments, [ca.densify(held)])
+
+    @property
+    def _rubbing(self) -> list[tuple[TouchingSections, slice]]:
+        """Sections and bodies that rub where they touch, with the places of their pairs among all."""
+        ends = np.cumsum([len(touching.places) for touching in self.touching]).tolist()
+        places = [slice(start, end) for start, end in pairwise([0, *ends])]
+        return [each for each in zip(self.touching, places, strict=True) if each[0].obstacle.rubs]
+
+    def _drag(self, touching: TouchingSections) -> ca.Function:
+        """(pose, its rate, radius, m, force, N, creep, m/s) ↦ friction, for a unit of each entry of the pose, 12×1.
+
+        A pose is the centre of a section, or of a body, and its rotation, column after column, in the axes of the
+        obstacle. Beside the creep the touching point sticks.
+        """
+        pose, rate = ca.SX.sym("pose", 12), ca.SX.sym("rate", 12)
+        radius, force, creep = ca.SX.sym("radius"), ca.SX.sym("force"), ca.SX.sym("creep")
+        axes = ca.reshape(pose[3:], 3, 3)
+        _, normal, _ = surface(touching.obstacle)(pose[:3])
+        arm = -radius * normal
+        if touching.of_body:
+            _, arm = support_of(self._body(touching.owner), normal, axes)
+        # The touching point is one of the material.
+        material = axes.T @ arm
+        slide = along_surface(rate[:3] + ca.reshape(rate[3:], 3, 3) @ material, normal)
+        weighted = weighted_way(touching.obstacle.coefficients, slide, along_surface(axes[:, 2], normal), creep)
+        held = -force * weighted / ca.sqrt(ca.sumsqr(slide) + creep**2)
+        pull = ca.vertcat(held, ca.vec(held @ material.T))
+        return ca.Function("drag", [pose, rate, radius, force, creep], [ca.cse(ca.densify(pull))])
+
+    def _poses(self, system: System, touching: TouchingSections) -> Matrix:
+        """Positions of sections, or of a body, and their rotations, in the axes of the obstacle, 12×k."""
+        carrier = touching.obstacle.body
+        positions = system.seen_from(carrier, self._positions(system, touching))
+        if touching.of_body:
+            directors = ca.horzsplit(ca.MX(system.body(touching.owner).rotation))
+        else:
+            weights = section_weights(self.model.discrete, touching.owner, touching.places)
+            world = system.base(touching.owner).rotation
+            directors = [world @ (director @ weights) for director in system.shapes[touching.owner].directors]
+        return ca.vertcat(positions, *[system.turned_to(carrier, director) for director in directors])
+
+    def _radii(self, touching: TouchingSections) -> Matrix:
+        """Radii of sections, or the radius of a body, k×1, m."""
+        if touching.of_body:
+            return ca.DM(ball_radius(self._body(touching.owner)))
+        rod = self.model.discrete.rods[touching.owner].properties
+        return as_matrix(section_radii(rod, np.array(touching.places)))
+
+    @property
+    def _written(self) -> Expressions:
+        """Expressions in unknowns and inputs of the model, and in its parameters if it has any."""
         words = ["x", "inputs", *([PARAMETERS] if self.model.parameters.size else [])]
-        written = expressions_of(self.model, tuple(words), "")
-        gaps = [self._gaps_of(written.system, each) for each in touching]
-        return ca.Function(name, list(written.symbols.values()), [ca.densify(ca.vertcat(*gaps))], words, ["gaps"])
+        return expressions_of(self.model, tuple(words), "")
+
+    def _gaps(self, touching: tuple[TouchingSections, ...], name: str) -> ca.Function:
+        written = self._written
+        gaps = ca.vertcat(*[self._gaps_of(written.system, each) for each in touching])
+        return ca.Function(name, list(written.symbols.values()), [ca.densify(gaps)], list(written.symbols), ["gaps"])
 
     def _gaps_of(self, system: System, touching: TouchingSections) -> Matrix:
         """Distances of surfaces from an obstacle over the length, k×1."""
@@ -219,10 +306,9 @@ class TouchingPairs:
             body = self._body(touching.owner)
             _, normal, _ = surface(touching.obstacle)(seen)
             axes = system.body(touching.owner).rotation
-            reach = reach_of(body, normal, system.turned_to(touching.obstacle.body, axes))
+            reach, _ = support_of(body, normal, system.turned_to(touching.obstacle.body, axes))
         else:
-            rod = self.model.discrete.rods[touching.owner].properties
-            reach = as_matrix(section_radii(rod, np.array(touching.places)))
+            reach = self._radii(touching)
         gaps: Matrix = (distances - reach) / self._length(touching)
         return gaps
 

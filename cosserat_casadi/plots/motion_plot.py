@@ -22,6 +22,7 @@ from cosserat_casadi.plots.figure import add_subtitle, add_title, figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.obstacle_drawing import draw_surfaces
 from cosserat_casadi.plots.scenery import draw_supports
+from cosserat_casadi.results.facts import told_error
 
 SHAPES = 12
 """Shapes that are drawn of a motion, evenly spaced in time, both ends among them."""
@@ -86,7 +87,7 @@ def plot_motion(motion: Motion) -> Any:
     canvas.label_axes()
     canvas.axes.locator_params(nbins=TICKS)
     canvas.equalise(shapes.points)
-    add_subtitle(canvas.axes, _subtitle(motion), good=motion.converged)
+    add_subtitle(canvas.axes, _subtitle(motion), good=motion.converged and motion.within_tolerance is not False)
     # Below the axes, where it covers no shape.
     figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=9)
 
@@ -224,7 +225,8 @@ def _subtitle(motion: Motion) -> str:
         return motion.message
     parts = [f"{motion.statistics.steps:,} steps"]
     if np.isfinite(motion.error_estimate):
-        parts.append(f"estimated error of the tip's path {motion.error_estimate:.0e} ℓ")
+        error = told_error(motion.error_estimate, motion.within_tolerance, motion.tolerance)
+        parts.append(f"estimated error of the paths {error}")
     return "; ".join(parts)
 
 

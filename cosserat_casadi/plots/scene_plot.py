@@ -34,6 +34,7 @@ from cosserat_casadi.plots.scenery import (
     draw_targets,
 )
 from cosserat_casadi.plots.solved_shapes import SAMPLES, RodShapes, in_world, rod_shapes
+from cosserat_casadi.results.facts import told_error
 from cosserat_casadi.results.presentation import figure_of
 
 STROKES = ("-", "--", "-.")
@@ -191,7 +192,7 @@ def plot_solution(solution: Solution) -> Any:
         draw_panel(panel, solution, quantity)
     panels[-1].set_xlabel("X = s/ℓ, base to tip")
     add_title(figure, solution.model.scene.title)
-    add_subtitle(canvas.axes, _subtitle(solution), good=solution.converged)
+    add_subtitle(canvas.axes, _subtitle(solution), good=solution.converged and solution.within_tolerance is not False)
     return figure
 
 
@@ -235,8 +236,9 @@ def _subtitle(solution: Solution) -> str:
     if not solution.converged:
         return solution.message
     parts = [f"residual {solution.residual_norm:.0e}"]
-    if solution.error_estimate is not None:
-        parts.append(f"estimated tip error {solution.error_estimate:.0e} ℓ")
+    if solution.judged_error is not None:
+        tolerance = solution.model.scene.accuracy.tolerance
+        parts.append(f"estimated error {told_error(solution.judged_error, solution.within_tolerance, tolerance)}")
     if solution.stable is not None:
         parts.append({True: "stable", False: "unstable"}[solution.stable])
     return "; ".join(parts)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.results.presentation import facts_of
 
@@ -134,7 +135,7 @@ def _equilibrium_facts(solution: Equilibrium[Any], smallest_eigenvalue: float | 
     facts = [("outcome", _outcome(solution.converged, solution.outcome.label, solution.message))]
     tips = [(f"tip of {name}", _point(solution.tip(name).position)) for name in solution.model.lengths]
     facts += _first("tips", tips)
-    facts.append(("error", _error(solution.judged_error, scene.accuracy.tolerance)))
+    facts.append(("error", told_error(solution.judged_error, solution.within_tolerance, scene.accuracy.tolerance)))
     facts.append(("stable", _stable(solution.stable, smallest_eigenvalue)))
     return scene.title, facts
 
@@ -165,7 +166,7 @@ def motion_facts(motion: Motion) -> Titled:
     if scene.has_contact:
         facts.append(("events", str(len(motion.events))))
     facts += _rubbing(motion, len(motion.times))
-    facts.append(("error", _error(motion.error_estimate, motion.tolerance)))
+    facts.append(("error", told_error(motion.error_estimate, motion.within_tolerance, motion.tolerance)))
     return scene.title, facts
 
 
@@ -216,7 +217,7 @@ def identification_facts(found: Identification) -> Titled:
     rms = found.rms()
     if rms is not None:
         facts.append(("misfit", f"{rms:.3g} standard deviations"))
-    facts.append(("error", _error(found.error_estimate, scene.accuracy.tolerance)))
+    facts.append(("error", told_error(found.error_estimate, found.within_tolerance, scene.accuracy.tolerance)))
     return scene.title, facts
 
 
@@ -293,10 +294,27 @@ def _outcome(converged: bool, label: str, message: str) -> str:
     return words if converged else f"{words}: {message}"
 
 
-def _error(estimate: float | None, tolerance: float | None) -> str:
-    """An error estimate beside the tolerance."""
-    words = "not estimated" if estimate is None or np.isnan(estimate) else f"{estimate:.2g}"
-    return words if tolerance is None else f"{words}, tolerance {tolerance:.2g}"
+def _error(error: float | None, tolerance: float | None) -> str:
+    """An estimated error in words, beside the tolerance where there is one."""
+    within = None if error is None or tolerance is None else error <= tolerance
+    return told_error(error, within, tolerance)
+
+
+def told_error(error: float | None, within: bool | None, tolerance: float | None) -> str:
+    """An estimated error in words.
+
+    Args:
+        error: relative to the length; None or no number where it is not estimated.
+        within: whether it is within the tolerance; None where no tolerance has a meaning.
+        tolerance: wanted error relative to the length; None where nobody wants one.
+    """
+    if error is None or np.isnan(error):
+        return "not estimated"
+    words = "not known" if error == UNKNOWN else f"{error:.1e} of the length"
+    if within is None:
+        return words
+    side = "within" if within else "above"
+    return f"{words}, {side} the tolerance of {tolerance:g}"
 
 
 def _stable(stable: bool | None, eigenvalue: float | None) -> str:

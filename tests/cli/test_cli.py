@@ -583,17 +583,21 @@ def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> No
     assert kept == read_scene(wire / "wire.toml", written)
 
 
-def test_export_refuses_name_and_folder_at_once(wire: Path) -> None:
+def test_export_refuses_every_fault_at_once(wire: Path) -> None:
     (wire / "thesis").mkdir()
     (wire / "thesis" / "chapter.tex").write_text("mine")
-    done = cosserat("export", "wire.toml", "--output", "thesis", "--name", "2fast", cwd=wire)
+    options = ["--mjcf", "no/wire.xml", "--period", "-1", "--range", "push.force.x=1"]
+    done = cosserat("export", "wire.toml", "--output", "thesis", "--name", "2fast", *options, cwd=wire)
     assert done.returncode == 2
-    assert "Refused: 2 problems." in done.stderr
+    assert "Refused: 5 problems." in done.stderr
     for words in (
         "--name: '2fast' is no name for a C library",
         "--output: ",
         "chapter.tex",
         "a new or an empty folder",
+        "--mjcf: the folder no does not exist",
+        "--period: must be a positive number of seconds, got -1",
+        "--range: 'push.force.x=1' has no two finite numbers",
     ):
         assert words in done.stderr
     assert "Traceback" not in done.stderr + done.stdout

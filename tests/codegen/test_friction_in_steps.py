@@ -12,7 +12,6 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import build, follow, modes_of, scene_from_dict, simulate, solve
 from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.status import MotionStatus
-from cosserat_casadi.control import motion_stage
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
@@ -354,9 +353,7 @@ def test_a_blow_whose_friction_turns_the_slide_back_gives_no_energy(tmp_path: Pa
     assert energies[2] < energies[1] * 0.99
 
 
-def test_friction_of_exact_contact_is_refused_where_it_does_not_act() -> None:
-    with pytest.raises(SceneError, match="not in stages of motions"):
-        motion_stage(build(scene_from_dict(block(0.3)), moving=True), 1e-3)
+def test_a_slip_speed_is_refused_without_a_width() -> None:
     with pytest.raises(SceneError, match="is of a contact that is smooth"):
         scene_from_dict(block(0.3, slip_speed=1e-3))
 

@@ -180,7 +180,7 @@ def test_a_rod_that_bounces_vs_the_simulator(restitution: float) -> None:
 
 def test_derivatives_vs_differences() -> None:
     """With all arguments, in contact and off it, parameters of the geometry among them."""
-    plain = falling(restitution=0.4)
+    plain = falling(restitution=0.4, friction={"along": 0.2, "back": 0.5})
     scene = plain.scene.model_copy(update={"parameters": ("rod.length", "rod.base.position")})
     model = build(scene, plain.discretisation, moving=True)
     stage = motion_stage(model, 1e-3, parameters=True, sections=2)

@@ -19,7 +19,7 @@ from cosserat_casadi.motion.vibration_modes import Modes
 from cosserat_casadi.plots import modes_plot
 from cosserat_casadi.plots.arrows import MOST_LINE_ARROWS
 from cosserat_casadi.plots.canvas import CORNER, Canvas
-from cosserat_casadi.plots.colours import AXES
+from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import PlotUnavailableError, add_title, check_plot_path, figure_class
 from cosserat_casadi.plots.material_plot import plot_materials, stress_curves
 from cosserat_casadi.plots.modes_plot import mode_words, plot_modes
@@ -94,6 +94,14 @@ def test_a_plane_that_stands_askew_is_drawn_as_a_plane_too(angle: float) -> None
     # A moment about the normal that points away from the reader is seen clockwise.
     (sign,) = [text.get_text() for text in scenery.texts if text.get_text()]
     assert sign == {True: "↻", False: "↺"}[bool(towards[0] > 0)]
+
+
+@pytest.mark.parametrize(("tolerance", "side", "colour"), [(0.1, "within", PLAIN_TEXT), (1e-12, "above", FAILURE)])
+def test_a_figure_says_whether_the_error_is_within_the_tolerance(tolerance: float, side: str, colour: str) -> None:
+    solution = solve(build(scene(push(), accuracy={"modes": 2, "nodes": 4, "tolerance": tolerance})))
+    subtitle = plot_solution(solution).axes[0].title
+    assert f"{side} the tolerance of {tolerance:g}" in subtitle.get_text()
+    assert subtitle.get_color() == colour
 
 
 def test_panels_hold_strain_moment_and_force(spatial: Solution) -> None:

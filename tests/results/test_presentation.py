@@ -262,7 +262,7 @@ def test_scenes_and_models_say_what_they_are_in_a_few_lines() -> None:
     shown = {
         "Scene": (held, "supports  pin"),
         "Model": (model, f"unknowns  {model.size}"),
-        "Choice": (choose(given, samples=1), "tolerance 1e-06"),
+        "Choice": (choose(given, samples=1), "within the tolerance of 1e-06"),
         "LinearModel": (linear, f"states   {len(linear.A)}, of {linear.modes} modes"),
         "TubeModel": (build(tubes, 4), "tubes   outer, inner"),
     }

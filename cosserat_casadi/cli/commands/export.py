@@ -33,7 +33,7 @@ from cosserat_casadi.codegen.tubes.sources import check_tubes
 from cosserat_casadi.equilibrium.locking import locking_sentence
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.errors import ExportError, Problem, refuse
+from cosserat_casadi.errors import ExportError, Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.mjcf.export import LINKS, Mjcf, check_mjcf, mjcf_of
@@ -113,19 +113,23 @@ class Asked:
         if self.output is None and not self.files:
             remedy = "name a folder for the sources, or a file with --page, --fmu or --mjcf"
             raise ExportError(Problem("--output", "missing", remedy))
+        problems: list[Problem] = []
         if self.output is None:
             remedy = "name a folder for them with --output, or leave it out"
             lost = [option for option, asked in self.source_options.items() if asked]
-            refuse([Problem(option, "is for the sources in C", remedy) for option in lost], ExportError)
+            problems += [Problem(option, "is for the sources in C", remedy) for option in lost]
         else:
-            check_export(self.output, self.name)
+            with collect_problems(problems):
+                check_export(self.output, self.name)
         checks: dict[str, Callable[[Path], None]] = {
             "--page": partial(check_writable, option="--page"),
             "--fmu": check_fmu,
             "--mjcf": check_mjcf,
         }
         for option, file in self.files.items():
-            checks[option](file)
+            with collect_problems(problems):
+                checks[option](file)
+        refuse(problems, ExportError)
 
 
 def export(
@@ -213,11 +217,8 @@ def export(
     parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches, "cuda": cuda}
     asked = Asked(name, output, page, fmu, mjcf, parts, over, period, estimate_errors)
     # All that can be refused is refused before the solve, which may take a minute.
-    asked.check()
-    check_inputs_stay(asked.written, scene, settings, over)
-    read = read_scene(scene, tuple(settings or ()))
+    read, given_ranges = _checked(asked, scene, settings, ranges)
     if read.tubes:
-        check_tubes({**asked.source_options, "--range": bool(ranges), **dict.fromkeys(asked.files, True)})
         assert output is not None
         _export_tubes(read, output, name, batches=batches)
         return
@@ -226,7 +227,6 @@ def export(
     if output is None and page is None and fmu is None:
         _write_mjcf(of_links, mjcf)
         return
-    given_ranges = asked_ranges(ranges, read)
     # Without exact contact a file is refused, and modes are chosen all over ranges whether they count values or not.
     given_cases = asked_cases(over, ranges, read) if over is not None or read.touches_exactly else None
     cases = given_cases
@@ -258,13 +258,43 @@ def export(
         raise typer.Exit(NOT_FOUND)
 
 
+def _checked(
+    asked: Asked, scene_file: Path, settings: list[str] | None, ranges: list[str] | None
+) -> tuple[Scene, Given]:
+    """The scene of a file, and the ranges that the command asks for, by column.
+
+    Raises:
+        ExportError: with every fault of options, files, scene and ranges, where an option or a file has one.
+        SceneError: with every fault of the scene and its ranges.
+    """
+    problems: list[Problem] = []
+    with collect_problems(problems):
+        asked.check()
+    with collect_problems(problems):
+        check_inputs_stay(asked.written, scene_file, settings, asked.over)
+    scene: Scene | None = None
+    given_ranges: Given = {}
+    # A page of help on the scene is named where nothing else is wrong.
+    kind = ExportError if problems else SceneError
+    with collect_problems(problems):
+        scene = read_scene(scene_file, tuple(settings or ()))
+        if scene.tubes:
+            check_tubes({**asked.source_options, "--range": bool(ranges), **dict.fromkeys(asked.files, True)})
+        else:
+            with collect_problems(problems):
+                check_period(scene, asked.period)
+            given_ranges = asked_ranges(ranges, scene)
+    if problems or scene is None:
+        raise kind(*problems)
+    return scene, given_ranges
+
+
 def _checked_scene(scene: Scene, asked: Asked) -> Scene:
     """The scene with the inputs that its export has.
 
     Raises:
         ExportError: the scene, the name or an option is refused.
     """
-    check_period(scene, asked.period)
     if asked.output is not None:
         check_contact(scene, asked.parts)
     if asked.moves:

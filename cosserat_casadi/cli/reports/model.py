@@ -16,7 +16,6 @@ from cosserat_casadi.accuracy.ranges import CaseRanges
 from cosserat_casadi.cli.reports.format import table_of, title_line
 from cosserat_casadi.constraints.joints import JOINT_KINDS
 from cosserat_casadi.constraints.tip_holder import place_of
-from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.equilibrium.contact.contact_state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.pose_change import rotation_vectors
@@ -25,6 +24,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.operation_cost import Price
 from cosserat_casadi.model.operations import Count
+from cosserat_casadi.results.facts import told_error
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.scene.varying import VaryingValue
 from cosserat_casadi.spelling import counted
@@ -37,13 +37,9 @@ TURNED = 1e-6
 
 
 def error_words(error: float, within: bool | None, tolerance: float | None) -> str:
-    """An estimated error with markup: beside the tolerance, told apart above it; alone where none has a meaning."""
-    words = "not known" if error == UNKNOWN else f"{error:.1e} of the length"
-    if within is None:
-        return words
-    if within:
-        return f"{words}, within the tolerance of {tolerance:g}"
-    return f"[bold yellow]{words}, above the tolerance of {tolerance:g}[/]"
+    """An estimated error with markup: in bold where it is above the tolerance; arguments as of :func:`told_error`."""
+    words = told_error(error, within, tolerance)
+    return f"[bold yellow]{words}[/]" if within is False else words
 
 
 def discretisation_table(model: Model) -> Table:

@@ -20,7 +20,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.contact_state import ContactState, Place, Touch
-from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, reach_of
+from cosserat_casadi.equilibrium.contact.gaps import obstacle_of, support_of
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.load import polynomials_at
 from cosserat_casadi.loads.obstacle_load import section_radii
@@ -84,7 +84,8 @@ def _body_gap(system: System, touch: Touch) -> Matrix:
     body = system.discrete.bodies[touch.owner]
     pose = system.frame(FrameName("body", touch.owner))
     distance, normal, _ = surface(obstacle_of(system.discrete.scene, touch.obstacle))(pose.position)
-    gap: Matrix = (distance - reach_of(body, normal, pose.rotation)) / system.discrete.body_frame(touch.owner).length
+    reach, _ = support_of(body, normal, pose.rotation)
+    gap: Matrix = (distance - reach) / system.discrete.body_frame(touch.owner).length
     return gap
 
 

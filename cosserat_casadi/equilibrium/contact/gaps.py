@@ -88,20 +88,21 @@ def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRec
 def gap_at(obstacle: scenes.ObstacleRecord, body: scenes.Body, pose: SolvedPoses) -> float:
     """Distance of the surface of a body in a pose from an obstacle, m."""
     distance, normal, _ = surface(obstacle)(pose.position)
-    return float(distance - reach_of(body, normal, ca.DM(pose.rotation)))
+    return float(distance - support_of(body, normal, ca.DM(pose.rotation))[0])
 
 
-def reach_of(body: scenes.Body, normal: Matrix, rotation: Matrix) -> Matrix | float:
-    """How far a body reaches from its origin against the normal of an obstacle, m.
+def support_of(body: scenes.Body, normal: Matrix, rotation: Matrix) -> tuple[Matrix | float, Matrix]:
+    """How far a body reaches against the normal of an obstacle, m, and from its origin to where it does, 3×1, m.
 
     Args:
         body: a ball, or a disk about its z axis.
         normal: 3×1.
         rotation: of the body, 3×3.
     """
+    radius = ball_radius(body)
     if body.thickness is None:
-        return ball_radius(body)
-    return disk_reach(normal, rotation[:, 2], ball_radius(body), body.thickness)[0]
+        return radius, -radius * normal
+    return disk_reach(normal, rotation[:, 2], radius, body.thickness)
 
 
 def inner_radius(body: scenes.Body) -> float:
