@@ -6,7 +6,7 @@ base, whichever of the two are unknowns.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 
 import casadi as ca
@@ -18,7 +18,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.motion.contact_law import PointsRecord, called, function_record
+from cosserat_casadi.motion.contact_law import PointsRecord, called, called_in_c, function_record
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
 
 
@@ -95,10 +95,24 @@ class MovingPoints:
 
     @cached_property
     def in_law(self) -> Held:
-        """The points as the law of contact asks for them."""
-        held = Held(PointsRecord(self.count))
-        held.point("positions", function_record(self._positions))
-        held.point("gradient", function_record(self.gradient))
+        """The points as the law of contact without friction asks for them."""
+        return self._record({"positions": function_record(self._positions), "gradient": function_record(self.gradient)})
+
+    def in_rubbing_steps(self, libraries: Libraries) -> Held:
+        """The points as steps with friction ask for them, by functions of shared objects or by programs."""
+        positions, gradient = self.in_iterations
+        of_iterations = {"positions": positions, "velocities": self.velocities, "gradient": gradient}
+        records = {name: called_in_c(function, libraries.residual) for name, function in of_iterations.items()}
+        _, hessian = self.in_derivatives
+        by_unknowns = function_record(repeated(hessian, libraries.jacobians, as_scalars=False))
+        return self._record(records | {"hessian": by_unknowns})
+
+    def _record(self, functions: Mapping[str, Held]) -> Held:
+        """The record of the points with the records of their functions."""
+        x, inputs, _ = self._symbols
+        held = Held(PointsRecord(self.count, x.shape[0], inputs.shape[0]))
+        for name, function in functions.items():
+            held.point(name, function)
         if self.shares is not None:
             held.share("shares", self.shares)
         return held
