@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_605,
     "mjcf": 1_055,
     "model": 11_655,
-    "motion": 15_125,
+    "motion": 15_115,
     "numerics": 5_335,
     "obstacles": 415,
     "page": 825,

@@ -168,8 +168,16 @@ class Facing(ABC):
         return self.force_unit * self.length
 
     def nodes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """World positions of the points, shape (M, 3), m."""
+        """Positions of the points in the axes of the obstacle, shape (M, 3), m."""
         return self.points.positions(x, inputs)
+
+    def axes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Rotation from the axes of the obstacle, which are those of its body, to the world's, shape (3, 3)."""
+        carrier = None if isinstance(self.against, scenes.RodContact) else self.against.body
+        if carrier is None:
+            return np.eye(3)
+        own = inputs[: self.model.inputs.size]
+        return np.asarray(self.model.body[carrier](x, own)[2].full())
 
     @property
     def stride(self) -> float:

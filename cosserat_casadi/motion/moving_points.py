@@ -224,10 +224,17 @@ def in_stacked_inputs(
     return found
 
 
-def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
-    """The nodes of a rod."""
-    number = [record.name for record in model.scene.rods].index(rod)
-    return MovingPoints(model, lambda system: _nodes(system, rod), f"rod_{number}", libraries)
+def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED, carrier: str | None = None) -> MovingPoints:
+    """The nodes of a rod, in the axes of a body that carries an obstacle, or of the world where that is None.
+
+    What pushes points that are seen from a body pushes the body the other way.
+    """
+    name = f"rod_{[record.name for record in model.scene.rods].index(rod)}"
+    if carrier is None:
+        return MovingPoints(model, lambda system: _nodes(system, rod), name, libraries)
+    name = f"{name}_from_{_number_of(model, carrier)}"
+    shares = model.discrete.rods[rod].energy_unit / model.discrete.unknowns.units
+    return MovingPoints(model, lambda system: system.seen_from(carrier, _nodes(system, rod)), name, libraries, shares)
 
 
 def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = INTERPRETED) -> MovingPoints:
@@ -251,7 +258,13 @@ def _nodes(system: System, rod: str) -> Matrix:
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The origin of a body."""
-    number = [record.name for record in model.scene.bodies].index(body)
     return MovingPoints(
-        model, lambda system: system.frame(FrameName("body", body)).position, f"body_{number}", libraries
+        model,
+        lambda system: system.frame(FrameName("body", body)).position,
+        f"body_{_number_of(model, body)}",
+        libraries,
     )
+
+
+def _number_of(model: Model, body: str) -> int:
+    return [record.name for record in model.scene.bodies].index(body)
