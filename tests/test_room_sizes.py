@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_585,
     "mjcf": 1_055,
     "model": 11_645,
-    "motion": 15_085,
+    "motion": 15_075,
     "numerics": 5_330,
     "obstacles": 415,
     "page": 810,

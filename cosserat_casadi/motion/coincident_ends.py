@@ -64,17 +64,19 @@ def _pairs(scene: scenes.Scene) -> Iterator[set[RodEnd]]:
 def watched_ends(model: Model, rod: str, obstacle: scenes.ObstacleRecord) -> tuple[bool, bool]:
     """Whether the base and the tip of a rod may be where it touches an obstacle.
 
-    A base that is held does not move. Of ends that meet the thickest is watched for all; the base of a rod that starts
-    between the ends of another is watched there, if that one is as thick.
+    A base that is held does not move, nor does an end beside an obstacle on the body that holds it. Of ends that meet
+    the thickest is watched for all; the base of a rod that starts between the ends of another is watched there, if that
+    one is as thick.
     """
     watched = []
     for end in (RodEnd(rod, BASE), RodEnd(rod, TIP)):
         (together,) = [one for one in meetings(model.scene) if end in one] or [{end}]
         concerned = [one for one in _ordered(model, together) if obstacle.concerns(one.rod)]
         watched.append(concerned[0] == end)
-    floats = model.discrete.unloaded.floating_base(rod) is not None
-    watched[0] = watched[0] and floats and not _on_a_carrier(model, rod, obstacle)
-    return watched[0], watched[1]
+    moves = obstacle.body is not None or model.discrete.unloaded.floating_base(rod) is not None
+    watched[0] = watched[0] and moves and not _on_a_carrier(model, rod, obstacle)
+    held = [joint.at for joint in model.scene.joints if (joint.rod, joint.body) == (rod, obstacle.body)]
+    return watched[0] and BASE not in held, watched[1] and TIP not in held
 
 
 def _ordered(model: Model, ends: set[RodEnd]) -> list[RodEnd]:

@@ -53,12 +53,16 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
             what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(named)}"
             balls = "leave their thickness out, which makes them balls; or take [[disks]] and obstacles with a width, m"
             yield Problem("obstacles", what, remedy if of_rows else balls)
-    moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
-    if moving:
-        what = (
-            f"exact contact in motion is with obstacles that stand still, not with those on bodies: {', '.join(moving)}"
-        )
-        yield Problem("obstacles", what, remedy)
+    yield from _on_bodies(model, in_steps=simulation is None)
+
+
+def _on_bodies(model: Model, in_steps: bool) -> Iterator[Problem]:
+    """Obstacles on bodies that rub, or that exported steps have."""
+    moving = [own for own in model.scene.obstacles if own.body is not None and not own.is_smooth]
+    names = ", ".join(own.name for own in moving if in_steps or own.rubs)
+    if names:
+        what = f"exact contact with obstacles on bodies is for simulate, and without friction: {names}"
+        yield Problem("obstacles", what, "give each obstacle a width, m, for a contact that is smooth")
 
 
 def _unfit_pairs(model: Model) -> Iterator[Problem]:

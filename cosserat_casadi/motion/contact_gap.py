@@ -26,6 +26,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_law import (
     AT_END,
+    DOUBLE,
     GAP_COUNTS,
     GAP_NUMBERS,
     LOOKS,
@@ -167,8 +168,16 @@ class Facing(ABC):
         return self.force_unit * self.length
 
     def nodes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """World positions of the points, shape (M, 3), m."""
+        """Positions of the points in the axes of the obstacle, shape (M, 3), m."""
         return self.points.positions(x, inputs)
+
+    def axes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Rotation from the axes of the obstacle, which are those of its body, to the world's, shape (3, 3)."""
+        carrier = None if isinstance(self.against, scenes.RodContact) else self.against.body
+        if carrier is None:
+            return np.eye(3)
+        own = inputs[: self.model.inputs.size]
+        return np.asarray(self.model.body[carrier](x, own)[2].full())
 
     @property
     def stride(self) -> float:
@@ -196,16 +205,22 @@ class Facing(ABC):
 
     @cached_property
     def in_law(self) -> Held:
-        """The pair as the law in C has it."""
-        record = FacingRecord(is_body=self.of_body, length=self.length, laid_count=len(self.laid_at))
+        """The pair as the law in C without friction has it."""
+        return self.record(self.points.in_law)
+
+    def record(self, points: Held) -> Held:
+        """The record of the pair for C, without a function of friction; ``points`` is the record of its points."""
+        record = FacingRecord(is_body=self.of_body, laid_count=len(self.laid_at), restitution=self.against.restitution)
+        record.length, record.force_unit, record.stride = self.length, self.force_unit, self.stride
         record.radius_at_base, record.radius_at_tip = self.radii
+        record.coefficients = (DOUBLE * 3)(*self.against.coefficients)
         held = Held(record)
-        held.point("points", self.points.in_law)
+        held.point("points", points)
         held.share("laid", np.ascontiguousarray(self.laid_at, dtype=float))
         for name, function in self.surfaces.items():
             held.point(name, program_record(function))
         self.describe(held)
-        held.share("coefficients", np.zeros(3 * self.points.count))
+        held.share("fitted", np.zeros(3 * self.points.count))
         held.share("gaps_along", np.zeros(LOOKS * record.elements + 1))
         return held
 

@@ -17,16 +17,17 @@ from cosserat_casadi.compiling.scalar_program import scalar_program
 from cosserat_casadi.compiling.shared_records import POINTER, Held, address_of, raise_what_was_raised
 from cosserat_casadi.compiling.texts import render, resource
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.pose import POSE_SIZE
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.repeated_call import RepeatedCall, repeated
 from cosserat_casadi.motion.steps_library import steps_library
 from cosserat_casadi.scene.accuracy import MOST_NODES
 
 NAME = "moving_contacts"
 """Name of the library in the cache."""
 
-INCLUDED = ("contact_gaps.c", "square_systems.c", "least_pushes.c", "python_kernels.c")
+INCLUDED = ("facings.c", "contact_gaps.c", "square_systems.c", "least_pushes.c", "python_kernels.c")
 """Files that other libraries include too."""
 
 MOST_TOUCHES = 64
@@ -66,7 +67,7 @@ CALL = ctypes.CFUNCTYPE(ctypes.c_int)
 
 
 class KernelRecord(ctypes.Structure):
-    """A function, as in ``python_kernels.c``; the records below are as in ``moving_contacts.c``."""
+    """A function, as in ``python_kernels.c``."""
 
     _fields_ = [
         ("counts", ctypes.c_int * KERNEL_ARGUMENTS),
@@ -80,33 +81,32 @@ class KernelRecord(ctypes.Structure):
 
 
 class PointsRecord(ctypes.Structure):
-    """Points of a rod or a body."""
+    """Points of a rod or a body, as in ``facings.c``."""
 
     _fields_ = [
-        ("count", ctypes.c_int),
-        ("is_known", ctypes.c_int),
-        ("positions", POINTER),
-        ("gradient", POINTER),
-        ("shares", POINTER),
+        *((name, ctypes.c_int) for name in ("count", "unknowns", "inputs", "is_known")),
+        *((name, POINTER) for name in ("positions", "velocities", "gradient", "hessian", "shares")),
     ]
 
 
 class FacingRecord(ctypes.Structure):
-    """A rod or a body, and an obstacle or another rod."""
+    """A rod or a body, and an obstacle or another rod, as in ``facings.c``."""
 
     _fields_ = [
         ("points", POINTER),
         *((name, ctypes.c_int) for name in ("is_body", "elements", "nodes")),
         *((name, ctypes.c_int) for name in ("watches_base", "watches_tip", "laid_count")),
         *((name, POINTER) for name in ("ends", "to_coefficients", "looks", "laid")),
-        *((name, ctypes.c_double) for name in ("length", "radius_at_base", "radius_at_tip")),
-        *((name, POINTER) for name in ("surface", "distance", "coefficients", "gaps_along")),
+        *((name, ctypes.c_double) for name in ("length", "force_unit", "radius_at_base", "radius_at_tip")),
+        *((name, ctypes.c_double) for name in ("restitution", "stride")),
+        ("coefficients", ctypes.c_double * 3),
+        *((name, POINTER) for name in ("surface", "distance", "rubbing", "fitted", "gaps_along")),
         *((name, POINTER) for name in ("other", "seen_from", "looked_at", "balls", "nearest")),
     ]
 
 
 class TouchRecord(ctypes.Structure):
-    """A contact."""
+    """A contact, as in ``moving_contacts.c``."""
 
     _fields_ = [
         ("facing", POINTER),
@@ -118,7 +118,7 @@ class TouchRecord(ctypes.Structure):
 
 
 class StepContactsRecord(ctypes.Structure):
-    """The contacts of steps."""
+    """The contacts of steps, as in ``moving_contacts.c``."""
 
     _fields_ = [
         ("touches", POINTER),
@@ -190,18 +190,24 @@ def without_compiler() -> Iterator[None]:
         raise ExportError(Problem(problem.where, NO_COMPILER.format(why=why), REMEDY.format(remedy=remedy))) from None
 
 
-def _words() -> dict[str, Any]:
+def words_of_facings() -> dict[str, Any]:
+    """Limits of ``facings.c`` by their names in templates."""
     return {
         "kernel_arguments": KERNEL_ARGUMENTS,
         "looks": LOOKS,
         "most_nodes": MOST_NODES + 1,
+        "at_end": AT_END,
+        "next_to_nothing": NEXT_TO_NOTHING,
+    }
+
+
+def _words() -> dict[str, Any]:
+    return words_of_facings() | {
         "base_unknowns": POSE_SIZE,
         "most_placings": MOST_PLACINGS,
         "far": FAR,
         "beyond": BEYOND,
         "off": OFF,
-        "at_end": AT_END,
-        "next_to_nothing": NEXT_TO_NOTHING,
     }
 
 
@@ -274,6 +280,13 @@ def program_record(function: ca.Function) -> Held:
     record.lines, record.size = len(lines), function.nnz_out()
     record.run = address_of(steps_library().program_run)
     return held
+
+
+def called_in_c(function: ca.Function, library: str | None) -> Held:
+    """A function from a shared object as C calls it; without a shared object as a program."""
+    if library is not None:
+        return function_record(repeated(function, library))
+    return program_record(function if chooses(function) else function.expand())
 
 
 def give_memory(held: Held, arguments: Sequence[FloatArray], result: FloatArray) -> None:

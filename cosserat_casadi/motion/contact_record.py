@@ -108,12 +108,14 @@ class ContactRecord:
         stretch, touches, step = self._begins[number]
         follower = Follower(self._facings, touches)
         size, count = self.model.size, len(touches)
-        places, gaps = follower.gaps(instant.x[:size], stretch.piece.at(instant.time).value)
+        x, inputs = instant.x[:size], stretch.piece.at(instant.time).value
+        places, gaps = follower.gaps(x, inputs)
         forces = instant.x[size : size + count]
         found = []
         for k, (touch, place, gap, force) in enumerate(zip(touches, places, gaps, forces, strict=True)):
             facing = self._facings[touch.facing]
-            total = force * facing.force_unit * gap.normal
+            axes = facing.axes(x, inputs)
+            total = force * facing.force_unit * axes @ gap.normal
             at = min(max(place, 0.0), 1.0)
             lies = touch.facing in stretch.laid
             contact = MotionContact(
@@ -121,7 +123,7 @@ class ContactRecord:
             )
             if isinstance(step, RubbingStep) and facing.obstacle.rubs:
                 along = facing.force_unit * instant.x[size + count :].reshape(-1, 2)[k]
-                friction = along_tangents(gap.normal, step.axes[k], along)
+                friction = axes @ along_tangents(gap.normal, step.axes[k], along)
                 contact = replace(contact, friction=friction, slips=step.slips[k])
             found.append(contact)
         return tuple(found)

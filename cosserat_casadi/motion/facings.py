@@ -45,12 +45,11 @@ def _facings(model: Model, libraries: Libraries) -> list[Facing]:
     exact = [obstacle for obstacle in model.scene.obstacles if not obstacle.is_smooth]
     for rod in model.scene.rods:
         concerned = [obstacle for obstacle in exact if obstacle.concerns(rod.name)]
-        if not concerned:
-            continue
-        points = nodes_of(model, rod.name, libraries)
+        carriers = dict.fromkeys(obstacle.body for obstacle in concerned)
+        seen_from = {carrier: nodes_of(model, rod.name, libraries, carrier) for carrier in carriers}
         for obstacle in concerned:
             ends = watched_ends(model, rod.name, obstacle)
-            found.append(RodFacing(model, rod.name, obstacle, points, False, ends))
+            found.append(RodFacing(model, rod.name, obstacle, seen_from[obstacle.body], False, ends))
     for body in model.scene.bodies:
         concerned = [obstacle for obstacle in exact if obstacle.concerns_body(body.name)]
         if not concerned:

@@ -6,7 +6,7 @@ base, whichever of the two are unknowns.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 
 import casadi as ca
@@ -17,7 +17,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import Arguments, System
-from cosserat_casadi.motion.contact_law import PointsRecord, called, function_record
+from cosserat_casadi.motion.contact_law import PointsRecord, called, called_in_c, function_record
 from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, RepeatedCall, repeated
 
 
@@ -94,10 +94,24 @@ class MovingPoints:
 
     @cached_property
     def in_law(self) -> Held:
-        """The points as the law of contact asks for them."""
-        held = Held(PointsRecord(self.count))
-        held.point("positions", function_record(self._positions))
-        held.point("gradient", function_record(self.gradient))
+        """The points as the law of contact without friction asks for them."""
+        return self._record({"positions": function_record(self._positions), "gradient": function_record(self.gradient)})
+
+    def in_rubbing_steps(self, libraries: Libraries) -> Held:
+        """The points as steps with friction ask for them, by functions of shared objects or by programs."""
+        positions, gradient = self.in_iterations
+        of_iterations = {"positions": positions, "velocities": self.velocities, "gradient": gradient}
+        records = {name: called_in_c(function, libraries.residual) for name, function in of_iterations.items()}
+        _, hessian = self.in_derivatives
+        by_unknowns = function_record(repeated(hessian, libraries.jacobians, as_scalars=False))
+        return self._record(records | {"hessian": by_unknowns})
+
+    def _record(self, functions: Mapping[str, Held]) -> Held:
+        """The record of the points with the records of their functions."""
+        x, inputs, _ = self._symbols
+        held = Held(PointsRecord(self.count, x.shape[0], inputs.shape[0]))
+        for name, function in functions.items():
+            held.point(name, function)
         if self.shares is not None:
             held.share("shares", self.shares)
         return held
@@ -209,10 +223,17 @@ def in_stacked_inputs(
     return found
 
 
-def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
-    """The nodes of a rod."""
-    number = [record.name for record in model.scene.rods].index(rod)
-    return MovingPoints(model, lambda system: system.nodes(rod), f"rod_{number}", libraries)
+def nodes_of(model: Model, rod: str, libraries: Libraries = INTERPRETED, carrier: str | None = None) -> MovingPoints:
+    """The nodes of a rod, in the axes of a body that carries an obstacle, or of the world where that is None.
+
+    What pushes points that are seen from a body pushes the body the other way.
+    """
+    name = f"rod_{[record.name for record in model.scene.rods].index(rod)}"
+    if carrier is None:
+        return MovingPoints(model, lambda system: system.nodes(rod), name, libraries)
+    name = f"{name}_from_{_number_of(model, carrier)}"
+    shares = model.discrete.rods[rod].energy_unit / model.discrete.unknowns.units
+    return MovingPoints(model, lambda system: system.seen_from(carrier, system.nodes(rod)), name, libraries, shares)
 
 
 def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = INTERPRETED) -> MovingPoints:
@@ -229,7 +250,13 @@ def nodes_of_both(model: Model, rods: tuple[str, str], libraries: Libraries = IN
 
 def centre_of(model: Model, body: str, libraries: Libraries = INTERPRETED) -> MovingPoints:
     """The origin of a body."""
-    number = [record.name for record in model.scene.bodies].index(body)
     return MovingPoints(
-        model, lambda system: system.frame(FrameName("body", body)).position, f"body_{number}", libraries
+        model,
+        lambda system: system.frame(FrameName("body", body)).position,
+        f"body_{_number_of(model, body)}",
+        libraries,
     )
+
+
+def _number_of(model: Model, body: str) -> int:
+    return [record.name for record in model.scene.bodies].index(body)

@@ -23,7 +23,7 @@ import numpy as np
 
 from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_gap import Rows, SectionGap
+from cosserat_casadi.motion.contact_gap import STRIDE, Rows, SectionGap
 from cosserat_casadi.motion.contact_law import AT_END, LOOKS, FacingRecord, gap_size
 from cosserat_casadi.motion.contact_sections import RodFacing
 
@@ -80,6 +80,11 @@ class RodsFacing(RodFacing):
         return self.other.owner
 
     @property
+    def stride(self) -> float:
+        """Longest way of a point of either rod between two looks for contact in steps of given length, m."""
+        return STRIDE * (min(self.radii) + min(self.other.radii)) / 2.0
+
+    @property
     def surfaces(self) -> dict[str, ca.Function]:
         """No functions of a point tell where the other rod is: its nodes do."""
         return {}
@@ -87,18 +92,17 @@ class RodsFacing(RodFacing):
     def describe(self, held: Held) -> None:
         """Write elements, how sections follow from nodes, and the other rod into the record."""
         super().describe(held)
-        held.point("other", self._other_in_law)
+        held.point("other", self._other_record())
 
-    @cached_property
-    def _other_in_law(self) -> Held:
-        """The other rod as the law in C has it."""
+    def _other_record(self) -> Held:
+        """The record of the other rod."""
         other = self.other
         record = FacingRecord(length=other.length)
         record.radius_at_base, record.radius_at_tip = other.radii
         held = Held(record)
         other.describe(held)
         sizes = {
-            "coefficients": 3 * self.points.count,
+            "fitted": 3 * other.points.count,
             "seen_from": 3,
             "looked_at": 3 * (LOOKS * record.elements + 1),
             "balls": 4 * record.elements,

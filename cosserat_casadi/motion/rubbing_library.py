@@ -1,7 +1,7 @@
 """Steps in C of motions with friction of exact contact: steps of exported libraries, with functions from Python.
 
 An exported library contains the equations of its model, whose compilation takes seconds. Here the equations are
-programs, or functions in machine code; one library serves all models of a size (unknowns, inputs, points and pairs).
+programs, or functions in machine code; one library serves all models of a size (unknowns, inputs and points of a pair).
 """
 
 from __future__ import annotations
@@ -12,47 +12,47 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
 from cosserat_casadi.compiling.shared_records import POINTER, Held, raise_what_was_raised
 from cosserat_casadi.compiling.texts import render, resource
-from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_forces import Touches
-from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.contact_law import (
     CALL,
     DOUBLE,
-    KERNEL_ARGUMENTS,
     LOOKS,
     MOST_TOUCHES,
+    FacingRecord,
     KernelRecord,
+    PointsRecord,
+    called_in_c,
     function_record,
     give_memory,
     program_record,
     without_compiler,
+    words_of_facings,
 )
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.facings import points_of
 from cosserat_casadi.motion.one_sided import OneSided
-from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall, repeated
+from cosserat_casadi.motion.repeated_call import Libraries, RepeatedCall
 from cosserat_casadi.motion.step_kernels import MATRICES, StepKernels
 from cosserat_casadi.motion.step_words import STAGES, limits_of_steps, words_of_method
 from cosserat_casadi.motion.stops_facing import struck_beside_friction
 from cosserat_casadi.motion.surface_sliding import functions_of_sliding
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.scene.accuracy import MOST_NODES
 
 NAME = "rubbing_steps"
 """Name of the library in the cache of compiled code."""
 
 INCLUDED = (
-    *("solver.h", "motion.h", "python_kernels.c", "elimination.c", "contact_gaps.c", "contact_ways.c", "step.c"),
-    *("contact_steps.c", "contact_friction.c", "square_systems.c", "least_pushes.c", "stage_newton.c", "motion.c"),
+    *("solver.h", "motion.h", "python_kernels.c", "facings.c", "elimination.c", "contact_gaps.c", "contact_ways.c"),
+    *("step.c", "contact_steps.c", "contact_friction.c", "square_systems.c", "least_pushes.c", "stage_newton.c"),
+    "motion.c",
 )
 """Files that ``rubbing_steps.c`` includes."""
 
@@ -86,35 +86,12 @@ _ONE_AT_A_TIME = threading.RLock()
 """Lock of the motion that takes a step: C has one present model."""
 
 
-class PointKernelsRecord(ctypes.Structure):
-    """Functions of the points of a rod or a body. ``rubbing_steps.c`` has this record and the next two."""
-
-    _fields_ = [
-        ("count", ctypes.c_int),
-        *((name, POINTER) for name in ("positions", "velocities", "gradient", "hessian")),
-    ]
-
-
-class RubbingFacingRecord(ctypes.Structure):
-    """A pair of a rod or a body and an obstacle, with numbers and functions."""
-
-    _fields_ = [
-        *((name, ctypes.c_int) for name in ("points", "is_body", "elements", "nodes")),
-        *((name, ctypes.c_int) for name in ("watches_base", "watches_tip", "laid_count")),
-        *((name, POINTER) for name in ("ends", "to_coefficients", "looks", "laid")),
-        *((name, DOUBLE) for name in ("length", "force_unit", "radius_at_base", "radius_at_tip")),
-        *((name, DOUBLE) for name in ("restitution", "stride")),
-        ("coefficients", DOUBLE * 3),
-        *((name, POINTER) for name in ("surface", "distance", "slide", "rubbing")),
-    ]
-
-
 class RubbingModelRecord(ctypes.Structure):
     """A model with its functions, and the stretches of its last step."""
 
     _fields_ = [
-        *((name, ctypes.c_int) for name in ("points_count", "facing_count")),
-        *((name, POINTER) for name in ("is_shape", "displacements", "points", "facings", "residual", "matrices")),
+        ("facing_count", ctypes.c_int),
+        *((name, POINTER) for name in ("is_shape", "displacements", "facings", "residual", "matrices")),
         *((name, DOUBLE) for name in ("deepest", "farthest")),
         ("gaps", POINTER),
         ("pair_count", ctypes.c_int),
@@ -211,12 +188,9 @@ class RubbingSteps:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.facings = struck_beside_friction(model)
-        points = points_of(self.facings)
-        most_points = max(own.count for own in points)
+        most_points = max(own.points.count for own in self.facings)
         most_looks = max(LOOKS * (len(own.ends) - 1) + 1 for own in self.facings)
-        counts = (model.size, model.inputs.size, len(points), len(self.facings))
-        self._library, self.sizes = _library(*counts, _room(most_points), _room(most_looks))
-        self._points = points
+        self._library, self.sizes = _library(model.size, model.inputs.size, _room(most_points), _room(most_looks))
         self._libraries: Libraries | None = None
         self._held = self._record()
         self._told = np.zeros((self.sizes.most_told, self.sizes.row))
@@ -251,7 +225,7 @@ class RubbingSteps:
     def _record(self) -> Held:
         """The record of the model for C, without its functions."""
         model = self.model
-        held = Held(RubbingModelRecord(len(self._points), len(self.facings)))
+        held = Held(RubbingModelRecord(len(self.facings)))
         differential = model.discrete.unknowns.differential
         held.share("is_shape", differential.astype(np.intc))
         held.share("displacements", np.where(differential, displacements(model), 0.0))
@@ -280,25 +254,15 @@ class RubbingSteps:
 
     def _share_functions(self, libraries: Libraries) -> None:
         """Write the functions of points, surfaces and sliding into the record of the model."""
-        of_points = (PointKernelsRecord * len(self._points))()
-        for record, own in zip(of_points, self._points, strict=True):
-            record.count = own.count
-            one = Held(record)
-            positions, gradient = own.in_iterations
-            for name, function in {"positions": positions, "velocities": own.velocities, "gradient": gradient}.items():
-                one.point(name, _function_record(function, libraries.residual))
-            _, hessian = own.in_derivatives
-            one.point("hessian", function_record(repeated(hessian, libraries.jacobians, as_scalars=False)))
-            self._held.keep(one)
-        self._held.point("points", Held(of_points))
-        of_facings = (RubbingFacingRecord * len(self.facings))()
+        points = {own: own.in_rubbing_steps(libraries) for own in points_of(self.facings)}
+        records = [own.record(points[own.points]) for own in self.facings]
         sliding = functions_of_sliding(self.model)
-        for number, (record, facing) in enumerate(zip(of_facings, self.facings, strict=True)):
-            held = _facing_record(record, facing, self._points.index(facing.points))
+        for number, (held, facing) in enumerate(zip(records, self.facings, strict=True)):
             if facing.obstacle.rubs:
-                held.point("slide", _function_record(sliding[number], libraries.residual))
-            self._held.keep(held)
-        self._held.point("facings", Held(of_facings))
+                held.point("rubbing", called_in_c(sliding[number], libraries.residual))
+        table = Held((FacingRecord * len(records))(*(held.record for held in records)))
+        table.keep(records)
+        self._held.point("facings", table)
 
     def _matrices(self, jacobians: Callable[..., list[FloatArray]]) -> Held:
         size, inputs = self.model.size, self.model.inputs.size
@@ -359,42 +323,16 @@ def _touch(numbers: FloatArray) -> RubbingTouch:
     )
 
 
-def _facing_record(record: RubbingFacingRecord, facing: Facing, points: int) -> Held:
-    """Fill the record of a pair; ``points`` is the index of its points."""
-    held = Held(record)
-    record.points, record.is_body = points, facing.of_body
-    record.length, record.force_unit = facing.length, facing.force_unit
-    record.radius_at_base, record.radius_at_tip = facing.radii
-    record.restitution, record.stride = float(facing.obstacle.restitution), facing.stride
-    record.laid_count = len(facing.laid_at)
-    held.share("laid", np.ascontiguousarray(facing.laid_at, dtype=float))
-    facing.describe(held)
-    record.coefficients = (DOUBLE * 3)(*facing.obstacle.coefficients)
-    for name, function in facing.surfaces.items():
-        held.point(name, program_record(function))
-    return held
-
-
-def _function_record(function: ca.Function, library: str | None) -> Held:
-    """Record of a function from a shared object; without a shared object, of a program."""
-    if library is not None:
-        return function_record(repeated(function, library))
-    return program_record(function if chooses(function) else function.expand())
-
-
 def _room(count: int) -> int:
     """The least power of two that holds a count: rooms have few sizes, so that few libraries are compiled."""
     return 1 << (count - 1).bit_length()
 
 
 @lru_cache(maxsize=64)
-def _library(
-    unknowns: int, inputs: int, points: int, pairs: int, most_points: int, most_looks: int
-) -> tuple[ctypes.CDLL, Sizes]:
+def _library(unknowns: int, inputs: int, most_points: int, most_looks: int) -> tuple[ctypes.CDLL, Sizes]:
     """The library for models of a size, loaded once in a process; the cache keeps it for other processes."""
     texts = {file: resource("c", file) for file in (f"{NAME}.c", *INCLUDED)}
     texts[f"{NAME}.h"] = render(f"{NAME}.h.in", _words(unknowns, inputs, most_points, most_looks))
-    texts["rubbing_tables.h"] = _tables(points, pairs)
     with without_compiler():
         library = ctypes.CDLL(str(compiled_texts(NAME, texts, find_compiler(), INCLUDED)))
     pointers = (POINTER,) * 4
@@ -403,29 +341,14 @@ def _library(
     library.rubbing_step.argtypes = [*pointers, DOUBLE, *pointers]
     found = (ctypes.c_longlong * 12)()
     library.rubbing_sizes(found)
-    records = (RubbingModelRecord, RubbingFacingRecord, PointKernelsRecord, KernelRecord)
+    records = (RubbingModelRecord, FacingRecord, PointsRecord, KernelRecord)
     for size, record in zip(found[8:], records, strict=True):
         assert size == ctypes.sizeof(record), record.__name__
     return library, Sizes(*found[:8])
 
 
-def _tables(points: int, pairs: int) -> str:
-    """C text: numbered functions, one for each set of points and each pair, and tables of them."""
-    lines = []
-    for word, kind, name, count in (("POINTS", "moving_points", "POINTS", points), ("FACING", "", "RUBBING", pairs)):
-        numbered = "\n".join(f"{word}_NUMBERED({k})" for k in range(count))
-        entries = " ".join(f"{word}_ENTRY({k})" for k in range(count))
-        of_kind = f"static {kind} {name}[]" if kind else f"static void (*const {name}[])(const rubbed *, {RUBBING})"
-        lines.append(f"{numbered}\n{of_kind} = {{{entries}}};\n")
-    return "".join(lines)
-
-
-RUBBING = "real *, real *, real *, workspace *"
-"""C types of the arguments of a sliding function, after the first."""
-
-
 def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dict[str, Any]:
-    words = {
+    words = words_of_facings() | {
         "name": "solver",
         "MACRO": "SOLVER",
         "inner": "",
@@ -443,9 +366,6 @@ def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dic
         "most_touches": MOST_TOUCHES,
         "most_points": most_points,
         "most_looks": most_looks,
-        "looks": LOOKS,
-        "most_nodes": MOST_NODES + 1,
-        "kernel_arguments": KERNEL_ARGUMENTS,
         "pair_words": "as Python numbers them",
         "motion_status_lines": "  " + ", ".join(f"SOLVER_MOTION_{status}" for status in STATUSES),
         "motion_status_names": "",

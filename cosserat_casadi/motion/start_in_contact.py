@@ -77,11 +77,12 @@ def resting(
         jacobian, residual = contacts.model.jacobian(x, inputs)
         stiffness = jacobian.full() - _turning(facings, pressing, forces, x, inputs)
         stiffness = _stiffened(stiffness, allowed)
-        pushes = _pushes(stiffness, column(residual), gradients, gaps)
+        pushed = follower.pushes(gradients)
+        pushes = _pushes(stiffness, column(residual), gradients, pushed, gaps)
         if pushes is None:
             return None
         active = pushes > 0.0
-        balanced = _balanced(stiffness, column(residual), gradients[active], gaps[active])
+        balanced = _balanced(stiffness, column(residual), gradients[active], pushed[active], gaps[active])
         if balanced is None:
             return None
         change, forces = balanced
@@ -108,9 +109,11 @@ def _stiffened(stiffness: FloatArray, allowed: ConstrainedVariations) -> FloatAr
     return stiffened
 
 
-def _pushes(stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, gaps: FloatArray) -> FloatArray | None:
+def _pushes(
+    stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, pushed: FloatArray, gaps: FloatArray
+) -> FloatArray | None:
     """Forces of a turn, none of which pulls, and at which no gap closes, shape (m,); None where none are found."""
-    answers = solved(stiffness, np.column_stack([-residual, gradients.T]))
+    answers = solved(stiffness, np.column_stack([-residual, pushed.T]))
     if answers is None:
         return None
     straight_on = answers[:, 0]
@@ -119,7 +122,7 @@ def _pushes(stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, 
 
 
 def _balanced(
-    stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, gaps: FloatArray
+    stiffness: FloatArray, residual: FloatArray, gradients: FloatArray, pushed: FloatArray, gaps: FloatArray
 ) -> tuple[FloatArray, FloatArray] | None:
     """Change of the unknowns that closes gaps, shape (n,), and the forces that balance it, shape (m,).
 
@@ -131,7 +134,7 @@ def _balanced(
     size, count = len(stiffness), len(gaps)
     bordered = np.zeros((size + count, size + count))
     bordered[:size, :size] = stiffness
-    bordered[:size, size:] = -gradients.T
+    bordered[:size, size:] = -pushed.T
     bordered[size:, :size] = gradients
     answer = solved(bordered, -np.concatenate([residual, gaps]))
     return None if answer is None else (answer[:size], answer[size:])

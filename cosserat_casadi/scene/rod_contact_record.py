@@ -66,6 +66,11 @@ width = 5e-4
     )
 
     @property
+    def coefficients(self) -> tuple[float, float, float]:
+        """Coefficients of friction along the first rod, back, and across it: one number in all directions."""
+        return (self.friction,) * 3
+
+    @property
     def label(self) -> str:
         """The contact for people: its name, else its rods."""
         if self.name is not None:
@@ -99,9 +104,8 @@ width = 5e-4
         """Rods without a radius, rods that always touch, and obstacles that are touched exactly."""
         named = given.get("rods")
         known = scene.named("rods")
-        names = list(known)
-        if isinstance(named, list | tuple):
-            names = [name for name in named if isinstance(name, str) and name in known]
+        listed = named if isinstance(named, list | tuple) else known
+        names = [name for name in listed if isinstance(name, str) and name in known]
         for name in names:
             yield from _without_radius(name, known[name][1], given.get("width"))
         if isinstance(named, list | tuple) and len(names) == MOST_RODS and are_tied(names[0], names[1], _ties(scene)):

@@ -97,7 +97,7 @@ static void choose_axis(touch *own, const real *normal) {
 }
 
 static rubbed section_of(const touch *own, const section_gap *gap, const real *x, const real *inputs, workspace *work) {
-  const int count = POINTS[FACING[own->facing].points].count;
+  const int count = point_count(FACING + own->facing);
   const rubbed at = {x, inputs, x + N, inputs + INPUTS, work->section, own->axis};
   memset(work->section, 0, (size_t)count * sizeof *work->section);
   memcpy(work->section + gap->first, gap->rows[0], (size_t)gap->nodes * sizeof *work->section);
@@ -109,7 +109,7 @@ static rubbed section_of(const touch *own, const section_gap *gap, const real *x
 static void slide_at(const touch *own, const section_gap *gap, const real *x, const real *inputs, real *slide,
                      real rows[2][N], real *along, workspace *work) {
   const rubbed at = section_of(own, gap, x, inputs, work);
-  FACING[own->facing].rubbing(&at, slide, rows[0], along, work);
+  rubbing_of(FACING + own->facing, &at, slide, rows[0], along, work);
 }
 
 /* The same of a section by its number, at the start of a stretch or for a blow. */
@@ -547,7 +547,7 @@ static real slope_at_end(const step_start *start, real share, const touch *own, 
   const facing *faces = FACING + own->facing;
   section_gap gap;
   instant_in(start, share, unknowns, &work->at);
-  POINTS[faces->points].positions(work->at.state, work->at.inputs, work->nodes, work);
+  positions_of(faces, work->at.state, work->at.inputs, work->nodes, work);
   fit_nodes(faces, work->nodes, work);
   look_at(faces, own->end_place, &gap, work);
   return own->end_place > 0 ? -gap.slope : gap.slope;

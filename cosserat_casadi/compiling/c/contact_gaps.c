@@ -1,8 +1,9 @@
 /* Gaps between rods or bodies and obstacles that they touch exactly, along the rods, and where they are least. Positions
    between nodes are those of the polynomials through the nodes of an element.
 
-   Exported steps and simulated motions both include it, and say what a surface is: surface_at, distance_at. Gaps are counted
-   in the length of the rod, or of the longest rod that holds the body. */
+   Exported steps and simulated motions both include it, and say what a surface is, surface_at and distance_at, and where
+   polynomials and gaps are written to, fitted_of and gaps_of. Gaps are counted in the length of the rod, or of the longest
+   rod that holds the body. */
 
 /* Gap up to which a section touches. */
 static const real TOUCHING = (real)1e-7;
@@ -85,7 +86,10 @@ static int element_of(const facing *own, real place) {
 
 /* Coefficients of the polynomials through the nodes, which sections are looked at by from now on; of a body its origin. */
 static void fit_nodes(const facing *own, const real *nodes, workspace *work) {
-  real *coefficients = work->coefficients;
+  real *coefficients = fitted_of(own, work);
+#ifdef RODS_FACE_RODS
+  fit_other(own, nodes);
+#endif
   if (own->is_body) {
     memcpy(coefficients, nodes, 3 * sizeof *nodes);
     return;
@@ -112,12 +116,12 @@ static void look_in(const facing *own, int element, real place, section_gap *gap
   gap->first = 0;
   if (own->is_body) {
     memset(gap->tangent, 0, sizeof gap->tangent);
-    along_surface(own, work->coefficients, curve[2], gap, work);
+    along_surface(own, fitted_of(own, work), curve[2], gap, work);
     return;
   }
   polynomials_at(own, element, place, values);
   gap->first = element * own->nodes;
-  const real *coefficients = work->coefficients + 3 * gap->first;
+  const real *coefficients = fitted_of(own, work) + 3 * gap->first;
   for (int k = 0; k < own->nodes; k++) {
     for (int order = 0; order < 3; order++) {
       for (int j = 0; j < 3; j++) curve[order][j] += values[order][k] * coefficients[3 * k + j];
@@ -136,6 +140,9 @@ static void look_at(const facing *own, real place, section_gap *gap, workspace *
 static void weigh_nodes(const facing *own, section_gap *gap) {
   real values[3][MOST_NODES];
   for (int order = 0; order < 2; order++) memset(gap->rows[order], 0, (size_t)own->nodes * sizeof(real));
+#ifdef RODS_FACE_RODS
+  weigh_other(own);
+#endif
   if (own->is_body) {
     gap->rows[0][0] = 1;
     return;
@@ -148,6 +155,22 @@ static void weigh_nodes(const facing *own, section_gap *gap) {
       gap->rows[1][i] += values[1][k] * weights[i];
     }
   }
+}
+
+/* Adds weights of the nodes of a section along a normal, over a length. */
+static void add_section(const section_gap *gap, real times, real length, const real *normal, real *weights) {
+  for (int i = 0; i < gap->nodes; i++) {
+    const real share = times * gap->rows[0][i] / length;
+    for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] += share * normal[k];
+  }
+}
+
+/* Weights of the points of a rod or body of which the sum changes as a gap does, added so many times. */
+static void add_weights(const facing *own, const section_gap *gap, real times, real *weights) {
+  add_section(gap, times, own->length, gap->normal, weights);
+#ifdef RODS_FACE_RODS
+  add_other(own, times, gap->normal, weights);
+#endif
 }
 
 /* The section next to another where the gap is least: between the ends of the rod its slope is zero there. Newton's method
@@ -214,14 +237,14 @@ static void look_lowest_by(const facing *own, int look, section_gap *lowest, wor
 /* Looks along a rod, or at a body, whose valleys are asked for from now on. */
 static void look_along(const facing *own, const real *nodes, workspace *work) {
   fit_nodes(own, nodes, work);
-  if (!own->is_body) gaps_along(own, nodes, work->gaps_along, work);
+  if (!own->is_body) gaps_along(own, nodes, gaps_of(own, work), work);
 }
 
 /* The next section, from one of those that are looked at first on, whose gap is the least about it and not above a bound.
    Returns the section to go on from, zero where there is no more. Ends that are not watched are none, but where all are asked
    for. A section that is looked at has one valley at most. */
 static int next_valley(const facing *own, int look, real below, int all, section_gap *found, workspace *work) {
-  const real *gaps = work->gaps_along;
+  const real *gaps = gaps_of(own, work);
   const int last = own->elements * LOOKS;
   if (own->is_body) {
     if (look > 0) return 0;

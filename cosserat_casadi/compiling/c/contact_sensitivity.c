@@ -5,13 +5,28 @@
 static void curve_friction(int stage, int m, const section_gap *gap, int by_inputs, workspace *work);
 #endif
 
+/* Derivatives by inputs, at the instant in the workspace, of the sum of positions by its weights, and of its gradient; null
+   where no input moves them. */
+#define by_inputs_of(own) POINTS[(own)->points].by_inputs
+
+/* move_section by inputs. */
+static void move_by_inputs(const touch *own, const section_gap *gap, real *moved, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  real *one = work->moved_row;
+  for (int row = 0; row < 4; row++) {
+    row_weights(faces, gap, row, work);
+    by_inputs_of(faces)(work->at.state, work->at.inputs, work->weights, one, work->mixed, work);
+    for (int j = 0; j < INPUTS; j++) moved[4 * j + row] = one[j];
+  }
+  turn_slopes(gap, INPUTS, moved);
+}
+
 /* Takes the changes of the forces' directions from the matrices of a stage, and notes the derivatives of the gaps. */
 static void curve_stage(int stage, int by_inputs, workspace *work) {
   for (int m = 0; m < work->part_pressing; m++) {
     const touch *own = work->part_touch + m;
     const facing *faces = FACING + own->facing;
-    const moving_points *points = POINTS + faces->points;
-    const int count = 3 * points->count;
+    const int count = 3 * point_count(faces);
     const real force = own->forces[stage];
     section_gap gap;
     gradient_at(own, own->places[stage], work->at.state, work->at.inputs, &gap, work->stage_gradients[stage][m], work);
@@ -20,12 +35,12 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
 #ifdef CONTACT_RUBS
     curve_friction(stage, m, &gap, by_inputs, work);
 #endif
-    if (!by_inputs || !points->by_inputs) continue;
-    move_section(own, &gap, 1, work->moved_by_inputs, work);
+    if (!by_inputs || !by_inputs_of(faces)) continue;
+    move_by_inputs(own, &gap, work->moved_by_inputs, work);
     memset(work->weights, 0, (size_t)count * sizeof *work->weights);
     add_weights(faces, &gap, 1, work->weights);
-    points->by_inputs(work->at.state, work->at.inputs, work->weights, work->gaps_by_inputs[stage] + m * INPUTS, work->mixed,
-                      work);
+    by_inputs_of(faces)(work->at.state, work->at.inputs, work->weights, work->gaps_by_inputs[stage] + m * INPUTS, work->mixed,
+                        work);
     for (int j = 0; j < INPUTS; j++) {
       for (int i = 0; i < N; i++) {
         const real turned = turning(own, &gap, work->moved + 4 * i, work->moved_by_inputs + 4 * j);

@@ -90,7 +90,7 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
   work->too_many = 0;
   for (int number = 0; number < FACINGS; number++) {
     const facing *own = FACING + number;
-    POINTS[own->points].positions(x, inputs, work->nodes, work);
+    positions_of(own, x, inputs, work->nodes, work);
     const int first = work->touch_count, had_too_many = work->too_many;
     int lies = 0, look = 0;
     real before = -1; /* place of the valley before: they come base to tip */
@@ -120,7 +120,7 @@ static int find_touching(const real *x, const real *inputs, workspace *work) {
 static void follow_touch(const touch *own, real near, const real *x, const real *inputs, section_gap *gap,
                          workspace *work) {
   const facing *faces = FACING + own->facing;
-  POINTS[faces->points].positions(x, inputs, work->nodes, work);
+  positions_of(faces, x, inputs, work->nodes, work);
   fit_nodes(faces, work->nodes, work);
   if (own->slides) {
     look_lowest(faces, near, gap, work);
@@ -130,30 +130,22 @@ static void follow_touch(const touch *own, real near, const real *x, const real 
   weigh_nodes(faces, gap);
 }
 
-/* Weights of the points of a rod or body of which the sum changes as a gap does, added so many times. */
-static void add_weights(const facing *faces, const section_gap *gap, real times, real *weights) {
-  for (int i = 0; i < gap->nodes; i++) {
-    const real share = times * gap->rows[0][i] / faces->length;
-    for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] += share * gap->normal[k];
-  }
-}
-
 /* Gap and gradient of a section that touches. */
 static void gradient_at(const touch *own, real near, const real *x, const real *inputs, section_gap *gap, real *gradient,
                         workspace *work) {
   const facing *faces = FACING + own->facing;
-  const int count = 3 * POINTS[faces->points].count;
+  const int count = 3 * point_count(faces);
   follow_touch(own, near, x, inputs, gap, work);
   memset(work->weights, 0, (size_t)count * sizeof *work->weights);
   add_weights(faces, gap, 1, work->weights);
-  POINTS[faces->points].gradient(x, inputs, work->weights, gradient, work);
+  gradient_of(faces, x, inputs, work->weights, gradient, work);
 }
 
 /* Rate of a gap, of velocities and of inputs in motion, 1/s. */
 static real rate_of(const touch *own, const instant *at, const section_gap *gap, workspace *work) {
   const facing *faces = FACING + own->facing;
   real rate = 0;
-  POINTS[faces->points].velocities(at->state, at->inputs, at->state + N, at->inputs + INPUTS, work->nodes, work);
+  velocities_of(faces, at->state, at->inputs, at->state + N, at->inputs + INPUTS, work->nodes, work);
   for (int i = 0; i < gap->nodes; i++) rate += gap->rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->first + i));
   return rate / faces->length;
 }
@@ -283,34 +275,35 @@ static void push_in_stage(int stage, const instant *at, real *residual, workspac
   }
 }
 
-/* Weights of the points of which the sum changes as a section, or its tangent, does along a direction. */
-static void section_weights(const section_gap *gap, int order, const real *direction, int count, real *weights) {
-  memset(weights, 0, (size_t)count * sizeof *weights);
+/* Weights of the points of which the sum changes as a section does along an axis, or, behind the three axes, as its tangent
+   along the normal. */
+static void row_weights(const facing *faces, const section_gap *gap, int row, workspace *work) {
+  const int is_slope = row == 3;
+  const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
+  const real *direction = is_slope ? gap->normal : axis;
+  memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
   for (int i = 0; i < gap->nodes; i++) {
-    for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] = gap->rows[order][i] * direction[k];
+    for (int k = 0; k < 3; k++) work->weights[3 * (gap->first + i) + k] = gap->rows[is_slope][i] * direction[k];
   }
 }
 
-/* Derivatives of a section by unknowns or by inputs, so many columns of four numbers: of its position, and of the slope of
-   the gap, over lengths. */
-static void move_section(const touch *own, const section_gap *gap, int by_inputs, real *moved, workspace *work) {
-  const facing *faces = FACING + own->facing;
-  const moving_points *points = POINTS + faces->points;
-  const int columns = by_inputs ? INPUTS : N;
-  real *one = work->moved_row;
-  for (int row = 0; row < 4; row++) {
-    const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
-    section_weights(gap, row == 3, row == 3 ? gap->normal : axis, 3 * points->count, work->weights);
-    if (by_inputs) {
-      points->by_inputs(work->at.state, work->at.inputs, work->weights, one, work->mixed, work);
-    } else {
-      points->gradient(work->at.state, work->at.inputs, work->weights, one, work);
-    }
-    for (int i = 0; i < columns; i++) moved[4 * i + row] = one[i];
-  }
+/* Adds to the derivatives of a slope what the turning normal adds, from the derivatives of the position beside them. */
+static void turn_slopes(const section_gap *gap, int columns, real *moved) {
   for (int i = 0; i < columns; i++) {
     for (int k = 0; k < 3; k++) moved[4 * i + 3] += inner(gap->curvature + 3 * k, gap->tangent) * moved[4 * i + k];
   }
+}
+
+/* Derivatives of a section by unknowns, four numbers for each: of its position, and of the slope of the gap, over lengths. */
+static void move_section(const touch *own, const section_gap *gap, real *moved, workspace *work) {
+  const facing *faces = FACING + own->facing;
+  real *one = work->moved_row;
+  for (int row = 0; row < 4; row++) {
+    row_weights(faces, gap, row, work);
+    gradient_of(faces, work->at.state, work->at.inputs, work->weights, one, work);
+    for (int i = 0; i < N; i++) moved[4 * i + row] = one[i];
+  }
+  turn_slopes(gap, N, moved);
 }
 
 /* Second derivative of a gap by two numbers that move its section, without that of the points. */
@@ -326,11 +319,10 @@ static real turning(const touch *own, const section_gap *gap, const real *moved,
    workspace. */
 static void curve_matrices(const touch *own, const section_gap *gap, real force, real *stiffness, workspace *work) {
   const facing *faces = FACING + own->facing;
-  const moving_points *points = POINTS + faces->points;
-  move_section(own, gap, 0, work->moved, work);
-  memset(work->weights, 0, (size_t)(3 * points->count) * sizeof *work->weights);
+  move_section(own, gap, work->moved, work);
+  memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
   add_weights(faces, gap, 1, work->weights);
-  points->hessian(work->at.state, work->at.inputs, work->weights, work->second, work);
+  hessian_of(faces, work->at.state, work->at.inputs, work->weights, work->second, work);
   for (int k = 0; k < STAGE_ENTRIES; k++) {
     const int i = ENTRY_ROWS[k];
     const int j = ENTRY_COLUMNS[k];
@@ -611,8 +603,8 @@ static real lowest_other(const instant *at, workspace *work) {
   real lowest = SAME_PLACE;
   for (int number = 0; number < FACINGS; number++) {
     const facing *own = FACING + number;
-    POINTS[own->points].positions(at->state, at->inputs, work->nodes, work);
-    if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return NAN;
+    positions_of(own, at->state, at->inputs, work->nodes, work);
+    if (!all_finite(work->nodes, 3 * point_count(own))) return NAN;
     if (lies_now(number, work)) {
       fit_nodes(own, work->nodes, work);
       for (int k = 0; k < own->laid_count; k++) {

@@ -1,5 +1,5 @@
 /* Whether states of a scene that is touched exactly are inside an obstacle, or beyond one that a way leads through. Uses of
-   the scene: FACING, POINTS. */
+   the scene: FACING, point_count, positions_of. */
 
 /* Number of the pairs, the first, that bar a way. */
 #ifndef BARRING
@@ -11,8 +11,8 @@ static int is_inside(const real *x, const real *inputs, real depth, workspace *w
   section_gap lowest;
   for (int k = 0; k < FACINGS; k++) {
     const facing *own = FACING + k;
-    POINTS[own->points].positions(x, inputs, work->nodes, work);
-    if (!all_finite(work->nodes, 3 * POINTS[own->points].count)) return 1;
+    positions_of(own, x, inputs, work->nodes, work);
+    if (!all_finite(work->nodes, 3 * point_count(own))) return 1;
     look_along(own, work->nodes, work);
     if (next_valley(own, 0, -depth, 1, &lowest, work)) return 1;
   }
@@ -23,9 +23,9 @@ static int is_inside(const real *x, const real *inputs, real depth, workspace *w
 static real way_of_points(const facing *own, const real *x, const real *inputs, const real *next, const real *next_inputs,
                           workspace *work) {
   real longest = 0;
-  POINTS[own->points].positions(x, inputs, work->nodes, work);
-  POINTS[own->points].positions(next, next_inputs, work->weights, work);
-  for (int i = 0; i < POINTS[own->points].count; i++) {
+  positions_of(own, x, inputs, work->nodes, work);
+  positions_of(own, next, next_inputs, work->weights, work);
+  for (int i = 0; i < point_count(own); i++) {
     real way[3];
     for (int k = 0; k < 3; k++) way[k] = work->weights[3 * i + k] - work->nodes[3 * i + k];
     const real length = SQUARE_ROOT(inner(way, way));
@@ -45,7 +45,7 @@ static int leads_inside(const real *x, const real *inputs, const real *next, con
     const int looks = 1 + (int)(longest / own->stride);
     for (int look = 1; look <= looks; look++) {
       const real share = (real)look / (real)looks;
-      for (int i = 0; i < 3 * POINTS[own->points].count; i++) {
+      for (int i = 0; i < 3 * point_count(own); i++) {
         work->between[i] = (1 - share) * work->nodes[i] + share * work->weights[i];
       }
       look_along(own, work->between, work);

@@ -45,7 +45,7 @@ static void shifts_of(const touch *own, const section_gap *gap, const real *move
 static void curve_friction(int stage, int m, const section_gap *gap, int by_inputs, workspace *work) {
   const touch *own = work->part_touch + m;
   const facing *faces = FACING + own->facing;
-  const int count = POINTS[faces->points].count;
+  const int count = point_count(faces);
   real *slide = work->stage_slides[stage][m];
   real force[2];
   memset(work->stage_slide_rows[stage][m], 0, sizeof work->stage_slide_rows[stage][m]);
@@ -73,8 +73,8 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
   }
   if (!by_inputs) return;
   memset(work->shift, 0, sizeof work->shift);
-  if (POINTS[faces->points].by_inputs) {
-    move_section(own, gap, 1, work->moved_by_inputs, work);
+  if (by_inputs_of(faces)) {
+    move_by_inputs(own, gap, work->moved_by_inputs, work);
     shifts_of(own, gap, work->moved_by_inputs, INPUTS, work->shift);
   }
   take_friction(stage, m, work->rubbing_by_inputs, work->rubbing_by_place, work->shift, INPUTS, work->friction_entries, work);

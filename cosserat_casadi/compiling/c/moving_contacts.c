@@ -17,41 +17,18 @@ typedef double real;
 
 #include "python_kernels.c"
 
-/* The nodes of a rod, or the origin of a body. */
+/* Room of constraints of which some push. */
 typedef struct {
-  int count;
-  int is_known; /* whether their positions were asked for before */
-  kernel *positions;
-  kernel *gradient; /* of the sum of positions by weights */
-  const real *shares; /* unit of the work of forces, in that of each balance; null where all are equal */
-} moving_points;
+  real *scaled_compliance;
+  real *scales;
+  real *small_values;
+  real *small_matrix;
+  int *small_pivots;
+  int *active;
+  int *passed_over;
+} workspace;
 
-/* A rod or the ball of a body, and an obstacle or another rod that it may touch. */
-typedef struct facing_rod {
-  moving_points *points;
-  int is_body;
-  int elements;
-  int nodes;
-  int watches_base;
-  int watches_tip;
-  int laid_count;
-  const real *ends;
-  const real *to_coefficients;
-  const real *looks;
-  const real *laid;
-  real length;
-  real radius_at_base;
-  real radius_at_tip;
-  kernel *surface;  /* point to distance, normal, curvature; null where another rod is in the place of an obstacle */
-  kernel *distance; /* point to distance; null there */
-  real *coefficients;
-  real *gaps_along;
-  struct facing_rod *other; /* rod that it may touch in the place of an obstacle, whose points stand behind its own; or null */
-  real *seen_from;          /* of such a rod: the point that it is looked at from; else null */
-  real *looked_at;          /* of such a rod: positions of the sections that are looked at first */
-  real *balls;              /* of such a rod: centre and radius of a ball about these sections of each element */
-  void *nearest;            /* of such a rod: its section that is nearest to that point */
-} facing;
+#include "facings.c"
 
 /* A contact; where it slides the place is that next to which it is looked for. */
 typedef struct {
@@ -62,19 +39,6 @@ typedef struct {
   real height; /* gap that it keeps */
 } touch;
 
-/* Room of a pair, or of constraints of which some push. */
-typedef struct {
-  real *coefficients;
-  real *gaps_along;
-  real *scaled_compliance;
-  real *scales;
-  real *small_values;
-  real *small_matrix;
-  int *small_pivots;
-  int *active;
-  int *passed_over;
-} workspace;
-
 static real larger(real a, real b) { return a > b ? a : b; }
 
 static int all_finite(const real *a, int count) {
@@ -83,162 +47,23 @@ static int all_finite(const real *a, int count) {
   return sum == 0;
 }
 
-/* Writes an argument; whether it is another one than that of the last call. */
-static int give(kernel *function, int number, const real *values) {
-  const size_t bytes = (size_t)function->counts[number] * sizeof *values;
-  if (!memcmp(function->arguments[number], values, bytes)) return 0;
-  memcpy(function->arguments[number], values, bytes);
-  return 1;
-}
-
-static void surface_of_other(const facing *own, const real *point, real *distance, real *normal, real *curvature);
-static void surface_of_point(const real *from, const real *point, real *distance, real *normal, real *curvature);
-
-static void surface_at(const facing *own, const real *point, real *distance, real *normal, real *curvature,
-                       workspace *work) {
-  (void)work;
-  if (!own->surface) {
-    if (own->other) {
-      surface_of_other(own, point, distance, normal, curvature);
-    } else {
-      surface_of_point(own->seen_from, point, distance, normal, curvature);
-    }
-    return;
-  }
-  const real *found = own->surface->result;
-  give(own->surface, 0, point);
-  call(own->surface);
-  *distance = found[0];
-  memcpy(normal, found + 1, 3 * sizeof *normal);
-  memcpy(curvature, found + 4, 9 * sizeof *curvature);
-}
-
-static real distance_at(const facing *own, const real *point, workspace *work) {
-  if (!own->distance) {
-    real distance, normal[3], curvature[9];
-    surface_at(own, point, &distance, normal, curvature, work);
-    return distance;
-  }
-  give(own->distance, 0, point);
-  call(own->distance);
-  return own->distance->result[0];
-}
-
-#include "contact_gaps.c"
 #include "square_systems.c"
 #include "least_pushes.c"
 
-/* A gap, and the section of the other rod that is nearest, where there is one: its distance from the point in its own
-   length, and the direction from the point to it. */
+/* A gap, and the section of the other rod that is nearest, where there is one, with its nodes among all points. */
 typedef struct {
   section_gap own;
   section_gap other;
 } met_gap;
 
-/* ---- Another rod in the place of an obstacle ---- */
-
-/* Distance of a point from another one, with its derivatives. */
-static void surface_of_point(const real *from, const real *point, real *distance, real *normal, real *curvature) {
-  real way[3];
-  for (int i = 0; i < 3; i++) way[i] = point[i] - from[i];
-  /* Where both are one no direction is known. */
-  *distance = larger(SQUARE_ROOT(inner(way, way)), NEXT_TO_NOTHING);
-  for (int i = 0; i < 3; i++) normal[i] = way[i] / *distance;
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) curvature[3 * i + j] = ((i == j) - normal[i] * normal[j]) / *distance;
-  }
-}
-
-/* Whether a nearest section stays at an end of its rod. */
-static int is_at_end(const section_gap *nearest) { return nearest->place <= AT_END || nearest->place >= 1 - AT_END; }
-
-static real way_between(const real *a, const real *b) {
-  const real way[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return SQUARE_ROOT(inner(way, way));
-}
-
-/* Finds the section of a rod that is nearest to a point: of those that are looked at first, then next to that one. Elements
-   in whose balls all is farther than what is found are passed over; the element that was nearest last is looked at first. */
-static void find_nearest(const facing *rod, const real *point) {
-  workspace room = {.coefficients = rod->coefficients, .gaps_along = rod->gaps_along};
-  section_gap *nearest = rod->nearest;
-  const real taper = rod->radius_at_tip - rod->radius_at_base;
-  const int last = nearest->nodes ? nearest->first / rod->nodes : 0;
-  int look = 0;
-  real least = INFINITY;
-  for (int k = 0; k < rod->elements; k++) {
-    const int e = (last + k) % rod->elements;
-    const real *ball = rod->balls + 4 * e;
-    if (way_between(ball, point) - ball[3] - larger(taper, 0) >= least) continue;
-    for (int i = e * LOOKS; i <= (e + 1) * LOOKS; i++) {
-      const real distance = way_between(rod->looked_at + 3 * i, point) - taper * place_of_look(rod, i);
-      if (!(distance < least)) continue;
-      least = distance;
-      look = i;
-    }
-  }
-  memcpy(rod->seen_from, point, 3 * sizeof *point);
-  look_lowest_by(rod, look, nearest, &room);
-}
-
-/* Positions of the sections of a rod that are looked at first, and a ball about those of each element: its centre is the
-   middle one, its radius the largest distance from there. */
-static void place_looks(const facing *rod, const real *nodes) {
-  for (int i = 0; i <= rod->elements * LOOKS; i++) {
-    const int e = i / LOOKS < rod->elements ? i / LOOKS : rod->elements - 1;
-    const real *weights = rod->looks + (i - e * LOOKS) * rod->nodes;
-    real *at = rod->looked_at + 3 * i;
-    at[0] = at[1] = at[2] = 0;
-    for (int k = 0; k < rod->nodes; k++) {
-      for (int j = 0; j < 3; j++) at[j] += weights[k] * nodes[3 * (e * rod->nodes + k) + j];
-    }
-  }
-  for (int e = 0; e < rod->elements; e++) {
-    real *ball = rod->balls + 4 * e;
-    memcpy(ball, rod->looked_at + 3 * (e * LOOKS + LOOKS / 2), 3 * sizeof *ball);
-    ball[3] = 0;
-    for (int i = e * LOOKS; i <= (e + 1) * LOOKS; i++) ball[3] = larger(ball[3], way_between(ball, rod->looked_at + 3 * i));
-  }
-}
-
-/* The surface of the other rod: its distance is that of its nearest section, which goes along as the point moves. */
-static void surface_of_other(const facing *own, const real *point, real *distance, real *normal, real *curvature) {
-  const facing *rod = own->other;
-  const section_gap *nearest = rod->nearest;
-  find_nearest(rod, point);
-  *distance = nearest->value * rod->length;
-  for (int i = 0; i < 3; i++) normal[i] = -nearest->normal[i];
-  memcpy(curvature, nearest->curvature, 9 * sizeof *curvature);
-  if (is_at_end(nearest)) return;
-  real turned[3];
-  for (int i = 0; i < 3; i++) turned[i] = inner(nearest->curvature + 3 * i, nearest->tangent);
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) curvature[3 * i + j] -= turned[i] * turned[j] / (nearest->bend * rod->length);
-  }
-}
-
-/* The section of the other rod next to a gap that was looked at last, with the weights of its nodes among all points. */
-static void weigh_other(const facing *own, met_gap *gap) {
+static void meet(const facing *own, met_gap *gap) {
+  weigh_nodes(own, &gap->own);
   if (!own->other) return;
-  memcpy(&gap->other, own->other->nearest, sizeof gap->other);
-  weigh_nodes(own->other, &gap->other);
+  gap->other = *other_section(own);
   gap->other.first += own->elements * own->nodes;
 }
 
 /* ---- Gaps of a pair, at positions of its points ---- */
-
-/* Room of a pair; another rod is looked at by these positions from now on. */
-static workspace room_of(const facing *own, const real *nodes) {
-  const facing *rod = own->other;
-  if (rod) {
-    const real *of_rod = nodes + 3 * own->elements * own->nodes;
-    workspace room = {.coefficients = rod->coefficients, .gaps_along = rod->gaps_along};
-    fit_nodes(rod, of_rod, &room);
-    place_looks(rod, of_rod);
-  }
-  const workspace room = {.coefficients = own->coefficients, .gaps_along = own->gaps_along};
-  return room;
-}
 
 /* The element that a section is looked at in, or that of the section itself where it is farther beyond that one's ends. */
 static int element_near(const facing *own, real place, int element) {
@@ -247,12 +72,12 @@ static int element_near(const facing *own, real place, int element) {
 }
 
 /* Newton's method for a place where the slope is zero; not a number where it leads nowhere. */
-static real stationary(const facing *own, real near, int element, workspace *work) {
+static real stationary(const facing *own, real near, int element) {
   real place = near;
   for (int k = 0; k < MOST_PLACINGS; k++) {
     const int number = element_near(own, place, element);
     section_gap gap;
-    look_in(own, number, place, &gap, work);
+    look_in(own, number, place, &gap, 0);
     if (!(gap.bend > 0)) return NAN;
     const real change = -gap.slope / gap.bend;
     place += change;
@@ -276,48 +101,44 @@ static int downhill(const facing *own, const real *gaps, int count, real near) {
 
 /* Place next to another where the gap is least, by the polynomials of an element; not beyond the ends by more than a
    little. */
-static real place_near(const facing *own, const real *nodes, real near, int element, workspace *work) {
+static real place_near(const facing *own, const real *nodes, real near, int element) {
   const real first = own->ends[element];
   const real last = own->ends[element + 1];
-  real place = stationary(own, near, element, work);
+  real place = stationary(own, near, element);
   if (ABSOLUTE(place - near) <= FAR) return place;
   /* Down the gaps from section to section no other minimum can be met. */
-  const int count = gaps_along(own, nodes, work->gaps_along, work);
-  const real beside = place_of_look(own, downhill(own, work->gaps_along, count, near));
+  const int count = gaps_along(own, nodes, own->gaps_along, 0);
+  const real beside = place_of_look(own, downhill(own, own->gaps_along, count, near));
   if (first <= beside && beside <= last) {
-    place = stationary(own, beside, element, work);
+    place = stationary(own, beside, element);
     return ABSOLUTE(place - beside) <= FAR ? place : beside;
   }
   /* By the polynomials of its element it may be farther beyond an end of that one than it is. */
   const real end = clipped(beside, first, last);
-  place = stationary(own, end, element, work);
+  place = stationary(own, end, element);
   return ABSOLUTE(place - end) <= BEYOND ? place : clipped(beside, end - BEYOND, end + BEYOND);
 }
 
 /* The gap at a place, by the polynomials of an element next to it, with the weights of the nodes. */
 void gap_at(const facing *own, const real *nodes, real place, int element, met_gap *gap) {
-  workspace room = room_of(own, nodes);
-  fit_nodes(own, nodes, &room);
-  look_in(own, own->is_body ? 0 : element_near(own, place, element), place, &gap->own, &room);
-  weigh_nodes(own, &gap->own);
-  weigh_other(own, gap);
+  fit_nodes(own, nodes, 0);
+  look_in(own, own->is_body ? 0 : element_near(own, place, element), place, &gap->own, 0);
+  meet(own, gap);
 }
 
 /* The place next to another where the gap is least. */
 real gap_place(const facing *own, const real *nodes, real near, int element) {
-  workspace room = room_of(own, nodes);
   if (own->is_body) return near;
-  fit_nodes(own, nodes, &room);
-  return place_near(own, nodes, near, element, &room);
+  fit_nodes(own, nodes, 0);
+  return place_near(own, nodes, near, element);
 }
 
 /* Gaps at the sections at which a rod that lies is held. */
 void laid_gaps(const facing *own, const real *nodes, real *gaps) {
-  workspace room = room_of(own, nodes);
-  fit_nodes(own, nodes, &room);
+  fit_nodes(own, nodes, 0);
   for (int k = 0; k < own->laid_count; k++) {
     section_gap gap;
-    look_at(own, own->laid[k], &gap, &room);
+    look_at(own, own->laid[k], &gap, 0);
     gaps[k] = gap.value;
   }
 }
@@ -325,11 +146,10 @@ void laid_gaps(const facing *own, const real *nodes, real *gaps) {
 /* Places of the sections whose gaps are the least about them, and not above a bound, base to tip, and these gaps; returns
    their number. There is room for as many as are looked at. */
 int gap_valleys(const facing *own, const real *nodes, real below, real *places, real *gaps) {
-  workspace room = room_of(own, nodes);
   section_gap lowest;
   int look = 0, count = 0;
-  look_along(own, nodes, &room);
-  while ((look = next_valley(own, look, below, 0, &lowest, &room)) > 0) {
+  look_along(own, nodes, 0);
+  while ((look = next_valley(own, look, below, 0, &lowest, 0)) > 0) {
     places[count] = lowest.place;
     gaps[count++] = lowest.value;
   }
@@ -365,15 +185,14 @@ static int is_lowest(const facing *own, const real *gaps, int count, int look, i
    some ends; infinite where there is none. Ends that are not watched are none, but where all are asked for. */
 void lowest_gap(const facing *own, const real *nodes, int all, const real *but, int *left_out, int but_count,
                 const real *ends, int end_count, real *place, real *lowest) {
-  workspace room = room_of(own, nodes);
-  real *gaps = own->gaps_along;
+  const real *gaps = own->gaps_along;
   section_gap gap;
   *place = 0;
   *lowest = INFINITY;
-  look_along(own, nodes, &room);
+  look_along(own, nodes, 0);
   if (own->is_body) {
     if (but_count > 0) return;
-    look_at(own, 0, &gap, &room);
+    look_at(own, 0, &gap, 0);
     *lowest = gap.value;
     return;
   }
@@ -390,7 +209,7 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
     gap.place = place_of_look(own, i);
     gap.value = gaps[i];
     /* Far from zero no one asks how much lower it is beside a section. */
-    if (all || !(gaps[i] > OFF * deeper)) look_lowest_by(own, i, &gap, &room);
+    if (all || !(gaps[i] > OFF * deeper)) look_lowest_by(own, i, &gap, 0);
     if (!(gap.value < *lowest)) continue;
     *lowest = gap.value;
     *place = gap.place;
@@ -398,13 +217,6 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
 }
 
 /* ---- Contacts at a state ---- */
-
-/* Positions of the points, at the state that they were asked for last. */
-static const real *positions_at(moving_points *points, const real *x, const real *inputs) {
-  const int moved = give(points->positions, 0, x) | give(points->positions, 1, inputs);
-  if (moved || !points->is_known) points->is_known = call(points->positions);
-  return points->positions->result;
-}
 
 /* Has the positions of points in memory, as the result of their function. */
 void known_positions(moving_points *points, const real *x, const real *inputs) { positions_at(points, x, inputs); }
@@ -414,22 +226,12 @@ void touched_gaps(const touch *touches, int count, const real *x, const real *in
   for (int k = 0; k < count; k++) {
     const facing *own = touches[k].facing;
     const real *nodes = positions_at(own->points, x, inputs);
-    workspace room = room_of(own, nodes);
     real place = touches[k].place;
-    fit_nodes(own, nodes, &room);
-    if (touches[k].slides && !own->is_body) place = place_near(own, nodes, place, touches[k].element, &room);
-    look_in(own, own->is_body ? 0 : element_near(own, place, touches[k].element), place, &gaps[k].own, &room);
+    fit_nodes(own, nodes, 0);
+    if (touches[k].slides && !own->is_body) place = place_near(own, nodes, place, touches[k].element);
+    look_in(own, own->is_body ? 0 : element_near(own, place, touches[k].element), place, &gaps[k].own, 0);
     gaps[k].own.place = place;
-    weigh_nodes(own, &gaps[k].own);
-    weigh_other(own, gaps + k);
-  }
-}
-
-/* Adds a force along a normal, at the section of a gap, to forces on the nodes. */
-static void add_push(real *weights, const section_gap *gap, real force, real length, const real *normal) {
-  for (int i = 0; i < gap->nodes; i++) {
-    const real share = force * gap->rows[0][i] / length;
-    for (int j = 0; j < 3; j++) weights[3 * (gap->first + i) + j] += share * normal[j];
+    meet(own, gaps + k);
   }
 }
 
@@ -446,21 +248,18 @@ void push_touches(const touch *touches, int count, int unknowns, const real *x, 
     real *weights = own->points->gradient->arguments[2];
     touched_gaps(touches + k, 1, x, inputs, &gap);
     open[k] = gap.own.value - touches[k].height;
-    add_push(weights, &gap.own, forces[k], own->length, gap.own.normal);
-    if (own->other) add_push(weights, &gap.other, -forces[k], own->length, gap.own.normal);
+    add_weights(own, &gap.own, forces[k], weights);
   }
   for (int k = 0; k < count; k++) {
     moving_points *points = touches[k].facing->points;
     int is_first = 1;
     for (int i = 0; i < k; i++) is_first &= touches[i].facing->points != points;
     if (!is_first) continue;
-    give(points->gradient, 0, x);
-    give(points->gradient, 1, inputs);
+    writing to = {points->gradient, 0, 0};
+    put(&to, x, points->unknowns);
+    put(&to, inputs, points->inputs);
     call(points->gradient);
-    if (points->shares) {
-      for (int i = 0; i < unknowns; i++) points->gradient->result[i] *= points->shares[i];
-    }
-    for (int i = 0; i < unknowns; i++) rows[i] -= points->gradient->result[i];
+    for (int i = 0; i < unknowns; i++) rows[i] -= points->gradient->result[i] * (points->shares ? points->shares[i] : 1);
   }
 }
 
@@ -480,7 +279,8 @@ void push_in_steps(const step_contacts *own, const real *unknowns, const real *i
   const real *x = unknowns;
   if (own->base) {
     memcpy(own->x, unknowns, (size_t)own->unknowns * sizeof *unknowns);
-    give(own->base, 0, unknowns);
+    writing to = {own->base, 0, 0};
+    put(&to, unknowns, own->base->counts[0]);
     call(own->base);
     memcpy(own->x + own->base_begin, own->base->result, BASE_UNKNOWNS * sizeof *unknowns);
     x = own->x;

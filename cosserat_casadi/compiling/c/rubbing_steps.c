@@ -30,60 +30,14 @@ typedef struct {
   const real *axis;
 } rubbed;
 
-/* Nodes of a rod, or the origin of a body; exported libraries have this type too. */
-typedef struct {
-  int count;
-  void (*positions)(const real *x, const real *inputs, real *positions, workspace *work);
-  void (*velocities)(const real *x, const real *inputs, const real *v, const real *rate, real *velocities, workspace *work);
-  void (*gradient)(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work);
-  void (*hessian)(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work);
-  void (*by_inputs)(const real *x, const real *inputs, const real *weights, real *by_inputs, real *of_gradient,
-                    workspace *work); /* null: only derivatives of steps need it */
-} moving_points;
-
-/* Functions of moving_points, from Python. */
-typedef struct {
-  int count;
-  kernel *positions;
-  kernel *velocities;
-  kernel *gradient;
-  kernel *hessian;
-} point_kernels;
-
-/* A pair of a rod, or the ball of a body, and an obstacle that it may touch. Python writes all members but rubbing. */
-typedef struct {
-  int points;
-  int is_body;
-  int elements;
-  int nodes;
-  int watches_base;
-  int watches_tip;
-  int laid_count;
-  const real *ends;
-  const real *to_coefficients;
-  const real *looks;
-  const real *laid;
-  real length;
-  real force_unit;
-  real radius_at_base;
-  real radius_at_tip;
-  real restitution;
-  real stride;
-  real coefficients[3];
-  kernel *surface;  /* point -> distance, normal, curvature */
-  kernel *distance; /* point -> distance */
-  kernel *slide;    /* null for an obstacle without friction */
-  void (*rubbing)(const rubbed *at, real *sliding, real *by_velocity, real *along, workspace *work);
-} facing;
+#include "facings.c"
 
 /* A model, and the stretches of its last step. */
 typedef struct {
-  int points_count;
   int facing_count;
   const int *is_shape;
   const real *displacements;
-  const point_kernels *points;
-  facing *facings;
+  const facing *facings;
   kernel *residual;
   kernel *matrices; /* stiffness, damping and mass */
   real deepest;
@@ -107,38 +61,14 @@ static model *AT; /* the model of the present step */
 #define DEEPEST AT->deepest
 #define FARTHEST AT->farthest
 
-/* The place behind the last number that was written into the arguments of a function. */
-typedef struct {
-  kernel *function;
-  int argument;
-  int filled;
-} writing;
+static int point_count(const facing *own) { return own->points->count; }
 
-/* Writes numbers at this place; where an argument is full, they go on in the next one. */
-static void put(writing *to, const real *values, int count) {
-  kernel *own = to->function;
-  while (count > 0) {
-    const int room = own->counts[to->argument] - to->filled;
-    const int most = count < room ? count : room;
-    memcpy(own->arguments[to->argument] + to->filled, values, (size_t)most * sizeof *values);
-    values += most;
-    count -= most;
-    to->filled += most;
-    if (most == room) {
-      to->argument++;
-      to->filled = 0;
-    }
-  }
+static void positions_of(const facing *own, const real *x, const real *inputs, real *positions, workspace *work) {
+  (void)work;
+  memcpy(positions, positions_at(own->points, x, inputs), (size_t)(3 * own->points->count) * sizeof *positions);
 }
 
-/* Calls a function whose arguments are written. The result is NaN if Python raised an exception. */
-static const real *result_of(kernel *function, int count) {
-  if (!call(function)) {
-    for (int i = 0; i < count; i++) function->result[i] = NAN;
-  }
-  return function->result;
-}
-
+/* Results of a function of points; rate is null where the function has no rates of inputs. */
 static void answer(kernel *function, const real *x, const real *inputs, const real *third, int third_count,
                    const real *rate, int count, real *result) {
   writing to = {function, 0, 0};
@@ -149,86 +79,38 @@ static void answer(kernel *function, const real *x, const real *inputs, const re
   memcpy(result, result_of(function, count), (size_t)count * sizeof *result);
 }
 
-static void positions_of(int k, const real *x, const real *inputs, real *positions) {
-  const point_kernels *own = AT->points + k;
-  answer(own->positions, x, inputs, 0, 0, 0, 3 * own->count, positions);
+static void velocities_of(const facing *own, const real *x, const real *inputs, const real *v, const real *rate,
+                          real *velocities, workspace *work) {
+  (void)work;
+  answer(own->points->velocities, x, inputs, v, N, rate, 3 * own->points->count, velocities);
 }
 
-static void velocities_of(int k, const real *x, const real *inputs, const real *v, const real *rate, real *velocities) {
-  const point_kernels *own = AT->points + k;
-  answer(own->velocities, x, inputs, v, N, rate, 3 * own->count, velocities);
+static void gradient_of(const facing *own, const real *x, const real *inputs, const real *weights, real *by_x,
+                        workspace *work) {
+  (void)work;
+  answer(own->points->gradient, x, inputs, weights, 3 * own->points->count, 0, N, by_x);
 }
 
-static void gradient_of(int k, const real *x, const real *inputs, const real *weights, real *by_x) {
-  const point_kernels *own = AT->points + k;
-  answer(own->gradient, x, inputs, weights, 3 * own->count, 0, N, by_x);
+static void hessian_of(const facing *own, const real *x, const real *inputs, const real *weights, real *by_x,
+                       workspace *work) {
+  (void)work;
+  answer(own->points->hessian, x, inputs, weights, 3 * own->points->count, 0, N * N, by_x);
 }
 
-static void hessian_of(int k, const real *x, const real *inputs, const real *weights, real *by_x) {
-  const point_kernels *own = AT->points + k;
-  answer(own->hessian, x, inputs, weights, 3 * own->count, 0, N * N, by_x);
-}
-
-static void rubbing_of(int k, const rubbed *at, real *sliding, real *by_velocity, real *along) {
-  const facing *own = FACING + k;
-  writing to = {own->slide, 0, 0};
+static void rubbing_of(const facing *own, const rubbed *at, real *sliding, real *by_velocity, real *along,
+                       workspace *work) {
+  writing to = {own->rubbing, 0, 0};
+  (void)work;
   put(&to, at->x, N);
   put(&to, at->inputs, INPUTS);
   put(&to, at->v, N);
   put(&to, at->rate, INPUTS);
-  put(&to, at->section, AT->points[own->points].count + 1);
+  put(&to, at->section, own->points->count + 1);
   put(&to, at->axis, 3);
-  const real *found = result_of(own->slide, 4 + 2 * N);
+  const real *found = result_of(own->rubbing, 4 + 2 * N);
   memcpy(sliding, found, 2 * sizeof *found);
   memcpy(by_velocity, found + 2, 2 * N * sizeof *found);
   memcpy(along, found + 2 + 2 * N, 2 * sizeof *found);
-}
-
-/* Functions for tables: each calls one of the functions above with its own number K. */
-#define POINTS_NUMBERED(K)                                                                                              \
-  static void positions_of_##K(const real *x, const real *inputs, real *positions, workspace *work) {                   \
-    (void)work;                                                                                                         \
-    positions_of(K, x, inputs, positions);                                                                              \
-  }                                                                                                                     \
-  static void velocities_of_##K(const real *x, const real *inputs, const real *v, const real *rate, real *velocities,   \
-                                workspace *work) {                                                                      \
-    (void)work;                                                                                                         \
-    velocities_of(K, x, inputs, v, rate, velocities);                                                                   \
-  }                                                                                                                     \
-  static void gradient_of_##K(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work) {    \
-    (void)work;                                                                                                         \
-    gradient_of(K, x, inputs, weights, by_x);                                                                           \
-  }                                                                                                                     \
-  static void hessian_of_##K(const real *x, const real *inputs, const real *weights, real *by_x, workspace *work) {     \
-    (void)work;                                                                                                         \
-    hessian_of(K, x, inputs, weights, by_x);                                                                            \
-  }
-#define FACING_NUMBERED(K)                                                                                              \
-  static void rubbing_of_##K(const rubbed *at, real *sliding, real *by_velocity, real *along, workspace *work) {        \
-    (void)work;                                                                                                         \
-    rubbing_of(K, at, sliding, by_velocity, along);                                                                     \
-  }
-#define POINTS_ENTRY(K) {0, positions_of_##K, velocities_of_##K, gradient_of_##K, hessian_of_##K, 0},
-#define FACING_ENTRY(K) rubbing_of_##K,
-
-#include "rubbing_tables.h"
-
-static void surface_at(const facing *own, const real *point, real *distance, real *normal, real *curvature,
-                       workspace *work) {
-  writing to = {own->surface, 0, 0};
-  (void)work;
-  put(&to, point, 3);
-  const real *found = result_of(own->surface, 13);
-  *distance = found[0];
-  memcpy(normal, found + 1, 3 * sizeof *normal);
-  memcpy(curvature, found + 4, 9 * sizeof *curvature);
-}
-
-static real distance_at(const facing *own, const real *point, workspace *work) {
-  writing to = {own->distance, 0, 0};
-  (void)work;
-  put(&to, point, 3);
-  return *result_of(own->distance, 1);
 }
 
 /* ---- Tables of a step: one dense block, column after column ---- */
@@ -291,7 +173,6 @@ enum { MOTION_RESIDUAL_PART_COUNT = 1, MOTION_MATRIX_PART_COUNT = 1, MOTION_INPU
 static const int FEELS_ACCELERATION[INPUTS + 1] = {0};
 
 #include "elimination.c"
-#include "contact_gaps.c"
 #include "contact_ways.c"
 #include "step.c"
 #include "motion.c"
@@ -485,7 +366,7 @@ void rubbing_carry(const model *of, solver_step_memory *memory, real *numbers, i
 void rubbing_sizes(long long *sizes) {
   const long long found[] = {sizeof(solver_step_memory), sizeof(workspace), MOST_TOLD, TOLD_ROW,
                              OF_STRETCH, OF_TOUCH, TOUCHES, CARRIED,
-                             sizeof(model), sizeof(facing), sizeof(point_kernels), sizeof(kernel)};
+                             sizeof(model), sizeof(facing), sizeof(moving_points), sizeof(kernel)};
   memcpy(sizes, found, sizeof found);
 }
 
@@ -515,8 +396,6 @@ int rubbing_step(model *of, const real *inputs, const real *rates, const real *a
     ENTRY_ROWS[k] = k % N;
     ENTRY_COLUMNS[k] = k / N;
   }
-  for (int k = 0; k < of->points_count; k++) POINTS[k].count = of->points[k].count;
-  for (int k = 0; k < of->facing_count; k++) of->facings[k].rubbing = of->facings[k].slide ? RUBBING[k] : 0;
   const solver_step_options options = {STEP_TOLERANCE, STEP_ITERATIONS, 1, accelerations};
   solver_step_info info;
   of->told_count = 0;
