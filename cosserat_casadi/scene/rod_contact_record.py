@@ -16,7 +16,7 @@ from cosserat_casadi.scene.values import Name, Names, NotNegative, Positive, Sha
 MOST_RODS = 2
 """Rods of a pair."""
 
-SMOOTH_KEYS = ("width", "stiffness", "friction", "slip_speed")
+SMOOTH_KEYS = ("width", "stiffness", "slip_speed")
 """Keys of a contact that is smooth."""
 
 
@@ -71,6 +71,11 @@ width = 5e-4
         return (self.friction,) * 3
 
     @property
+    def rubs(self) -> bool:
+        """Whether there is friction."""
+        return self.friction > 0.0
+
+    @property
     def label(self) -> str:
         """The contact for people: its name, else its rods."""
         if self.name is not None:
@@ -123,9 +128,6 @@ width = 5e-4
         if any((other.get("exact") is True) is not exact for _, other in scene.tables("rod_contacts")):
             problem = "is true of some rods that touch rods, and not of all"
             yield Fault(("exact",), problem, "give it for all, or for none")
-        if exact and any(other.get("friction") for _, other in scene.tables("obstacles")):
-            problem = "rods that touch rods exactly have no friction, and an obstacle has"
-            yield Fault(("exact",), problem, "give rods and obstacles a width, m, or leave friction out")
         if exact:
             for name in names:
                 yield from without_exact_contact(name, known[name][1], "leave exact out, for a contact that is smooth")

@@ -18,7 +18,7 @@ static void move_by_inputs(const touch *own, const section_gap *gap, real *moved
     by_inputs_of(faces)(work->at.state, work->at.inputs, work->weights, one, work->mixed, work);
     for (int j = 0; j < INPUTS; j++) moved[4 * j + row] = one[j];
   }
-  turn_slopes(gap, INPUTS, moved);
+  turn_slopes(faces, gap, INPUTS, moved);
 }
 
 /* Takes the changes of the forces' directions from the matrices of a stage, and notes the derivatives of the gaps. */

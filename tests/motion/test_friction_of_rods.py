@@ -1,0 +1,270 @@
+"""Friction of rods that touch rods without a width, in motion: closed forms, momentum, energy, told errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
+
+from cosserat_casadi import simulate
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_forces import Follower, MovingContact
+from cosserat_casadi.motion.facings import facings
+from cosserat_casadi.motion.momentum import MomentumKeeper
+from cosserat_casadi.motion.pose_series import section_poses
+from cosserat_casadi.motion.rods_facing import RodGap, RodsFacing
+from cosserat_casadi.motion.rubbing_library import ToldStretch
+from cosserat_casadi.motion.rubbing_motion import _Told
+from cosserat_casadi.motion.surface_sliding import SurfaceSliding
+from cosserat_casadi.motion.trajectory import Motion
+from tests.motion.test_rods_that_strike_rods import (
+    DENSITY,
+    LENGTHS,
+    RADIUS,
+    free_rods,
+    momentum,
+    moving,
+    rod,
+    scene,
+)
+
+G = 9.81
+FRICTION = 0.3
+AREA = np.pi * RADIUS**2
+
+Table = dict[str, Any]
+
+
+def with_friction(tables: Table, friction: float = FRICTION) -> Table:
+    tables["rod_contacts"][0]["friction"] = friction
+    return tables
+
+
+def dragged(share: float, duration: float) -> Table:
+    """Two free rods of which the upper one comes down askew on the other, in steps of a given size."""
+    tables = with_friction(free_rods(share, duration))
+    tables["velocities"] = [{"rod": "upper", "linear": [0.3, 0.1, -0.5]}]
+    tables["simulation"] |= {"tolerance": 1e-3, "step": 5e-4}
+    return tables
+
+
+def straight(name: str, base: Table) -> Table:
+    """A rod that can only twist: beside that it is a rigid body."""
+    return rod(name, base) | {"strain": ["torsion"]}
+
+
+def moved(tables: Table) -> Motion:
+    motion = simulate(moving(tables))
+    assert motion.converged, motion.message
+    return motion
+
+
+def slope(angle: float, speed: float = 0.0, duration: float = 0.05) -> Motion:
+    """A straight rod that lies along another one, which is held and goes down along x."""
+    upper = straight("upper", {"free": True, "position": [0.05, 0, 2 * RADIUS], "tangent": [1, 0, 0]})
+    lower = straight("lower", {"position": [0, 0, 0], "tangent": [1, 0, 0]})
+    weight = {"kind": "gravity", "acceleration": [G * np.sin(angle), 0, -G * np.cos(angle)], "name": "weight"}
+    more: Table = {"velocities": [{"rod": "upper", "linear": [speed, 0, 0]}]} if speed else {}
+    return moved(with_friction(scene([upper, lower], duration, loads=[weight], **more)))
+
+
+def way(motion: Motion) -> FloatArray:
+    """Way of the upper rod along the lower one, m."""
+    path: FloatArray = motion.tip("upper").position[:, 0]
+    return path - path[0]
+
+
+def test_a_rod_sticks_on_another_one_below_the_angle_of_friction_and_slides_above_it() -> None:
+    below, above = np.arctan(FRICTION) * np.array([0.999, 1.5])
+    mass = DENSITY * AREA * LENGTHS["upper"]
+    rests = slope(below)
+    assert np.abs(way(rests)).max() < 1e-12
+    assert [event.kind for event in rests.events] == ["lie_down", "stick"]
+    held = sum(contact.friction for contact in rests.contacts[-1])
+    assert_allclose(held, [-mass * G * np.sin(below), 0.0, 0.0], rtol=1e-9, atol=1e-12)
+    slides = slope(above)
+    down = G * (np.sin(above) - FRICTION * np.cos(above))
+    assert_allclose(way(slides), down * slides.times**2 / 2.0, rtol=0, atol=2e-6 * way(slides)[-1])
+    assert all(contact.slips and contact.lies for contact in slides.contacts[-1])
+    taken = FRICTION * mass * G * np.cos(above) * way(slides)
+    assert_allclose(slides.energy.dissipated, taken, rtol=0, atol=2e-6 * taken[-1])
+    assert np.abs(slides.energy.imbalance).max() < 1e-6
+
+
+def test_a_rod_that_slides_on_another_one_is_stopped_by_friction() -> None:
+    speed = 0.1
+    motion = slope(0.0, speed)
+    slowing = FRICTION * G
+    end = speed / slowing
+    expected = np.where(motion.times < end, speed * motion.times - slowing * motion.times**2 / 2, end * speed / 2)
+    assert_allclose(way(motion), expected, rtol=0, atol=1e-6 * expected[-1])
+    assert [event.kind for event in motion.events] == ["lie_down", "slip", "stick"]
+    # An event is located to the length of a step.
+    assert_allclose(motion.events[-1].time, end, rtol=0, atol=1.1e-3)
+
+
+def answer(name: str, X: float, side: float) -> FloatArray:
+    """Velocity, at a point on the surface of a free rigid rod, that a unit impulse there makes, shape (3, 3), 1/kg.
+
+    Args:
+        name: of the rod.
+        X: abscissa of the section.
+        side: 1 for the point above the centre line, -1 for the one below.
+    """
+    axis = np.array([1.0, 0, 0]) if name == "upper" else np.array([0, 1.0, 0])
+    length, mass = LENGTHS[name], DENSITY * AREA * LENGTHS[name]
+    beside = np.array([0.0, 0.0, side * RADIUS])
+    arm = (X - 0.5) * length * axis + beside
+    across = np.eye(3) - np.outer(axis, axis)
+    turns = np.cross(np.eye(3), arm)
+    of_turning = turns.T @ across @ turns / (mass * (length**2 / 12 + RADIUS**2 / 4))
+    # Two modes twist it as polynomials of the second degree.
+    twisting = np.cross(axis, beside)
+    twists = sum((2 * k + 1) * legendre.legval(2 * X - 1, [0] * k + [1]) ** 2 for k in range(3))
+    of_twisting = np.outer(twisting, twisting) * twists / (mass * RADIUS**2 / 2)
+    return np.eye(3) / mass + of_turning + of_twisting
+
+
+def blow(compliance: FloatArray, before: FloatArray, share: float, friction: float) -> FloatArray:
+    """Impulse on the upper rod by Newton's law along z and Coulomb's across it, shape (3,), N s."""
+    wanted = np.array([0.0, 0.0, -share * before[2]]) - before
+    sticking = np.linalg.solve(compliance, wanted)
+    if np.hypot(*sticking[:2]) <= friction * sticking[2]:
+        return sticking
+
+    def impulse(angle: float) -> FloatArray:
+        """The impulse that takes the approach, against sliding in a direction."""
+        way = np.array([-friction * np.cos(angle), -friction * np.sin(angle), 1.0])
+        return way * wanted[2] / (compliance[2] @ way)
+
+    def aside(angle: float) -> float:
+        after = before + compliance @ impulse(angle)
+        return float(np.sin(angle) * after[0] - np.cos(angle) * after[1])
+
+    start = np.arctan2(before[1], before[0])
+    return impulse(brentq(aside, start - 1.0, start + 1.0, xtol=1e-14))
+
+
+@pytest.mark.parametrize("tangential", [[1.2, 0.3], [0.05, 0.08]])
+def test_an_askew_blow_of_two_rigid_rods(tangential: list[float]) -> None:
+    """Two rods that can only twist strike as rigid bodies do: at first they slide in the blow, then they stick."""
+    upper = straight("upper", {"free": True, "position": [-0.12, 0, 0.011], "tangent": [1, 0, 0]})
+    lower = straight("lower", {"free": True, "position": [0.05, -0.17, 0], "tangent": [0, 1, 0]})
+    falls = [{"rod": "upper", "linear": [*tangential, -0.5]}]
+    share = 0.4
+    motion = moved(with_friction(scene([upper, lower], 0.004, share, velocities=falls)))
+    first = motion.events[0]
+    assert (first.kind, first.owner, first.obstacle) == ("impact", "upper", "lower")
+    before = np.array([*tangential, -0.5])
+    time = (0.011 - 2 * RADIUS) / 0.5
+    X, Y = (0.17 - tangential[0] * time) / 0.3, (0.17 + tangential[1] * time) / 0.4
+    impulse = blow(answer("upper", X, -1) + answer("lower", Y, 1), before, share, FRICTION)
+    slides = np.hypot(*impulse[:2]) > 0.999999 * FRICTION * impulse[2]
+    assert slides == (tangential[0] > 0.1)
+    assert_allclose((first.time, first.place), (time, X), rtol=0, atol=1e-6)
+    assert_allclose(first.impulse, impulse[2], rtol=1e-4, atol=0)
+    # What flew on is where these velocities lead.
+    later = motion.times[-1] - time
+    for name, sign, at_once in (("upper", 1.0, before), ("lower", -1.0, np.zeros(3))):
+        middle = motion.section(name, 0.5).position
+        mass = DENSITY * AREA * LENGTHS[name]
+        expected = middle[0] + at_once * motion.times[-1] + sign * impulse / mass * later
+        assert_allclose(middle[-1], expected, rtol=0, atol=1e-4 * np.linalg.norm(impulse) / mass * later)
+
+
+def test_a_blow_with_friction_leaves_momentum_and_gives_no_energy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rods differ in stiffness, by which the balances of each are divided; they bend and twist in the blow."""
+    blows = []
+    plain = _Told.add
+
+    def recorded(own: _Told, stretch: ToldStretch, before: Any, end: float) -> Any:
+        if any(touch.is_struck for touch in stretch.touches):
+            blows.append((before.x, before.v, stretch.v))
+        return plain(own, stretch, before, end)
+
+    monkeypatch.setattr(_Told, "add", recorded)
+    model = moving(dragged(0.6, 0.0205))
+    motion = simulate(model)
+    assert motion.converged, motion.message
+    x, before, after = blows[-1]
+    assert_allclose(momentum(model, x, after), momentum(model, x, before), rtol=0, atol=1e-15)
+    inputs = model.pack()
+    kinetic = [float(model.energies(x, v, inputs, 0 * inputs)[0]) for v in (before, after)]
+    assert kinetic[1] < kinetic[0]
+    assert_allclose(motion.events[0].energy, kinetic[0] - kinetic[1], rtol=1e-6, atol=0)
+
+
+def touching_state(model: Model) -> tuple[RodsFacing, FloatArray, RodGap, FloatArray]:
+    """A pair, a bent state of it, the gap where it is least, and the section there as functions of sliding have it."""
+    (facing,) = facings(model)
+    assert isinstance(facing, RodsFacing)
+    x = 0.05 * np.random.default_rng(7).normal(size=model.size)
+    inputs = model.pack()
+    touch = MovingContact(0, facing.deepest(facing.nodes(x, inputs)).place, True)
+    (place,), (gap,) = Follower([facing], (touch,)).gaps(x, inputs)
+    assert isinstance(gap, RodGap)
+    section = np.concatenate([gap.own_rows.value + gap.other.rows.value, [place, gap.other_place]])
+    return facing, x, gap, section
+
+
+def test_sliding_is_the_velocity_of_one_point_of_two_rods() -> None:
+    """Differences of poses over time give the sliding; its gradients are forces without resultant and moment."""
+    tables = with_friction(free_rods())
+    tables["rods"][0] = rod("upper", tables["rods"][0]["base"], [8e-3, 4e-3])
+    model = moving(tables)
+    facing, x, gap, section = touching_state(model)
+    v = 0.3 * np.random.default_rng(8).normal(size=model.size)
+    inputs, axis = model.pack(), np.array([0.0, 1.0, 0.0])
+    sliding, by_v, _ = SurfaceSliding(facing).function(x, inputs, v, 0 * inputs, section, axis)
+    places = dict(zip(LENGTHS, section[-2:], strict=True))
+    step = 1e-5
+    states = np.stack([x - step * v, x, x + step * v])
+    at = np.stack([inputs] * 3)
+    poses = {name: section_poses(model, name, np.array([X]), states, at) for name, X in places.items()}
+    centres = [poses[name].position[1, 0] for name in LENGTHS]
+    radii = [8e-3 - 4e-3 * places["upper"], RADIUS]
+    point = centres[1] + radii[1] / sum(radii) * (centres[0] - centres[1])
+    speeds = []
+    for name in LENGTHS:
+        pose = poses[name]
+        turns = Rotation.from_quat(pose.quaternion[:, 0, [1, 2, 3, 0]]).as_matrix()
+        track = pose.position[:, 0] + turns @ turns[1].T @ (point - pose.position[1, 0])
+        speeds.append((track[2] - track[0]) / (2 * step))
+    first = axis - (axis @ gap.normal) * gap.normal
+    first /= np.linalg.norm(first)
+    tangents = np.array([first, np.cross(gap.normal, first)])
+    expected = tangents @ (speeds[0] - speeds[1]) / LENGTHS["upper"]
+    assert_allclose(ca.DM(sliding).full()[:, 0], expected, rtol=1e-7, atol=1e-8)
+    forces = by_v.full().T @ MomentumKeeper(model).rigid_motions(x)
+    assert_allclose(forces, 0.0, rtol=0, atol=1e-12)
+
+
+def test_friction_is_against_the_sliding_of_both_rods() -> None:
+    model = moving(dragged(0.0, 0.03))
+    motion = simulate(model)
+    assert motion.converged, motion.message
+    (contact,) = motion.contacts[-1]
+    assert contact.friction is not None
+    assert contact.slips
+    assert_allclose(np.linalg.norm(contact.friction), FRICTION * np.linalg.norm(contact.force), rtol=1e-9, atol=0)
+    facing, *_ = facings(model)
+    x, v, inputs = motion.x[-1], motion.v[-1], model.pack()
+    _, (gap,) = Follower([facing], (MovingContact(0, contact.at, True),)).gaps(x, inputs)
+    assert isinstance(gap, RodGap)
+    section = np.concatenate([gap.own_rows.value + gap.other.rows.value, [contact.at, gap.other_place]])
+    axes = np.eye(3)[:2]
+    slides = [SurfaceSliding(facing).function(x, inputs, v, 0 * inputs, section, axis)[0].full()[0, 0] for axis in axes]
+    # The normal is nearly along z, so that these are the parts along x and y.
+    ways = [axis - (axis @ gap.normal) * gap.normal for axis in axes]
+    along = np.array([slide * np.linalg.norm(way) for slide, way in zip(slides, ways, strict=True)])
+    expected = -np.array([contact.friction @ way for way in ways])
+    assert_allclose(along / np.linalg.norm(along), expected / np.linalg.norm(expected), rtol=0, atol=1e-6)
+    after = [momentum(model, motion.x[row], motion.v[row]) for row in (0, -1)]
+    assert_allclose(after[1], after[0], rtol=0, atol=1e-4 * np.abs(after[0]).max())
