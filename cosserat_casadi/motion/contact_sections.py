@@ -88,7 +88,7 @@ class RodFacing(Facing):
 
     @property
     def node_count(self) -> int:
-        """Number of nodes of the rod; those of an element stand together."""
+        """Number of nodes of the rod."""
         return (len(self.ends) - 1) * self.nodes_of_element
 
     @property

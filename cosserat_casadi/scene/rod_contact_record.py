@@ -49,11 +49,11 @@ width = 5e-4
     )
     friction: NotNegative = Field(
         0.0,
-        description="coefficient μ of friction in motion and on paths, without unit, the same in all directions",
+        description="coefficient μ of friction in motion, if smooth on paths too, without unit, in all directions",
     )
     slip_speed: Positive = Field(
         1e-3,
-        description="with friction: speed, m/s, below which a contact that sticks creeps, under a "
+        description="with friction, smooth: speed, m/s, below which a contact that sticks creeps, under a "
         "force that grows with the speed",
     )
     exact: StrictBool = Field(
