@@ -280,55 +280,17 @@ static void push_in_stage(int stage, const instant *at, real *residual, workspac
   }
 }
 
-/* Weights of the points of which the sum changes as a section does along an axis, or, behind the three axes, as its tangent
-   along the normal; then as the tangent of another rod. */
-static void row_weights(const facing *faces, const section_gap *gap, int row, workspace *work) {
-  const int is_slope = row > 2;
-  const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
-  const real *direction = is_slope ? gap->normal : axis;
-  memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
-  for (int i = 0; i < gap->nodes && row < 4; i++) {
-    for (int k = 0; k < 3; k++) work->weights[3 * (gap->first + i) + k] = gap->rows[is_slope][i] * direction[k];
-  }
-#ifdef RODS_FACE_RODS
-  add_row_of_other(faces, row, direction, work->weights);
-#endif
-}
-
-/* Adds to the derivatives of a slope what the turning normal adds, from the derivatives of the position beside them. */
-static void turn_slopes(const facing *faces, const section_gap *gap, int columns, real *moved) {
-  for (int i = 0; i < columns; i++, moved += MOVED) {
-    for (int k = 0; k < 3; k++) moved[3] += inner(gap->curvature + 3 * k, gap->tangent) * moved[k];
-#ifdef RODS_FACE_RODS
-    turn_slope_of_other(faces, gap, moved);
-#else
-    (void)faces;
-#endif
-  }
-}
-
 /* Derivatives of a section by unknowns, MOVED numbers for each: of its position, and of the slope of the gap, over lengths. */
 static void move_section(const touch *own, const section_gap *gap, real *moved, workspace *work) {
   const facing *faces = FACING + own->facing;
   real *one = work->moved_row;
   for (int row = 0; row < MOVED; row++) {
-    row_weights(faces, gap, row, work);
+    memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
+    row_weights(faces, gap, row, work->weights);
     gradient_of(faces, work->at.state, work->at.inputs, work->weights, one, work);
     for (int i = 0; i < N; i++) moved[MOVED * i + row] = one[i];
   }
   turn_slopes(faces, gap, N, moved);
-}
-
-/* Second derivative of a gap by two numbers that move its section, without that of the points. */
-static real turning(const touch *own, const section_gap *gap, const real *moved, const real *other) {
-  const facing *faces = FACING + own->facing;
-  real sum = 0;
-  for (int k = 0; k < 3; k++) sum += moved[k] * inner(gap->curvature + 3 * k, other);
-#ifdef RODS_FACE_RODS
-  if (faces->other) sum = turning_beside_other(faces, moved, other);
-#endif
-  if (own->slides && gap->place > 0 && gap->place < 1) sum -= moved[3] * other[3] / (gap->bend * faces->length);
-  return sum / faces->length;
 }
 
 /* Takes the change of a force's direction, as normals turn and sections slide, from the stiffness at the instant in the
@@ -342,7 +304,7 @@ static void curve_matrices(const touch *own, const section_gap *gap, real force,
   for (int k = 0; k < STAGE_ENTRIES; k++) {
     const int i = ENTRY_ROWS[k];
     const int j = ENTRY_COLUMNS[k];
-    const real turned = turning(own, gap, work->moved + MOVED * i, work->moved + MOVED * j);
+    const real turned = turning(faces, gap, own->slides, work->moved + MOVED * i, work->moved + MOVED * j);
     stiffness[k] -= force * share_of(faces, i) * (work->second[j * N + i] + turned);
   }
 }

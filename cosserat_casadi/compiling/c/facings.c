@@ -141,13 +141,16 @@ static real distance_at(const facing *own, const real *point, workspace *work) {
 static void fit_other(const facing *own, const real *nodes);
 static void weigh_other(const facing *own);
 static void add_other(const facing *own, real times, const real *normal, real *weights);
+static void add_row_of_other(const facing *own, int row, const real *direction, real *weights);
+static void turn_slope_of_other(const facing *own, const real *tangent, real *moved);
+static real turning_beside_other(const facing *own, const real *moved, const real *more);
+
+/* Numbers that a change moves: position, or way from the section of another rod, and slopes of the gap along both rods. */
+enum { OWN_SLOPE = 3, OTHER_SLOPE = 4, MOVED = 5 };
 
 #include "contact_gaps.c"
 
 /* ---- Another rod in the place of an obstacle ---- */
-
-/* Numbers that a change moves: position, or way from the section of another rod, and slopes of the gap along both rods. */
-enum { OWN_SLOPE = 3, OTHER_SLOPE = 4, MOVED = 5 };
 
 /* Distance of a point from another one, with its derivatives. */
 static void surface_of_point(const real *from, const real *point, real *distance, real *normal, real *curvature) {
@@ -259,7 +262,7 @@ static void add_other(const facing *own, real times, const real *normal, real *w
   if (other) add_section(other, -times, own->length, normal, weights + 3 * own->elements * own->nodes);
 }
 
-/* ---- What steps with friction ask for of the other rod, if there is one, at the last look of a pair ---- */
+/* ---- How the other rod, if there is one, takes part in derivatives of a gap at the last look ---- */
 
 /* Part of the rate of a gap that is of the other rod, of velocities of the points. */
 static real rate_of_other(const facing *own, const real *normal, const real *velocities) {
@@ -286,12 +289,12 @@ static void add_row_of_other(const facing *own, int row, const real *direction, 
 
 /* Adds to the derivatives of both slopes what the turning normal adds, from those of the way between both sections, where the
    section of the other rod slides. The curvature of the gap has in it that this section slides as the way changes. */
-static void turn_slope_of_other(const facing *own, const section_gap *gap, real *moved) {
+static void turn_slope_of_other(const facing *own, const real *tangent, real *moved) {
   const section_gap *other = other_section(own);
   if (!other || is_at_end(other)) return;
   real turned[3];
   for (int i = 0; i < 3; i++) turned[i] = inner(other->curvature + 3 * i, other->tangent);
-  moved[OWN_SLOPE] -= inner(gap->tangent, turned) / (other->bend * own->other->length) * moved[OTHER_SLOPE];
+  moved[OWN_SLOPE] -= inner(tangent, turned) / (other->bend * own->other->length) * moved[OTHER_SLOPE];
   moved[OTHER_SLOPE] += inner(turned, moved);
 }
 
