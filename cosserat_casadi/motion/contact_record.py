@@ -121,7 +121,7 @@ class ContactRecord:
             contact = MotionContact(
                 facing.touched, facing.owner, at, total, lies, facing.of_body, at_other=gap.other_place
             )
-            if isinstance(step, RubbingStep) and facing.obstacle.rubs:
+            if isinstance(step, RubbingStep) and facing.against.rubs:
                 along = facing.force_unit * instant.x[size + count :].reshape(-1, 2)[k]
                 friction = axes @ along_tangents(gap.normal, step.axes[k], along)
                 contact = replace(contact, friction=friction, slips=step.slips[k])

@@ -87,6 +87,11 @@ class RodFacing(Facing):
         return np.asarray(np.linalg.inv(polynomial.chebvander(points, self._grid.intervals)))
 
     @property
+    def node_count(self) -> int:
+        """Number of nodes of the rod."""
+        return (len(self.ends) - 1) * self.nodes_of_element
+
+    @property
     def looks(self) -> FloatArray:
         """Weights of the nodes of an element at LOOKS sections spread evenly over it, and at its end."""
         local = 2.0 * np.linspace(0.0, 1.0, LOOKS + 1) - 1.0
@@ -153,7 +158,8 @@ def laid_sections(model: Model, rod: str, ends: tuple[bool, bool]) -> FloatArray
     discretisation = model.discretisation[rod]
     (record,) = [one for one in model.scene.rods if one.name == rod]
     strains = zip(record.admitted, discretisation.modes, strict=True)
-    modes = max(count for strain, count in strains if strain in BENDING)
+    # A rod that does not bend is held as one with a single mode.
+    modes = max([1, *(count for strain, count in strains if strain in BENDING)])
     local = lobatto(SECTIONS_FOR_MODE * modes)
     parts = [start + (end - start) * local[1:] for start, end in pairwise(discretisation.breaks)]
     sections = np.concatenate([[0.0], *parts])

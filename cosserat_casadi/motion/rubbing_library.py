@@ -188,7 +188,8 @@ class RubbingSteps:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.facings = struck_beside_friction(model)
-        most_points = max(own.points.count for own in self.facings)
+        # A section of a rod on a rod has two abscissae behind the weights of all points: one more than a section.
+        most_points = 1 + max(own.points.count for own in self.facings)
         most_looks = max(LOOKS * (len(own.ends) - 1) + 1 for own in self.facings)
         self._library, self.sizes = _library(model.size, model.inputs.size, _room(most_points), _room(most_looks))
         self._libraries: Libraries | None = None
@@ -258,7 +259,7 @@ class RubbingSteps:
         records = [own.record(points[own.points]) for own in self.facings]
         sliding = functions_of_sliding(self.model)
         for number, (held, facing) in enumerate(zip(records, self.facings, strict=True)):
-            if facing.obstacle.rubs:
+            if facing.against.rubs:
                 held.point("rubbing", called_in_c(sliding[number], libraries.residual))
         table = Held((FacingRecord * len(records))(*(held.record for held in records)))
         table.keep(records)
@@ -363,6 +364,7 @@ def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dic
         "steps_in_contact": True,
         "contact_rubs": True,
         "has_stops": False,
+        "numbers_moved": 5,
         "most_touches": MOST_TOUCHES,
         "most_points": most_points,
         "most_looks": most_looks,

@@ -150,7 +150,7 @@ class _Told:
         """End the motion at an instant from which a step of the size, s, could not be solved."""
         self.close()
         facings = [self.steps.facings[own.facing] for own in self.touches]
-        pairs = sorted({f"{facing.owner!r} on {facing.obstacle.name!r}" for facing in facings})
+        pairs = sorted({f"{facing.owner!r} on {facing.touched!r}" for facing in facings})
         where = f"with contact and friction of {', '.join(pairs)}" if pairs else "although nothing touches before it"
         sentence = UNSETTLED.format(time=at.time, size=size, where=where)
         start = ConsistentStart(at, 0.0, 0.0, 0.0, 0)
@@ -244,7 +244,7 @@ class _Told:
                     facing.number, time, closes=closes, lost=energy, impulse=impulse / facing.force_unit
                 )
             place = min(max(own.place, 0.0), 1.0)
-            return ContactEvent(kind, time, facing.owner, facing.obstacle.name, place, energy, impulse, facing.of_body)
+            return ContactEvent(kind, time, facing.owner, facing.touched, place, energy, impulse, facing.of_body)
 
         for own in struck:
             yield event("impact", own, stretch.taken * own.impulse / total, own.impulse)
@@ -262,7 +262,7 @@ class _Told:
             kind = "stick" if number in stuck else "slip"
             if number in was_touching and (number in stuck) == (number in self.stuck):
                 continue
-            if facings[number].obstacle.rubs:
+            if facings[number].against.rubs:
                 yield event(kind, next(own for own in pressing if own.facing == number))
         self.stuck = stuck
 

@@ -1,8 +1,12 @@
-"""Functions for friction of exact contact in motion: how a touching point slides along the surface of an obstacle.
+"""Functions for friction of exact contact in motion: how a touching point slides along an obstacle or another rod.
 
 A section with the centre c and the radius ρ touches at c − ρ n, with n the normal of the obstacle. This material point
 has the velocity ċ + ω × (−ρ n). Positions and directors between nodes follow the polynomials through the nodes. Forces
 act by the transpose of the derivatives of sliding, so friction takes force times velocity, to rounding.
+
+Sections of two rods touch at the point that divides the way between their centres as their radii do. Each rod has a
+velocity at this point, and the sliding is the difference of both. Friction acts on both rods at this one point, which
+leaves their momentum and angular momentum together as they are.
 """
 
 from __future__ import annotations
@@ -20,33 +24,36 @@ from cosserat_casadi.model.system import System
 from cosserat_casadi.motion.contact_gap import Facing
 from cosserat_casadi.motion.facings import facings
 from cosserat_casadi.motion.moving_points import in_stacked_inputs, stacked_size
+from cosserat_casadi.motion.rods_facing import RodsFacing
 
 
 @dataclass(frozen=True)
 class SurfaceSliding:
-    """The velocity of a rod or a body along the surface of an obstacle, as functions of unknowns and rates.
+    """The velocity of a rod or a body along an obstacle or another rod, as functions of unknowns and rates.
 
     Attributes:
-        facing: the pair of the rod or body and the obstacle.
+        facing: the pair of the rod or body and the obstacle, or of two rods.
     """
 
     facing: Facing
 
     @cached_property
     def _symbols(self) -> list[ca.MX]:
-        """Unknowns, n×1; inputs and parameters, k×1; rates of both, 1/s; the section, (M + 1)×1; an axis, 3×1.
+        """Unknowns, n×1; inputs and parameters, k×1; rates of both, 1/s; the section, (M + s)×1; an axis, 3×1.
 
-        The section consists of the weights of the M nodes and, behind them, its abscissa X. The axis sets the first
-        tangent of the surface: its part along the surface, normalised.
+        The section consists of the weights of the M nodes and, behind them, its abscissa X. Of two rods it has the
+        weights of the nodes of both, and both abscissae: s is 2. The axis sets the first tangent of the surface: its
+        part along the surface, normalised.
         """
         model = self.facing.model
         size, count = model.size, stacked_size(model)
+        sides = 2 if isinstance(self.facing, RodsFacing) else 1
         sizes = {
             "x": size,
             "inputs": count,
             "v": size,
             "rate": count,
-            "section": self.facing.points.count + 1,
+            "section": self.facing.points.count + sides,
             "axis": 3,
         }
         return [ca.MX.sym(name, rows) for name, rows in sizes.items()]
@@ -55,24 +62,44 @@ class SurfaceSliding:
         """Velocity along both tangents, in lengths per second, and parts of the rod's direction along them, 2×1 each.
 
         Args:
-            section: weights of the nodes, then the abscissa X, (M + 1)×1.
+            section: weights of the nodes, then the abscissae, (M + s)×1.
         """
-        x, inputs, v, rate, _, axis = self._symbols
-        facing = self.facing
-        weights, X = section[:-1], section[-1]
-        centre, rotation = in_stacked_inputs(facing.model, x, inputs, lambda system: _pose(facing, system, weights))
-        base, tip = facing.radii
-        _, normal, _ = surface(facing.obstacle)(centre)
-        arm = -(base + X * (tip - base)) * normal
-        pose = ca.horzcat(centre, rotation)
-        moved = ca.reshape(_rate(pose, [(x, v), (inputs, rate)]), 3, 4)
-        velocity = moved[:, 0] + moved[:, 1:] @ (rotation.T @ arm)
+        axis, facing = self._symbols[5], self.facing
+        count = facing.points.count
+        if isinstance(facing, RodsFacing):
+            own, other = section[: facing.node_count], section[facing.node_count : count]
+            centre, rotation = self._pose(facing, own)
+            other_centre, other_rotation = self._pose(facing.other, other)
+            way = centre - other_centre
+            normal = way / ca.sqrt(ca.sumsqr(way))
+            radius, other_radius = _radius(facing, section[count]), _radius(facing.other, section[count + 1])
+            arm = -radius / (radius + other_radius) * way
+            own_arm = _material(rotation, arm)
+            other_arm = _material(other_rotation, way + arm)
+            velocity = self._velocity(centre, rotation, own_arm)
+            velocity -= self._velocity(other_centre, other_rotation, other_arm)
+        else:
+            centre, rotation = self._pose(facing, section[:-1])
+            _, normal, _ = surface(facing.obstacle)(centre)
+            arm = -_radius(facing, section[-1]) * normal
+            velocity = self._velocity(centre, rotation, rotation.T @ arm)
         first = axis - ca.dot(normal, axis) * normal
         first = first / ca.sqrt(ca.sumsqr(first))
         tangents = ca.horzcat(first, ca.cross(normal, first))
         along = tangents.T @ rotation[:, 2]
         # A rod that stands upright on the surface has no direction along it.
         return tangents.T @ velocity / facing.length, along / ca.sqrt(ca.sumsqr(along) + STANDING**2)
+
+    def _pose(self, side: Facing, weights: Matrix) -> list[Matrix]:
+        """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the world."""
+        x, inputs = self._symbols[:2]
+        return in_stacked_inputs(side.model, x, inputs, lambda system: _pose(side, system, weights))
+
+    def _velocity(self, centre: Matrix, rotation: Matrix, arm: Matrix) -> Matrix:
+        """Velocity of a material point at an arm from the centre of its section, along the directors, 3×1, m/s."""
+        x, inputs, v, rate, _, _ = self._symbols
+        moved = ca.reshape(_rate(ca.horzcat(centre, rotation), [(x, v), (inputs, rate)]), 3, 4)
+        return moved[:, 0] + moved[:, 1:] @ arm
 
     @cached_property
     def function(self) -> ca.Function:
@@ -101,6 +128,23 @@ class SurfaceSliding:
     def moving(self) -> list[int]:
         """Indices of the unknowns whose rates move the touching point along the surface."""
         return sorted(set(ca.jacobian_sparsity(self.function(*self._symbols)[0], self._symbols[2]).get_col()))
+
+
+def _radius(side: Facing, X: Matrix) -> Matrix:
+    """Radius of a section, m, at an abscissa."""
+    base, tip = side.radii
+    return base + X * (tip - base)
+
+
+def _material(rotation: Matrix, arm: Matrix) -> Matrix:
+    """Parts of an arm along directors, 3×1, m, whose sum is the arm.
+
+    Directors between nodes are across each other only as exactly as polynomials are: forces at one point of two rods
+    would have a moment left by that.
+    """
+    first, second, third = ca.horzsplit(rotation)
+    across = [ca.cross(second, third), ca.cross(third, first), ca.cross(first, second)]
+    return ca.vertcat(*(ca.dot(one, arm) for one in across)) / ca.dot(across[0], first)
 
 
 def _rate(quantity: Matrix, moved: list[tuple[ca.MX, ca.MX]]) -> Matrix:

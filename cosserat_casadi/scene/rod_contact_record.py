@@ -16,7 +16,7 @@ from cosserat_casadi.scene.values import Name, Names, NotNegative, Positive, Sha
 MOST_RODS = 2
 """Rods of a pair."""
 
-SMOOTH_KEYS = ("width", "stiffness", "friction", "slip_speed")
+SMOOTH_KEYS = ("width", "stiffness", "slip_speed")
 """Keys of a contact that is smooth."""
 
 
@@ -49,11 +49,11 @@ width = 5e-4
     )
     friction: NotNegative = Field(
         0.0,
-        description="coefficient μ of friction in motion and on paths, without unit, the same in all directions",
+        description="coefficient μ of friction in motion, if smooth on paths too, without unit, in all directions",
     )
     slip_speed: Positive = Field(
         1e-3,
-        description="with friction: speed, m/s, below which a contact that sticks creeps, under a "
+        description="with friction, smooth: speed, m/s, below which a contact that sticks creeps, under a "
         "force that grows with the speed",
     )
     exact: StrictBool = Field(
@@ -69,6 +69,11 @@ width = 5e-4
     def coefficients(self) -> tuple[float, float, float]:
         """Coefficients of friction along the first rod, back, and across it: one number in all directions."""
         return (self.friction,) * 3
+
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction."""
+        return self.friction > 0.0
 
     @property
     def label(self) -> str:
@@ -123,9 +128,6 @@ width = 5e-4
         if any((other.get("exact") is True) is not exact for _, other in scene.tables("rod_contacts")):
             problem = "is true of some rods that touch rods, and not of all"
             yield Fault(("exact",), problem, "give it for all, or for none")
-        if exact and any(other.get("friction") for _, other in scene.tables("obstacles")):
-            problem = "rods that touch rods exactly have no friction, and an obstacle has"
-            yield Fault(("exact",), problem, "give rods and obstacles a width, m, or leave friction out")
         if exact:
             for name in names:
                 yield from without_exact_contact(name, known[name][1], "leave exact out, for a contact that is smooth")

@@ -246,12 +246,13 @@ inputs = ["push.force", "cable.tension"]
     def rubs(self) -> bool:
         """Whether there is friction of contact that is smooth."""
         smooth = any(obstacle.rubs and obstacle.is_smooth for obstacle in self.obstacles)
-        return smooth or any(pair.friction for pair in self.rod_contacts)
+        return smooth or any(pair.rubs and not pair.exact for pair in self.rod_contacts)
 
     @property
     def rubs_exactly(self) -> bool:
         """Whether there is friction of exact contact, which acts in motion."""
-        return any(obstacle.rubs and not obstacle.is_smooth for obstacle in self.obstacles)
+        obstacles = any(obstacle.rubs and not obstacle.is_smooth for obstacle in self.obstacles)
+        return obstacles or any(pair.rubs and pair.exact for pair in self.rod_contacts)
 
     def in_proportion(self) -> Scene:
         """The scene whose materials have the coefficients of their Young's moduli: parameters scale whole laws."""

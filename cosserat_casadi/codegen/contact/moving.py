@@ -81,6 +81,7 @@ def contact_words(model: Model, names: Names) -> Words:
         "has_stops": bool(stops),
         "barring": len(faces) - len(stops),
         "most_touches": _most_touches(faces),
+        "numbers_moved": 4,
         "most_nodes": max([*nodes, 2]),
         "most_points": max(count.count for count in points),
         "looks": LOOKS,

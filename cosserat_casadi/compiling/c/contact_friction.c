@@ -68,7 +68,8 @@ static real inner_of_two(const real *a, const real *b) { return a[0] * b[0] + a[
 static void tell_blow(real taken, const workspace *work);
 static void tell_stretch(const step_start *start, workspace *work);
 #endif
-static void respond_to(const real *row, const stage_factors *factors, real *response, workspace *work);
+static void respond_to(const facing *own, const real *row, const stage_factors *factors, real *response, workspace *work);
+static void force_along(int k, const real *row, real *force, const workspace *work);
 static void instant_in(const step_start *start, real share, const real *unknowns, instant *at);
 static real wanted_of(int k, real still, const workspace *work);
 
@@ -102,6 +103,9 @@ static rubbed section_of(const touch *own, const section_gap *gap, const real *x
   memset(work->section, 0, (size_t)count * sizeof *work->section);
   memcpy(work->section + gap->first, gap->rows[0], (size_t)gap->nodes * sizeof *work->section);
   work->section[count] = gap->place;
+#ifdef RODS_FACE_RODS
+  put_other_section(FACING + own->facing, work->section);
+#endif
   return at;
 }
 
@@ -318,7 +322,9 @@ static void rub_in_stage(int stage, int k, const section_gap *gap, const instant
   if (!rubs(own)) return;
   slide_at(own, gap, at->state, at->inputs, work->stage_slides[stage][k], rows, work->stage_along[stage][k], work);
   friction_of(own, work->stage_along[stage][k], own->drags[stage], force);
-  for (int i = 0; i < N; i++) residual[i] -= force[0] * rows[0][i] + force[1] * rows[1][i];
+  for (int i = 0; i < N; i++) {
+    residual[i] -= share_of(FACING + own->facing, i) * (force[0] * rows[0][i] + force[1] * rows[1][i]);
+  }
 }
 
 static const real *row_of(int k, int row, const workspace *work) {
@@ -337,8 +343,7 @@ static void answer_slides(const stage_factors *factors, workspace *work) {
   for (int j = 0; j < order; j++) {
     real *response = response_of(j / ROWS, j % ROWS, work);
     if (j % ROWS > 0) {
-      memcpy(response, row_of(j / ROWS, j % ROWS, work), N * sizeof *response);
-      memset(response + N, 0, N * sizeof *response);
+      force_along(j / ROWS, row_of(j / ROWS, j % ROWS, work), response, work);
       solve_system(complex_matrix(), 2, factors, response, work);
     }
     for (int i = 0; i < order; i++) {
@@ -675,7 +680,9 @@ static int strike_with_friction(instant *at, real still, const stage_factors *fa
     section_gap gap;
     follow_touch(work->touches + k, work->touches[k].place, at->state, at->inputs, &gap, work);
     note_slide(k, &gap, at->state, at->inputs, work);
-    for (int row = 1; row < ROWS; row++) respond_to(row_of(k, row, work), factors, response_of(k, row, work), work);
+    for (int row = 1; row < ROWS; row++) {
+      respond_to(FACING + work->touches[k].facing, row_of(k, row, work), factors, response_of(k, row, work), work);
+    }
   }
   for (int j = 0; j < all; j++) {
     for (int i = 0; i < all; i++) {

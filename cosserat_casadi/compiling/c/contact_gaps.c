@@ -1,8 +1,8 @@
 /* Gaps between rods or bodies and obstacles that they touch exactly, along the rods, and where they are least. Positions
    between nodes are those of the polynomials through the nodes of an element.
 
-   Exported steps and simulated motions both include it, and say what a surface is, surface_at and distance_at, and where
-   polynomials and gaps are written to, fitted_of and gaps_of. Gaps are counted in the length of the rod, or of the longest
+   Exported steps and simulated motions both include it, and say what a surface is, surface_at and distance_at, where
+   polynomials and gaps are written to, fitted_of and gaps_of, and how many numbers move a section, MOVED. Gaps are counted in the length of the rod, or of the longest
    rod that holds the body. */
 
 /* Gap up to which a section touches. */
@@ -171,6 +171,45 @@ static void add_weights(const facing *own, const section_gap *gap, real times, r
 #ifdef RODS_FACE_RODS
   add_other(own, times, gap->normal, weights);
 #endif
+}
+
+/* Adds weights of the points of which the sum changes as a section does along an axis, or, behind the three axes, as its
+   tangent along the normal; then as the tangent of another rod. */
+static void row_weights(const facing *own, const section_gap *gap, int row, real *weights) {
+  const int is_slope = row > 2;
+  const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
+  const real *direction = is_slope ? gap->normal : axis;
+  for (int i = 0; i < gap->nodes && row < 4; i++) {
+    for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] = gap->rows[is_slope][i] * direction[k];
+  }
+#ifdef RODS_FACE_RODS
+  add_row_of_other(own, row, direction, weights);
+#else
+  (void)own;
+#endif
+}
+
+/* Adds to the derivatives of a slope what the turning normal adds, from the derivatives of the position beside them. */
+static void turn_slopes(const facing *own, const section_gap *gap, int columns, real *moved) {
+  for (int i = 0; i < columns; i++, moved += MOVED) {
+    for (int k = 0; k < 3; k++) moved[3] += inner(gap->curvature + 3 * k, gap->tangent) * moved[k];
+#ifdef RODS_FACE_RODS
+    turn_slope_of_other(own, gap->tangent, moved);
+#else
+    (void)own;
+#endif
+  }
+}
+
+/* Second derivative of a gap by two numbers that move its section, without that of the points. */
+static real turning(const facing *own, const section_gap *gap, int slides, const real *moved, const real *other) {
+  real sum = 0;
+  for (int k = 0; k < 3; k++) sum += moved[k] * inner(gap->curvature + 3 * k, other);
+#ifdef RODS_FACE_RODS
+  if (own->other) sum = turning_beside_other(own, moved, other);
+#endif
+  if (slides && gap->place > 0 && gap->place < 1) sum -= moved[3] * other[3] / (gap->bend * own->length);
+  return sum / own->length;
 }
 
 /* The section next to another where the gap is least: between the ends of the rod its slope is zero there. Newton's method

@@ -147,6 +147,9 @@ static real rate_of(const touch *own, const instant *at, const section_gap *gap,
   real rate = 0;
   velocities_of(faces, at->state, at->inputs, at->state + N, at->inputs + INPUTS, work->nodes, work);
   for (int i = 0; i < gap->nodes; i++) rate += gap->rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->first + i));
+#ifdef RODS_FACE_RODS
+  rate += rate_of_other(faces, gap->normal, work->nodes);
+#endif
   return rate / faces->length;
 }
 
@@ -173,9 +176,9 @@ static int factorise_masses(const instant *at, const stage_factors *factors, wor
   return factorise_system(matrix_of_masses(), work->stage_values, factors);
 }
 
-/* What a unit impulse along a row does to velocities, all joints closed. */
-static void respond_to(const real *row, const stage_factors *factors, real *response, workspace *work) {
-  for (int i = 0; i < N; i++) work->stage_solution[i] = work->is_constraint[i] ? 0 : row[i];
+/* What a unit impulse of a pair along a row does to velocities, all joints closed. */
+static void respond_to(const facing *own, const real *row, const stage_factors *factors, real *response, workspace *work) {
+  for (int i = 0; i < N; i++) work->stage_solution[i] = work->is_constraint[i] ? 0 : share_of(own, i) * row[i];
   solve_system(matrix_of_masses(), 1, factors, work->stage_solution, work);
   for (int i = 0; i < N; i++) response[i] = IS_SHAPE[i] ? work->stage_solution[i] : 0;
 }
@@ -185,7 +188,7 @@ static void respond_to(const real *row, const stage_factors *factors, real *resp
 static void respond(const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
   for (int j = 0; j < count; j++) {
-    respond_to(work->gradients[j], factors, work->responses[j], work);
+    respond_to(FACING + work->touches[j].facing, work->gradients[j], factors, work->responses[j], work);
     for (int k = 0; k < count; k++) work->compliance[j * count + k] = dot(work->gradients[k], work->responses[j]);
   }
 }
@@ -268,51 +271,26 @@ static void push_in_stage(int stage, const instant *at, real *residual, workspac
     gradient_at(own, own->places[stage], at->state, at->inputs, &gap, work->stage_gradients[stage][k], work);
     if (gap.bend > FLATTEST) own->places[stage] = gap.place;
     work->stage_gaps[stage][k] = gap.value - own->height;
-    for (int i = 0; i < N; i++) residual[i] -= own->forces[stage] * work->stage_gradients[stage][k][i];
+    for (int i = 0; i < N; i++) {
+      residual[i] -= own->forces[stage] * share_of(FACING + own->facing, i) * work->stage_gradients[stage][k][i];
+    }
 #ifdef CONTACT_RUBS
     rub_in_stage(stage, k, &gap, at, residual, work);
 #endif
   }
 }
 
-/* Weights of the points of which the sum changes as a section does along an axis, or, behind the three axes, as its tangent
-   along the normal. */
-static void row_weights(const facing *faces, const section_gap *gap, int row, workspace *work) {
-  const int is_slope = row == 3;
-  const real axis[3] = {(real)(row == 0), (real)(row == 1), (real)(row == 2)};
-  const real *direction = is_slope ? gap->normal : axis;
-  memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
-  for (int i = 0; i < gap->nodes; i++) {
-    for (int k = 0; k < 3; k++) work->weights[3 * (gap->first + i) + k] = gap->rows[is_slope][i] * direction[k];
-  }
-}
-
-/* Adds to the derivatives of a slope what the turning normal adds, from the derivatives of the position beside them. */
-static void turn_slopes(const section_gap *gap, int columns, real *moved) {
-  for (int i = 0; i < columns; i++) {
-    for (int k = 0; k < 3; k++) moved[4 * i + 3] += inner(gap->curvature + 3 * k, gap->tangent) * moved[4 * i + k];
-  }
-}
-
-/* Derivatives of a section by unknowns, four numbers for each: of its position, and of the slope of the gap, over lengths. */
+/* Derivatives of a section by unknowns, MOVED numbers for each: of its position, and of the slope of the gap, over lengths. */
 static void move_section(const touch *own, const section_gap *gap, real *moved, workspace *work) {
   const facing *faces = FACING + own->facing;
   real *one = work->moved_row;
-  for (int row = 0; row < 4; row++) {
-    row_weights(faces, gap, row, work);
+  for (int row = 0; row < MOVED; row++) {
+    memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
+    row_weights(faces, gap, row, work->weights);
     gradient_of(faces, work->at.state, work->at.inputs, work->weights, one, work);
-    for (int i = 0; i < N; i++) moved[4 * i + row] = one[i];
+    for (int i = 0; i < N; i++) moved[MOVED * i + row] = one[i];
   }
-  turn_slopes(gap, N, moved);
-}
-
-/* Second derivative of a gap by two numbers that move its section, without that of the points. */
-static real turning(const touch *own, const section_gap *gap, const real *moved, const real *other) {
-  const facing *faces = FACING + own->facing;
-  real sum = 0;
-  for (int k = 0; k < 3; k++) sum += moved[k] * inner(gap->curvature + 3 * k, other);
-  if (own->slides && gap->place > 0 && gap->place < 1) sum -= moved[3] * other[3] / (gap->bend * faces->length);
-  return sum / faces->length;
+  turn_slopes(faces, gap, N, moved);
 }
 
 /* Takes the change of a force's direction, as normals turn and sections slide, from the stiffness at the instant in the
@@ -326,7 +304,8 @@ static void curve_matrices(const touch *own, const section_gap *gap, real force,
   for (int k = 0; k < STAGE_ENTRIES; k++) {
     const int i = ENTRY_ROWS[k];
     const int j = ENTRY_COLUMNS[k];
-    stiffness[k] -= force * (work->second[j * N + i] + turning(own, gap, work->moved + 4 * i, work->moved + 4 * j));
+    const real turned = turning(faces, gap, own->slides, work->moved + MOVED * i, work->moved + MOVED * j);
+    stiffness[k] -= force * share_of(faces, i) * (work->second[j * N + i] + turned);
   }
 }
 
@@ -355,13 +334,18 @@ static void guess_forces(workspace *work) {
   }
 }
 
+/* A unit force of a section that touches along a row, real part first, for a complex matrix. */
+static void force_along(int k, const real *row, real *force, const workspace *work) {
+  for (int i = 0; i < N; i++) force[i] = share_of(FACING + work->touches[k].facing, i) * row[i];
+  memset(force + N, 0, N * sizeof *force);
+}
+
 /* What unit forces do to positions by the factorised matrix of the step, and how gaps answer, for all that touches. */
 static void answer_gaps(const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
   for (int k = 0; k < count; k++) {
     real *response = work->responses[k];
-    memcpy(response, work->gradients[k], N * sizeof *response);
-    memset(response + N, 0, N * sizeof *response);
+    force_along(k, work->gradients[k], response, work);
     solve_system(complex_matrix(), 2, factors, response, work);
     for (int j = 0; j < count; j++) {
       work->answers[0][j * count + k] = dot(work->gradients[j], response);

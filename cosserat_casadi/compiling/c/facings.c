@@ -52,6 +52,9 @@ typedef struct facing_rod {
 #define fitted_of(own, work) (own)->fitted
 #define gaps_of(own, work) (own)->gaps_along
 
+/* Unit of the work of forces, in that of a balance. */
+static real share_of(const facing *own, int balance) { return own->points->shares ? own->points->shares[balance] : 1; }
+
 /* ---- Functions of the model ---- */
 
 /* The place behind the last number that was written into the arguments of a function. */
@@ -138,6 +141,12 @@ static real distance_at(const facing *own, const real *point, workspace *work) {
 static void fit_other(const facing *own, const real *nodes);
 static void weigh_other(const facing *own);
 static void add_other(const facing *own, real times, const real *normal, real *weights);
+static void add_row_of_other(const facing *own, int row, const real *direction, real *weights);
+static void turn_slope_of_other(const facing *own, const real *tangent, real *moved);
+static real turning_beside_other(const facing *own, const real *moved, const real *more);
+
+/* Numbers that a change moves: position, or way from the section of another rod, and slopes of the gap along both rods. */
+enum { OWN_SLOPE = 3, OTHER_SLOPE = 4, MOVED = 5 };
 
 #include "contact_gaps.c"
 
@@ -239,6 +248,9 @@ static void surface_of_other(const facing *own, const real *point, real *distanc
    from the point, its normal is the direction from the point to it. */
 static section_gap *other_section(const facing *own) { return own->other ? own->other->nearest : 0; }
 
+/* Index, among all points of a pair, of the first node of an element of the other rod that its nearest section lies in. */
+static int first_of_other(const facing *own) { return own->elements * own->nodes + other_section(own)->first; }
+
 /* Weights of its nodes for the section of the other rod, if there is one. */
 static void weigh_other(const facing *own) {
   if (own->other) weigh_nodes(own->other, other_section(own));
@@ -248,4 +260,56 @@ static void weigh_other(const facing *own) {
 static void add_other(const facing *own, real times, const real *normal, real *weights) {
   const section_gap *other = other_section(own);
   if (other) add_section(other, -times, own->length, normal, weights + 3 * own->elements * own->nodes);
+}
+
+/* ---- How the other rod, if there is one, takes part in derivatives of a gap at the last look ---- */
+
+/* Part of the rate of a gap that is of the other rod, of velocities of the points. */
+static real rate_of_other(const facing *own, const real *normal, const real *velocities) {
+  const section_gap *other = other_section(own);
+  real rate = 0;
+  if (!other) return 0;
+  for (int i = 0; i < other->nodes; i++) {
+    rate -= other->rows[0][i] * inner(normal, velocities + 3 * (first_of_other(own) + i));
+  }
+  return rate;
+}
+
+/* Adds to weights of the points those of a row of row_weights: the way from the other section to the own one along an axis;
+   nothing of the slope along the own rod; the tangent of the other rod along the normal. */
+static void add_row_of_other(const facing *own, int row, const real *direction, real *weights) {
+  const section_gap *other = other_section(own);
+  if (!other || row == OWN_SLOPE) return;
+  const int is_slope = row == OTHER_SLOPE;
+  for (int i = 0; i < other->nodes; i++) {
+    const real share = is_slope ? other->rows[1][i] : -other->rows[0][i];
+    for (int k = 0; k < 3; k++) weights[3 * (first_of_other(own) + i) + k] = share * direction[k];
+  }
+}
+
+/* Adds to the derivatives of both slopes what the turning normal adds, from those of the way between both sections, where the
+   section of the other rod slides. The curvature of the gap has in it that this section slides as the way changes. */
+static void turn_slope_of_other(const facing *own, const real *tangent, real *moved) {
+  const section_gap *other = other_section(own);
+  if (!other || is_at_end(other)) return;
+  real turned[3];
+  for (int i = 0; i < 3; i++) turned[i] = inner(other->curvature + 3 * i, other->tangent);
+  moved[OWN_SLOPE] -= inner(tangent, turned) / (other->bend * own->other->length) * moved[OTHER_SLOPE];
+  moved[OTHER_SLOPE] += inner(turned, moved);
+}
+
+/* Second derivative of the distance, by two numbers that move both sections, as both are held and the other one then slides. */
+static real turning_beside_other(const facing *own, const real *moved, const real *more) {
+  const section_gap *other = other_section(own);
+  real sum = 0;
+  for (int k = 0; k < 3; k++) sum += moved[k] * inner(other->curvature + 3 * k, more);
+  return is_at_end(other) ? sum : sum - moved[OTHER_SLOPE] * more[OTHER_SLOPE] / (other->bend * own->other->length);
+}
+
+/* Writes weights of the other rod's nodes and its abscissa behind those of the own rod. */
+static void put_other_section(const facing *own, real *section) {
+  const section_gap *other = other_section(own);
+  if (!other) return;
+  memcpy(section + first_of_other(own), other->rows[0], (size_t)other->nodes * sizeof *section);
+  section[own->points->count + 1] = other->place;
 }

@@ -60,7 +60,7 @@ static void meet(const facing *own, met_gap *gap) {
   weigh_nodes(own, &gap->own);
   if (!own->other) return;
   gap->other = *other_section(own);
-  gap->other.first += own->elements * own->nodes;
+  gap->other.first = first_of_other(own);
 }
 
 /* ---- Gaps of a pair, at positions of its points ---- */
@@ -259,7 +259,7 @@ void push_touches(const touch *touches, int count, int unknowns, const real *x, 
     put(&to, x, points->unknowns);
     put(&to, inputs, points->inputs);
     call(points->gradient);
-    for (int i = 0; i < unknowns; i++) rows[i] -= points->gradient->result[i] * (points->shares ? points->shares[i] : 1);
+    for (int i = 0; i < unknowns; i++) rows[i] -= points->gradient->result[i] * share_of(touches[k].facing, i);
   }
 }
 

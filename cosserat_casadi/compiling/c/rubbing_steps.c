@@ -19,8 +19,8 @@
 
 /* ---- The model ---- */
 
-/* A touching section in a state. section holds the weights of the nodes, then the abscissa X; the part of axis along the
-   surface is the first tangent. */
+/* A touching section in a state. section holds the weights of the points, then the abscissa X, and that of another rod; the
+   part of axis along the surface is the first tangent. */
 typedef struct {
   const real *x;
   const real *inputs;
@@ -105,7 +105,7 @@ static void rubbing_of(const facing *own, const rubbed *at, real *sliding, real 
   put(&to, at->inputs, INPUTS);
   put(&to, at->v, N);
   put(&to, at->rate, INPUTS);
-  put(&to, at->section, own->points->count + 1);
+  put(&to, at->section, own->points->count + (own->other ? 2 : 1));
   put(&to, at->axis, 3);
   const real *found = result_of(own->rubbing, 4 + 2 * N);
   memcpy(sliding, found, 2 * sizeof *found);
