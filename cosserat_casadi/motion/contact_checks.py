@@ -57,11 +57,11 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
 
 
 def _on_bodies(model: Model, in_steps: bool) -> Iterator[Problem]:
-    """Obstacles on bodies that rub, or that exported steps have."""
+    """Obstacles on bodies that exported steps have."""
     moving = [own for own in model.scene.obstacles if own.body is not None and not own.is_smooth]
-    names = ", ".join(own.name for own in moving if in_steps or own.rubs)
+    names = ", ".join(own.name for own in moving if in_steps)
     if names:
-        what = f"exact contact with obstacles on bodies is for simulate, and without friction: {names}"
+        what = f"exact contact with obstacles on bodies is for simulate: {names}"
         yield Problem("obstacles", what, "give each obstacle a width, m, for a contact that is smooth")
 
 

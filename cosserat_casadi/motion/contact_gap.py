@@ -171,13 +171,17 @@ class Facing(ABC):
         """Positions of the points in the axes of the obstacle, shape (M, 3), m."""
         return self.points.positions(x, inputs)
 
+    @property
+    def carrier(self) -> str | None:
+        """Name of the body that carries the obstacle; None where it stands still, and beside another rod."""
+        return None if isinstance(self.against, scenes.RodContact) else self.against.body
+
     def axes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """Rotation from the axes of the obstacle, which are those of its body, to the world's, shape (3, 3)."""
-        carrier = None if isinstance(self.against, scenes.RodContact) else self.against.body
-        if carrier is None:
+        if self.carrier is None:
             return np.eye(3)
         own = inputs[: self.model.inputs.size]
-        return np.asarray(self.model.body[carrier](x, own)[2].full())
+        return np.asarray(self.model.body[self.carrier](x, own)[2].full())
 
     @property
     def stride(self) -> float:

@@ -154,13 +154,15 @@ def _rate(quantity: Matrix, moved: list[tuple[ca.MX, ca.MX]]) -> Matrix:
 
 
 def _pose(facing: Facing, system: System, weights: Matrix) -> list[Matrix]:
-    """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the world."""
+    """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the axes of what it touches."""
     if facing.of_body:
         pose = system.body(facing.owner)
         return [ca.MX(pose.position), ca.MX(pose.rotation)]
     base, shape = system.base(facing.owner), system.shapes[facing.owner]
     directors = [base.rotation @ (director @ weights) for director in shape.directors]
-    return [base.position + base.rotation @ (shape.position @ weights), ca.horzcat(*directors)]
+    position = base.position + base.rotation @ (shape.position @ weights)
+    seen = system.seen_from(facing.carrier, position)
+    return [seen, system.turned_to(facing.carrier, ca.horzcat(*directors))]
 
 
 def functions_of_sliding(model: Model) -> list[ca.Function]:

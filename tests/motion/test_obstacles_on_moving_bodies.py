@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize_scalar
 
-from cosserat_casadi import Motion, SceneError, build, read_scene, scene_from_dict, simulate, solve
+from cosserat_casadi import Motion, build, read_scene, scene_from_dict, simulate, solve
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.pose_series import section_poses
@@ -32,8 +34,8 @@ def free_rod(name: str, youngs_modulus: float, position: list[float]) -> dict[st
     }
 
 
-def struck(share: float, duration: float) -> Motion:
-    """A free rod falls on the ball at the tip of another free rod."""
+def struck(share: float, duration: float, flies: Sequence[float] = (0.0, 0.0, -SPEED), friction: float = 0.0) -> Motion:
+    """A free rod flies onto the ball at the tip of another free rod."""
     tables = {
         "schema": 1,
         "accuracy": {"modes": 2},
@@ -50,9 +52,10 @@ def struck(share: float, duration: float) -> Motion:
                 "body": "head",
                 "rods": ["upper"],
                 "restitution": share,
+                "friction": friction,
             }
         ],
-        "velocities": [{"rod": "upper", "linear": [0, 0, -SPEED]}],
+        "velocities": [{"rod": "upper", "linear": list(flies)}],
     }
     return simulate(build(scene_from_dict(tables).with_motion_inputs(), moving=True))
 
@@ -111,13 +114,17 @@ def test_a_blow_on_a_ball_at_a_tip(share: float) -> None:
     assert_allclose(momentum(motion, -1), momentum(motion, 0), rtol=0, atol=1e-6 * size)
 
 
-def fingers(duration: float, times: list[float], tensions: list[float]) -> Motion:
+def fingers(
+    duration: float, times: list[float], tensions: list[float], obstacle: str = "friction=0.0", tolerance: float = 1e-4
+) -> Motion:
     """A finger that presses with the disk at its tip on another one; both are damped."""
+    shape = "name='rim', kind='sphere', body='disk', centre=[0, 0, 0], radius=0.012"
     changes = [
         "inputs=['flexor.tension']",
+        f"obstacles=[{{{shape}, rods=['lower'], {obstacle}}}]",
         "upper.damping={retardation_time=0.05}",
         "lower.damping={retardation_time=0.05}",
-        f"simulation={{duration={duration}, tolerance=1e-4, frames=6}}",
+        f"simulation={{duration={duration}, tolerance={tolerance}, frames=6}}",
         f"motions=[{{input='flexor.tension', times={times}, values={tensions}}}]",
     ]
     return simulate(read_scene(FINGERS, changes).with_motion_inputs())
@@ -142,8 +149,51 @@ def test_rest_in_contact_vs_statics(duration: float, times: list[float], tension
     assert_allclose(contact.force, expected.force, rtol=1e-3, atol=1e-6)
 
 
-def test_friction_on_such_an_obstacle_is_refused() -> None:
-    shape = "name='rim', kind='sphere', body='disk', centre=[0, 0, 0], radius=0.012"
-    rubbing = f"obstacles=[{{{shape}, rods=['lower'], friction=0.3}}]"
-    with pytest.raises(SceneError, match="is for simulate, and without friction: rim"):
-        simulate(read_scene(FINGERS, [rubbing, "simulation={duration=0.1}"]))
+def centre_of_upper(motion: Motion, row: int) -> FloatArray:
+    """Centre of mass of the upper rod, shape (3,), m."""
+    points, weights = gauss_legendre(12)
+    inputs = motion.model.pack()
+    positions = section_poses(motion.model, "upper", (points + 1) / 2, motion.x[row][None], inputs[None]).position[0]
+    return weights @ positions / 2
+
+
+def test_a_blow_askew_with_friction() -> None:
+    """The push on the upper rod is along the normal, and μ times that against the sliding, which the blow outlasts."""
+    friction, share = 0.05, 0.6
+    flies = np.array([0.5, 0.2, -SPEED])
+    motion = struck(share, 0.036, flies=flies.tolist(), friction=friction)
+    (blow,) = [event for event in motion.events if event.kind == "impact"]
+    assert motion.times[-2] > blow.time
+    # Where the two touch nothing bends yet: the upper rod is a line along x.
+    across = np.array([0.0, 0.004, 0.05]) + blow.time * flies * [0, 1, 1]
+    normal = across / np.linalg.norm(across)
+    sliding = flies - (flies @ normal) * normal
+    rates = (centre_of_upper(motion, -1) - centre_of_upper(motion, -2)) / (motion.times[-1] - motion.times[-2])
+    impulse = 1100.0 * np.pi * RADIUS**2 * 0.3 * (rates - flies)
+    along = impulse @ normal
+    assert along > 0.0
+    held = impulse - along * normal
+    assert_allclose(np.linalg.norm(held), friction * along, rtol=1e-5, atol=0)
+    # The blow turns the sliding by as little as friction is.
+    assert_allclose(held, -friction * along * sliding / np.linalg.norm(sliding), rtol=0, atol=friction**2 * along)
+    size = np.linalg.norm(momentum(motion, 0)[:3])
+    assert_allclose(momentum(motion, -1), momentum(motion, 0), rtol=0, atol=1e-8 * size)
+    energies = motion.energy.kinetic + motion.energy.elastic
+    assert energies[-1] < energies[0]
+
+
+def test_a_finger_that_rubs_is_held_within_the_cone() -> None:
+    """It is dragged along the disk: friction is μ times the push where it slips, and less where it sticks."""
+    motion = fingers(0.2, [0.0, 0.1, 0.2], [0.5, 1.5, 1.4], obstacle="friction=0.3", tolerance=1e-2)
+    assert motion.converged, motion.message
+    # At the start the force is that of the first step, extended back.
+    touching = [contact for contacts in motion.contacts[1:] for contact in contacts]
+    assert len(touching) > 2
+    for contact in touching:
+        assert contact.friction is not None
+        push, held = np.linalg.norm(contact.force), np.linalg.norm(contact.friction)
+        assert_allclose(contact.force @ contact.friction, 0.0, rtol=0, atol=1e-9 * push**2)
+        if contact.slips:
+            assert_allclose(held, 0.3 * push, rtol=1e-6, atol=0)
+        else:
+            assert held <= 0.3 * push * (1 + 1e-9)
