@@ -73,7 +73,8 @@ class StepContact:
         place: abscissa X of the section; 0 of a body or a joint.
         force: on it along the normal of the obstacle, mean of the last stretch of the step, N; of a stop its push, N or
             N m.
-        friction: on it along the surface, mean of the same stretch, world axes, shape (3,), N.
+        friction: on it along the surface, mean of the same stretch, in the axes of the body that carries the obstacle,
+            or of the world, shape (3,), N.
         slips: whether it slips at the end of the step, as all does without friction; else it sticks.
     """
 

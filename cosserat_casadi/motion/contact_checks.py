@@ -53,16 +53,6 @@ def untouchable(model: Model, simulation: Simulation | None) -> Iterator[Problem
             what = f"exact contact in motion is of balls, and disks turn as they roll: {', '.join(named)}"
             balls = "leave their thickness out, which makes them balls; or take [[disks]] and obstacles with a width, m"
             yield Problem("obstacles", what, remedy if of_rows else balls)
-    yield from _on_bodies(model, in_steps=simulation is None)
-
-
-def _on_bodies(model: Model, in_steps: bool) -> Iterator[Problem]:
-    """Obstacles on bodies that exported steps have."""
-    moving = [own for own in model.scene.obstacles if own.body is not None and not own.is_smooth]
-    names = ", ".join(own.name for own in moving if in_steps)
-    if names:
-        what = f"exact contact with obstacles on bodies is for simulate: {names}"
-        yield Problem("obstacles", what, "give each obstacle a width, m, for a contact that is smooth")
 
 
 def _unfit_pairs(model: Model) -> Iterator[Problem]:

@@ -369,6 +369,7 @@ def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dic
         "most_points": most_points,
         "most_looks": most_looks,
         "pair_words": "as Python numbers them",
+        "friction_axes": "axes of the obstacle",
         "motion_status_lines": "  " + ", ".join(f"SOLVER_MOTION_{status}" for status in STATUSES),
         "motion_status_names": "",
     }

@@ -154,7 +154,7 @@ def _rate(quantity: Matrix, moved: list[tuple[ca.MX, ca.MX]]) -> Matrix:
 
 
 def _pose(facing: Facing, system: System, weights: Matrix) -> list[Matrix]:
-    """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the axes of what it touches."""
+    """Centre, 3×1, m, and rotation, 3×3, of a section of a rod, or of a body, in the axes of the obstacle."""
     if facing.of_body:
         pose = system.body(facing.owner)
         return [ca.MX(pose.position), ca.MX(pose.rotation)]

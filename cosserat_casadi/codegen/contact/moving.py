@@ -73,12 +73,15 @@ def contact_words(model: Model, names: Names) -> Words:
     stops = stop_facings(model)
     rods = [own for own in faces if isinstance(own, RodFacing)]
     nodes = [own.nodes_of_element for own in rods]
+    carried = any(own.carrier is not None for own in faces)
     words: Words = {
         "steps_in_contact": True,
         "contact_rubs": model.scene.rubs_exactly,
         "friction_words": "with Coulomb's friction" if model.scene.rubs_exactly else "without friction",
+        "friction_axes": "axes of the body that carries the obstacle, or of the world" if carried else "world axes",
         "facings": len(faces),
         "has_stops": bool(stops),
+        "points_share": any(own.shares is not None for own in points),
         "barring": len(faces) - len(stops),
         "most_touches": _most_touches(faces),
         "numbers_moved": 4,
@@ -197,6 +200,9 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
     for number, own in enumerate(points):
         fields: dict[str, object] = {"count": own.count, **{word: f"{word}_of_{number}" for word in words}}
         fields["by_inputs"] = f"input_gradient_of_{number}" if "by_inputs" in own.in_steps else "0"
+        if own.shares is not None:
+            yield reals(f"SHARES_OF_{number}", own.shares)
+            fields["shares"] = f"SHARES_OF_{number}"
         records.append(record(fields))
     yield record_table("moving_points", "POINTS", "", records)
     obstacles = _obstacles(model)

@@ -45,7 +45,7 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
     for (int j = 0; j < INPUTS; j++) {
       for (int i = 0; i < N; i++) {
         const real turned = turning(faces, &gap, own->slides, work->moved + 4 * i, work->moved_by_inputs + 4 * j);
-        work->input_matrices[stage][j * N + i] -= force * (work->mixed[j * N + i] + turned);
+        work->input_matrices[stage][j * N + i] -= force * share_of(faces, i) * (work->mixed[j * N + i] + turned);
       }
     }
   }
@@ -71,7 +71,10 @@ static int border_stages(const stage_factors *factors, workspace *work) {
     for (int lane = 0; lane < FOUR && first + lane < order; lane++) {
       const int stage = (first + lane) / count;
       const int m = (first + lane) % count;
-      memcpy(columns + lane * STAGED + stage * N, work->stage_gradients[stage][m], N * sizeof *columns);
+      real *column = columns + lane * STAGED + stage * N;
+      for (int i = 0; i < N; i++) {
+        column[i] = share_of(FACING + work->part_touch[m].facing, i) * work->stage_gradients[stage][m][i];
+      }
     }
     solve_stage_columns(factors, columns, work);
     for (int lane = 0; lane < FOUR && first + lane < order; lane++) {

@@ -66,7 +66,8 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
   shifts_of(own, gap, work->moved, N, work->shift);
   take_friction(stage, m, work->rubbing_by_x, work->rubbing_by_place, work->shift, N, work->friction_entries, work);
   for (int k = 0; k < STAGE_ENTRIES; k++) {
-    work->matrices[stage][k] -= work->friction_entries[ENTRY_COLUMNS[k]][ENTRY_ROWS[k]];
+    const int i = ENTRY_ROWS[k];
+    work->matrices[stage][k] -= share_of(faces, i) * work->friction_entries[ENTRY_COLUMNS[k]][i];
   }
   for (int a = 0; a < 2; a++) {
     for (int i = 0; i < N; i++) work->slide_by_x[stage][m][a][i] = work->friction_changes[i][a];
@@ -79,7 +80,9 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
   }
   take_friction(stage, m, work->rubbing_by_inputs, work->rubbing_by_place, work->shift, INPUTS, work->friction_entries, work);
   for (int j = 0; j < INPUTS; j++) {
-    for (int i = 0; i < N; i++) work->input_matrices[stage][j * N + i] -= work->friction_entries[j][i];
+    for (int i = 0; i < N; i++) {
+      work->input_matrices[stage][j * N + i] -= share_of(faces, i) * work->friction_entries[j][i];
+    }
     for (int a = 0; a < 2; a++) {
       work->slide_by_inputs[stage][m][a][j] = work->friction_changes[j][a];
       work->slide_by_rates[stage][m][a][j] = work->rubbing_by_rates[2 * j + a];
@@ -140,11 +143,14 @@ static int border_stages(const stage_factors *factors, workspace *work) {
       real *column = columns + lane * STAGED + stage * N;
       real by_drag[2][2];
       if (row == 0) {
-        memcpy(column, work->stage_gradients[stage][m], N * sizeof *column);
+        for (int i = 0; i < N; i++) column[i] = share_of(FACING + own->facing, i) * work->stage_gradients[stage][m][i];
       } else if (rubs(own)) {
         coefficients_of(own, work->stage_along[stage][m], own->drags[stage], by_drag);
         for (int a = 0; a < 2; a++) {
-          for (int i = 0; i < N; i++) column[i] += by_drag[a][row - 1] * work->stage_slide_rows[stage][m][a][i];
+          for (int i = 0; i < N; i++) {
+            const real pushed = share_of(FACING + own->facing, i) * work->stage_slide_rows[stage][m][a][i];
+            column[i] += by_drag[a][row - 1] * pushed;
+          }
         }
       }
     }
