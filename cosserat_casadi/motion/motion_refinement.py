@@ -194,6 +194,7 @@ class ResolvedMotion:
         waves: whether sudden loads send waves along rods without damping.
         fronts: displacement over the length that the fronts of these waves lack.
         step_tolerance: of a step, over the length, that it was computed with; nan for steps of given size.
+        exact: the motion with steps TIGHTER times as exact, where it was computed before; else None.
     """
 
     simulator: Simulator
@@ -206,6 +207,7 @@ class ResolvedMotion:
     waves: bool = False
     fronts: float = 0.0
     step_tolerance: float = float("nan")
+    exact: History | None = None
 
 
 @dataclass
@@ -538,6 +540,9 @@ def _with_tolerance(search: _Search) -> Motion:
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance)
         search.levels.append(_with_waves(search, level))
+        if step_tolerance < search.step_tolerance and search.space_error > SPACE_SHARE * search.tolerance:
+            search.levels[-1] = _with_steps_of_others(search)
+            distance = search.last.distance
         hopeless = search.hopeless
         if hopeless is not None:
             return _given_up(search, hopeless)
@@ -565,6 +570,29 @@ def _with_tolerance(search: _Search) -> Motion:
         left = search.left_over_distance(search.order)
         companions.append(Companion(search.levels[-2].history, left, by_modes=True))
     return _judged(search, finest, search.space_error + timed.error, companions)
+
+
+def _with_steps_of_others(search: _Search) -> ResolvedMotion:
+    """The last level with the steps of the levels before, where it was wrongly foreseen to be the last of all.
+
+    The distances of levels with equal steps tell what their modes lack.
+    """
+    level = search.last
+    history = level.simulator.controlled(search.step_tolerance)
+    if history.outcome is StepOutcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    if not history.completed:
+        return level
+    found = level.simulator.paths(history)
+    level = replace(
+        level,
+        history=history,
+        paths=found,
+        distance=path_distance(search.levels[-2].paths, found),
+        step_tolerance=search.step_tolerance,
+        exact=level.history,
+    )
+    return _with_waves(search, level)
 
 
 def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
@@ -692,8 +720,7 @@ def _seems_last(search: _Search, modes: int) -> bool:
 
     The level is then computed with the more exact steps at once, which the last level before may tell the error of.
     """
-    # With fronts, what the level before tells is too much: a chain of rods missed a tolerance of 6e-3 that it meets.
-    if not search.levels or search.scene.has_contact or search.last.fronts > 0.0 or is_struck(search.last.history):
+    if not search.levels or search.scene.has_contact or is_struck(search.last.history):
         return False
     duration = search.simulation.duration
     lacks = [max(lacking(level.history, duration), level.fronts) for level in search.levels[-2:]]
@@ -723,7 +750,7 @@ def _timed(search: _Search) -> TimedHistory:
         return TimedHistory(level.history, search.time_error)
     allowed = partial(_allowed, search)
     if not level.step_tolerance < search.step_tolerance:
-        return level.simulator.tightened(level.history, level.step_tolerance, allowed)
+        return level.simulator.tightened(level.history, level.step_tolerance, allowed, fine=level.exact)
     timed = _told_by_level_before(search)
     if timed.error <= allowed(timed.history):
         return timed
