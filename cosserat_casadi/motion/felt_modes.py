@@ -20,6 +20,7 @@ from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER, displacements
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import watched_arms, watched_states
+from cosserat_casadi.numerics.step import StepRows
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
@@ -412,21 +413,21 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
         duration: its end, s.
         moved_by: the displacements of :func:`felt`.
     """
-    if not history.steps:
+    rows = [StepRows.of(leg.integration.steps) for leg in history.legs if leg.integration.steps]
+    if not rows:
         return 0.0
     # Strains are the same in the coordinates of the steps; forces of contacts stand behind the unknowns of the model.
     own = slice(history.model.size)
-    ends = [step.end for _, step in history.steps]
+    _, rates, accelerations = np.abs(np.concatenate([of_leg.ends[:, :, own] for of_leg in rows])).swapaxes(0, 1)
     # A motion that goes on had waves before: its lateness adds up.
-    sizes = np.array([step.size for _, step in history.steps]) * duration / (duration - history.begin)
-    rates = np.abs([end.v[own] for end in ends])
+    sizes = np.concatenate([of_leg.sizes for of_leg in rows]) * duration / (duration - history.begin)
     ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
-    accelerations = _by_strain(history.model, np.abs([end.a[own] for end in ends]).max(axis=0))
+    largest = _by_strain(history.model, accelerations.max(axis=0))
     late = 0.0
     for rod, of_rod in ways.items():
         let_through = _let_through(history.model, rod)
         for passed, way, acceleration, moved in zip(
-            let_through, of_rod, accelerations[rod], moved_by[rod], strict=True
+            let_through, of_rod, largest[rod], moved_by[rod], strict=True
         ):
             share = last_of(acceleration) / max(acceleration.max(), TINY)
             of_any_share = float(np.sqrt(0.5 * np.pi * last_of(way) * last_of(moved)))

@@ -39,7 +39,7 @@ from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
-from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, StepRows, TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
 
 Known = TypeVar("Known")
@@ -229,7 +229,7 @@ class History:
     @cached_property
     def statistics(self) -> StepStatistics:
         """Statistics of the steps: numbers, iterations and sizes."""
-        sizes = [step.size for _, step in self.steps]
+        sizes = [size for leg in self.legs for size in leg.integration.sizes]
         counts = [leg.integration.statistics for leg in self.legs]
         return StepStatistics(
             steps=sum(count.steps for count in counts),
@@ -268,25 +268,25 @@ class History:
             return instant.x
         equations = leg.equations or equations_of(self.model, leg.piece)
         near = instant
-        if self.steps:
-            _, step = self.steps[self.number_at(instant.time)]
+        if self._ends:
+            _, step = self._step(self.number_at(instant.time))
             near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - instant.time)))
         return self._closing.closed(instant, inputs, equations, near)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
-        if not self.steps:
+        if not self._ends:
             leg = self.legs[0]
             return leg, self.of_model(leg.start.instant)
-        leg, step = self.steps[self.number_at(time)]
+        leg, step = self._step(self.number_at(time))
         return leg, self.of_model(step.at(time))
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """The contacts at a time that was reached; none in a scene without exact contact."""
-        if self.contacts is None or not self.steps:
+        if self.contacts is None or not self._ends:
             return ()
         number = self.number_at(time)
-        _, step = self.steps[number]
+        _, step = self._step(number)
         # The stages of a short first step have rounding over its square in their forces, and more where it begins.
         instant = step.start if time == step.start.time else step.at(time)
         return self.contacts.at(number, self.flight.to_model(instant))
@@ -311,7 +311,15 @@ class History:
 
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
-        return min(bisect_left(self._ends, time), len(self.steps) - 1)
+        return min(bisect_left(self._ends, time), len(self._ends) - 1)
+
+    def _step(self, number: int) -> tuple[Leg, TimeStep]:
+        """The step of a number, and its leg."""
+        for leg in self.legs:
+            if number < len(leg.integration.steps):
+                break
+            number -= len(leg.integration.steps)
+        return leg, leg.integration.steps[number]
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times as the steps have them, shapes (T, size) and (T, inputs).
@@ -332,16 +340,16 @@ class History:
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
         """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
-        if not self.steps:
+        if not self._ends:
             yield self.legs[0], np.ones(len(times), dtype=bool), None
             return
-        numbers = np.minimum(np.searchsorted(self._ends, times), len(self.steps) - 1)
+        numbers = np.minimum(np.searchsorted(self._ends, times), len(self._ends) - 1)
         first = 0
         for leg in self.legs:
             steps = leg.integration.steps
             rows = (first <= numbers) & (numbers < first + len(steps))
             if np.any(rows):
-                yield leg, rows, HeldTimes(steps, numbers[rows] - first, times[rows])
+                yield leg, rows, HeldTimes(StepRows.of(steps), numbers[rows] - first, times[rows])
             first += len(steps)
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
@@ -376,7 +384,7 @@ class History:
 
     @cached_property
     def _ends(self) -> list[float]:
-        return [step.end.time for _, step in self.steps]
+        return [time for leg in self.legs for time in leg.integration.end_times]
 
 
 @dataclass(frozen=True)

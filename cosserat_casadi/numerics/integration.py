@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
 from enum import Enum
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import CarriedStep, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, StepRows, TimeStep
 
 
 class StepOutcome(Enum):
@@ -97,7 +97,7 @@ class Integration:
     """
 
     start: Instant
-    steps: tuple[TimeStep, ...]
+    steps: Sequence[TimeStep]
     outcome: StepOutcome
     next_size: float
     statistics: IntegrationCost
@@ -108,6 +108,22 @@ class Integration:
     def end(self) -> Instant:
         """The last instant that was reached."""
         return self.steps[-1].end if self.steps else self.start
+
+    @property
+    def end_times(self) -> list[float]:
+        """Time at the end of each step, s."""
+        if isinstance(self.steps, StepRows):
+            times: list[float] = self.steps.end_times.tolist()
+            return times
+        return [step.end.time for step in self.steps]
+
+    @property
+    def sizes(self) -> list[float]:
+        """Size of each step, s."""
+        if isinstance(self.steps, StepRows):
+            sizes: list[float] = self.steps.sizes.tolist()
+            return sizes
+        return [step.size for step in self.steps]
 
 
 def stalled_at(start: Instant) -> Integration:

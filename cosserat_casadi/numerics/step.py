@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import overload
 
 import numpy as np
 import numpy.typing as npt
@@ -124,52 +124,126 @@ class TimeStep(StepPolynomial):
         return self.at_share((time - self.start.time) / self.size, time)
 
 
+class StepRows(Sequence[TimeStep]):
+    """Steps of n unknowns one after the other, as arrays: the record of a step is made where it is asked for.
+
+    Args:
+        method: the collocation method, with s stages.
+        differential: which entries have accelerations, shape (n,).
+        begins: x, v and a at the beginning of each of k steps, shape (k, 3, n).
+        ends: x, v and a at the end of each step, shape (k, 3, n).
+        unknowns: of the stages of each step, shape (k, s, n).
+        facts: time at the end and size, s, error, iterations, residual and contraction of each step, shape (k, 6).
+        begin_times: time at which each step begins, shape (k,), s.
+    """
+
+    def __init__(
+        self,
+        method: Collocation,
+        differential: npt.NDArray[np.bool_],
+        begins: FloatArray,
+        ends: FloatArray,
+        unknowns: FloatArray,
+        facts: FloatArray,
+        begin_times: FloatArray,
+    ) -> None:
+        self.method, self.differential = method, differential
+        self.begins, self.ends, self.unknowns = begins, ends, unknowns
+        self.facts, self.begin_times = facts, begin_times
+
+    @classmethod
+    def of(cls, steps: Sequence[TimeStep]) -> StepRows:
+        """Steps of one method, at least one, as arrays."""
+        if isinstance(steps, StepRows):
+            return steps
+        first = steps[0]
+        begins, ends = (np.array([[at.x, at.v, at.a] for at in ats]) for ats in zip(*((s.start, s.end) for s in steps)))
+        facts = [[s.end.time, s.size, s.error, s.iterations, s.residual, s.contraction] for s in steps]
+        unknowns = np.array([step.unknowns for step in steps])
+        times = np.array([step.start.time for step in steps])
+        return cls(first.method, first.differential, begins, ends, unknowns, np.array(facts), times)
+
+    @classmethod
+    def joined(cls, blocks: Sequence[StepRows]) -> StepRows:
+        """Blocks of steps of one method as one."""
+        if len(blocks) == 1:
+            return blocks[0]
+        parts = zip(*((b.begins, b.ends, b.unknowns, b.facts, b.begin_times) for b in blocks), strict=True)
+        return cls(blocks[0].method, blocks[0].differential, *(np.concatenate(part) for part in parts))
+
+    def __len__(self) -> int:
+        return len(self.facts)
+
+    @overload
+    def __getitem__(self, number: int) -> TimeStep: ...
+    @overload
+    def __getitem__(self, number: slice) -> StepRows: ...
+    def __getitem__(self, number: int | slice) -> TimeStep | StepRows:
+        if isinstance(number, slice):
+            parts = (self.begins, self.ends, self.unknowns, self.facts, self.begin_times)
+            return StepRows(self.method, self.differential, *(part[number] for part in parts))
+        time, size, error, iterations, residual, contraction = self.facts[number].tolist()
+        start = Instant(float(self.begin_times[number]), *self.begins[number])
+        end = Instant(time, *self.ends[number])
+        of_stages = self.unknowns[number]
+        return TimeStep(
+            self.method, self.differential, start, size, of_stages, end, error, int(iterations), residual, contraction
+        )
+
+    @property
+    def end_times(self) -> FloatArray:
+        """Time at the end of each step, shape (k,), s."""
+        return np.asarray(self.facts[:, 0])
+
+    @property
+    def sizes(self) -> FloatArray:
+        """Size of each step, shape (k,), s."""
+        return np.asarray(self.facts[:, 1])
+
+
 class HeldTimes:
     """T times in the steps that hold them, with the motion there by the polynomials of these steps.
 
     :meth:`TimeStep.at` computes the same numbers for one time.
 
     Args:
-        steps: of one method and the same n unknowns.
+        steps: of n unknowns.
         numbers: which of the steps holds each time, shape (T,).
         times: shape (T,), s.
     """
 
-    def __init__(self, steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
-        used, self._step = np.unique(numbers, return_inverse=True)
-        self._steps = [steps[number] for number in used.tolist()]
-        self._method, self._differential = self._steps[0].method, self._steps[0].differential
-        self._sizes = self._of_each([step.size for step in self._steps])
-        self._shares = (times - self._of_each([step.start.time for step in self._steps])) / self._sizes
-        self._at_end = times == self._of_each([step.end.time for step in self._steps])
-        self._unknowns = self._of_each([step.unknowns for step in self._steps])
+    def __init__(self, steps: StepRows, numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
+        self._steps, self._step = steps, numbers
+        self._method, self._differential = steps.method, steps.differential
+        self._sizes = steps.sizes[numbers]
+        self._shares = (times - steps.begin_times[numbers]) / self._sizes
+        self._at_end = np.flatnonzero(times == steps.end_times[numbers])
+        self._unknowns = steps.unknowns[numbers]
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
-        begin = self._of_each([step.start.x for step in self._steps])
-        velocity = self._of_each([step.start.v for step in self._steps])
+        begins = self._steps.begins[self._step, :2]
         moved = self._summed(self._method.double_integrals_at)
-        displacement = (self._shares * self._sizes)[:, None] * velocity + self._sizes[:, None] ** 2 * moved
-        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at))
-        return self._with_ends(x, [step.end.x for step in self._steps])
+        displacement = (self._shares * self._sizes)[:, None] * begins[:, 1] + self._sizes[:, None] ** 2 * moved
+        x = begins[:, 0] + displacement
+        if not np.all(self._differential):
+            x = np.where(self._differential, x, self._summed(self._method.values_at))
+        return self._with_ends(x, 0)
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
         gained = self._sizes[:, None] * self._summed(self._method.integrals_at)
-        velocities = self._of_each([step.start.v for step in self._steps]) + gained
+        velocities = self._steps.begins[self._step, 1] + gained
         v, a = (np.where(self._differential, each, 0.0) for each in (velocities, self._summed(self._method.values_at)))
-        ends = [step.end for step in self._steps]
-        return self._with_ends(v, [end.v for end in ends]), self._with_ends(a, [end.a for end in ends])
-
-    def _of_each(self, values: Sequence[Any]) -> FloatArray:
-        return np.array(values)[self._step]
+        return self._with_ends(v, 1), self._with_ends(a, 2)
 
     def _summed(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
         return np.asarray(np.einsum("ts,tsn->tn", weights(self._shares), self._unknowns))
 
-    def _with_ends(self, values: FloatArray, ends: Sequence[FloatArray]) -> FloatArray:
+    def _with_ends(self, values: FloatArray, order: int) -> FloatArray:
         # The end of a step may have been put right.
-        return np.where(self._at_end[:, None], self._of_each(ends), values)
+        values[self._at_end] = self._steps.ends[self._step[self._at_end], order]
+        return values
 
 
 @dataclass(frozen=True)
