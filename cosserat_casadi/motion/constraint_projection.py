@@ -6,6 +6,7 @@ is far below the tolerance of the motion.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,14 +14,14 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.repeated_call import RepeatedCall, external
-from cosserat_casadi.numerics.consistent_start import regular_inverse
+from cosserat_casadi.motion.repeated_call import external
+from cosserat_casadi.numerics.consistent_start import regular_inverses
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 CLOSED = 1e-12
@@ -57,74 +58,97 @@ class Closing:
         """Rows of the residual that are constraints on positions alone."""
         return constraint_rows(self.model)
 
-    def closed(self, instant: Instant, inputs: FloatArray, equations: MotionEquations, near: Instant) -> FloatArray:
-        """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
+    def closed(
+        self, instants: Sequence[Instant], inputs: FloatArray, equations: MotionEquations, nears: Sequence[Instant]
+    ) -> FloatArray:
+        """Unknowns at T instants, moved by the smallest displacements that close the constraints, shape (T, size).
 
         Args:
-            instant: of the motion, in the unknowns of the model.
-            inputs: inputs at that instant, shape (model.inputs.size,).
+            instants: of the motion, in the unknowns of the model.
+            inputs: inputs at these instants, shape (T, model.inputs.size).
             equations: of motion, of which some rows are the constraints.
-            near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many instants.
+            nears: where the first Jacobian of each instant is evaluated: an end of the step that holds it.
         """
-        x = instant.x
+        x = np.array([instant.x for instant in instants])
         if not len(self.rows):
             return x
-        best = x
-        before = np.inf
-        answer = None
-        is_here = False
+        best = x.copy()
+        before = np.full(len(x), np.inf)
+        is_here = np.zeros(len(x), dtype=bool)
+        answers = np.zeros((len(x), self.model.size, len(self.rows)))
+        left = np.arange(len(x))
         for _ in range(MOST_CORRECTIONS):
-            gaps = self._gaps(x, inputs)
-            largest = np.abs(gaps).max()
-            if largest <= CLOSED:
-                break
-            leads_away = not largest < before
+            gaps = self._gaps(x[left], inputs[left])
+            largest = np.abs(gaps).max(axis=1)
+            leads_away = ~(largest < before[left])
             # Where constraints are about to depend on each other corrections may lead away.
-            if leads_away and is_here:
-                return best
-            if leads_away:
-                gaps = self._gaps(best, inputs)
-            else:
-                best = x
-            if answer is None:
-                answer = self._answer_near(near, equations)
-            elif leads_away or largest > CONTRACTED * before:
-                answer = self._answer(equations.linearised(replace(instant, x=best)).stiffness)
-                is_here = True
-            before = np.abs(gaps).max()
-            x = best - answer @ gaps
+            is_given_up = (largest > CLOSED) & leads_away & is_here[left]
+            x[left[is_given_up]] = best[left[is_given_up]]
+            goes_on = ~((largest <= CLOSED) | is_given_up)
+            left, gaps, largest, leads_away = (each[goes_on] for each in (left, gaps, largest, leads_away))
+            if not len(left):
+                break
+            if np.any(leads_away):
+                gaps[leads_away] = self._gaps(best[left[leads_away]], inputs[left[leads_away]])
+            best[left[~leads_away]] = x[left[~leads_away]]
+            is_renewed = leads_away | (largest > CONTRACTED * before[left])
+            if np.all(np.isinf(before[left])):
+                answers[left] = self._answers(np.array([self._slopes_near(nears[row], equations) for row in left]))
+            elif np.any(is_renewed):
+                rows = left[is_renewed]
+                here = [replace(instants[row], x=best[row]) for row in rows.tolist()]
+                answers[rows] = self._answers(np.array([self._slopes(instant, equations) for instant in here]))
+                is_here[rows] = True
+            before[left] = np.abs(gaps).max(axis=1)
+            x[left] = best[left] - np.einsum("tnm,tm->tn", answers[left], gaps)
         return x
 
-    @cached_property
-    def _gaps(self) -> RepeatedCall:
-        """(x, inputs) ↦ the rows of the constraints: the rest of the equations takes several times as long."""
-        if self.library is not None:
-            return RepeatedCall(external(GAPS, self.library))
-        return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
+    def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """The rows of the constraints at T states, shape (T, rows): the rest of the equations takes several times as long."""
+        (gaps,) = evaluated(self._function, x, inputs)
+        return gaps[:, :, 0].copy()
 
-    def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
-        """Displacements that answer to gaps, as :meth:`_answer`, at an end of a step; the last answer is remembered."""
-        time, answer = self._remembered.get("last", (None, None))
-        if answer is None or time != near.time:
-            answer = self._answer(equations.linearised(near).stiffness)
-            self._remembered["last"] = near.time, answer
-        return answer
+    @cached_property
+    def _function(self) -> ca.Function:
+        """(x, inputs) ↦ the rows of the constraints."""
+        if self.library is not None:
+            return external(GAPS, self.library)
+        function: ca.Function = kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
+        return function
+
+    def _slopes(self, instant: Instant, equations: MotionEquations) -> FloatArray:
+        """Derivatives of the rows of the constraints with the unknowns at an instant, shape (rows, size)."""
+        return np.asarray(equations.linearised(instant).stiffness[self.rows])
+
+    def _slopes_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
+        """The derivatives at an end of a step; the last ones are remembered."""
+        time, slopes = self._remembered.get("last", (None, None))
+        if slopes is None or time != near.time:
+            slopes = self._slopes(near, equations)
+            self._remembered["last"] = near.time, slopes
+        return slopes
 
     @cached_property
     def _remembered(self) -> dict[str, tuple[float, FloatArray]]:
         return {}
 
-    def _answer(self, stiffness: FloatArray) -> FloatArray:
-        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
+    def _answers(self, slopes: FloatArray) -> FloatArray:
+        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (T, size, rows).
+
+        Args:
+            slopes: derivatives of the rows of the constraints at T states, shape (T, rows, size).
+        """
         moves = self.model.discrete.unknowns.differential
-        weighted = np.where(moves, stiffness[self.rows] / self._sizes, 0.0)
+        weighted = np.where(moves, slopes / self._sizes, 0.0)
+        across = weighted.swapaxes(1, 2)
         # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
-        regular = regular_inverse(weighted @ weighted.T, INDEPENDENT)
-        if regular is not None:
-            return np.asarray(weighted.T @ regular / self._sizes[:, None])
+        inverses, regular = regular_inverses(weighted @ across, INDEPENDENT)
+        answers = across @ inverses
         # Constraints that repeat each other have singular values of that size, over the largest.
-        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape)
-        return np.asarray(np.linalg.pinv(weighted, rcond=rounding) / self._sizes[:, None])
+        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape[1:])
+        for row in np.flatnonzero(~regular).tolist():
+            answers[row] = np.linalg.pinv(weighted[row], rcond=rounding)
+        return np.asarray(answers / self._sizes[:, None])
 
     @cached_property
     def _sizes(self) -> FloatArray:

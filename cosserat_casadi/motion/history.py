@@ -242,9 +242,8 @@ class History:
 
     def at(self, time: float) -> MotionState:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
-        leg, instant = self.locate(time)
-        inputs = leg.piece.at(instant.time).value
-        return MotionState(self._closed(leg, instant, inputs), instant.v, instant.a, inputs)
+        states = self.states(np.array([time]))
+        return MotionState(states.x[0], states.v[0], states.a[0], states.inputs[0])
 
     def states(self, times: FloatArray) -> MotionState:
         """The states at T times that were reached, as :meth:`at`, a row for each time."""
@@ -255,23 +254,25 @@ class History:
             if held is not None and self.flight.coordinates is None:
                 parts = held.positions(), *held.rates()
                 x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
-            for row in np.flatnonzero(rows).tolist():
-                instant = Instant(float(times[row]), x[row], v[row], a[row])
-                if held is None or self.flight.coordinates is not None:
-                    _, instant = self.locate(instant.time)
-                x[row], v[row], a[row] = self._closed(leg, instant, inputs[row]), instant.v, instant.a
+            else:
+                instants = [self.locate(time)[1] for time in times[rows].tolist()]
+                x[rows], v[rows], a[rows] = zip(*((at.x, at.v, at.a) for at in instants), strict=True)
+            if held is not None and len(self._closing.rows):
+                x[rows] = self._closed(leg, MotionState(x[rows], v[rows], a[rows], inputs[rows]), times[rows])
         return MotionState(x, v, a, inputs)
 
-    def _closed(self, leg: Leg, instant: Instant, inputs: FloatArray) -> FloatArray:
-        """Unknowns at an instant of a leg with closed constraints."""
-        if not len(self._closing.rows):
-            return instant.x
+    def _closed(self, leg: Leg, states: MotionState, times: FloatArray) -> FloatArray:
+        """Unknowns at T times in the steps of a leg, with closed constraints, shape (T, size)."""
         equations = leg.equations or equations_of(self.model, leg.piece)
-        near = instant
-        if self._ends:
-            _, step = self._step(self.number_at(instant.time))
-            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - instant.time)))
-        return self._closing.closed(instant, inputs, equations, near)
+        instants, nears = [], []
+        for row, time in enumerate(times.tolist()):
+            _, step = self._step(self.number_at(time))
+            nears.append(self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time))))
+            instants.append(Instant(time, states.x[row], states.v[row], states.a[row]))
+        if 1 < len(times) == len({near.time for near in nears}):
+            # A Jacobian serves one of them in any case.
+            nears = instants
+        return self._closing.closed(instants, states.inputs, equations, nears)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""

@@ -334,24 +334,33 @@ def _scale(sizes: FloatArray) -> FloatArray:
 
 
 def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
-    """Inverse of a matrix whose singular values are all above a share of the largest; None where they may not be.
+    """Inverse of a square matrix by :func:`regular_inverses`; None where it may not be regular."""
+    inverses, (is_regular,) = regular_inverses(matrix[None], rank)
+    return np.asarray(inverses[0]) if is_regular else None
+
+
+def regular_inverses(matrices: FloatArray, rank: float) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+    """Inverses of k matrices, and whether the singular values of each are all above a share of its largest one.
 
     It takes a tenth of the time of the singular values. The condition in the norm of sums of columns, times the number
     of columns, bounds the ratio of the singular values.
 
     Args:
-        matrix: square.
+        matrices: shape (k, n, n).
         rank: the share.
+
+    Returns:
+        the inverses, shape (k, n, n), no numbers where there is none; and whether each is clearly regular, shape (k,).
     """
     try:
-        inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
+        inverses = np.asarray(np.linalg.inv(matrices), dtype=float)
     except np.linalg.LinAlgError:
-        return None
-    condition = len(matrix) * _largest_column(matrix) * _largest_column(inverse)
+        if len(matrices) == 1:
+            return np.full(matrices.shape, np.nan), np.zeros(1, dtype=bool)
+        # NumPy gives none where one is singular.
+        parts = [regular_inverses(matrix[None], rank) for matrix in matrices]
+        return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
+    # Norms of small matrices by NumPy's own take as long as the inverses.
+    norms = np.abs(np.stack([matrices, inverses])).sum(axis=2).max(axis=2)
     # A condition that is not a number is not below the bound.
-    return inverse if condition * rank < 1.0 else None
-
-
-def _largest_column(matrix: npt.NDArray[Any]) -> float:
-    """Norm of a small matrix by its columns: NumPy's own takes as long as the inverse."""
-    return float(np.abs(matrix).sum(axis=0).max())
+    return inverses, norms[0] * norms[1] * matrices.shape[1] * rank < 1.0

@@ -24,6 +24,6 @@ def test_a_jacobian_of_elsewhere_that_leads_away_is_replaced() -> None:
     opened = replace(instant, x=instant.x + 1e-4 * model.discrete.unknowns.differential)
     assert np.abs(equations.residual_at(opened)[closing.rows]).max() > 1e3 * CLOSED
     backwards = replace(instant, time=-1.0)
-    closing._remembered["last"] = -1.0, -3.0 * closing._answer(equations.linearised(instant).stiffness)
-    x = closing.closed(opened, leg.piece.at(instant.time).value, equations, backwards)
+    closing._remembered["last"] = -1.0, closing._slopes(instant, equations) / -3.0
+    (x,) = closing.closed([opened], leg.piece.at(instant.time).value[None], equations, [backwards])
     assert np.abs(equations.residual_at(replace(opened, x=x))[closing.rows]).max() <= CLOSED
