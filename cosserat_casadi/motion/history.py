@@ -416,6 +416,8 @@ class FreeFlight:
 
     def restart_of_steps(self, restart: Restart[Phases]) -> Restart[Phases]:
         """A restart whose state is as the steps have it, from one in the unknowns of the model."""
+        if self.coordinates is None:
+            return restart
         return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
 
     def settled_in_steps(self, settling: Settling) -> Settle:
@@ -594,8 +596,9 @@ def integrated(
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
         following = pieces[number].end - pieces[number].start if number < len(pieces) else np.inf
         settings = replace(settings, first=min(legs[-1].integration.next_size, following))
-    # A cable may become slack or taut in the very end: there is nothing to go on with.
-    legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
+    if legs[-1].integration.outcome is not StepOutcome.COMPLETED:
+        # A cable may become slack or taut in the very end: there is nothing to go on with.
+        legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
     return history()
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -79,7 +78,13 @@ class IntegrationCost:
 
     def __add__(self, other: IntegrationCost) -> IntegrationCost:
         """Numbers of both integrations."""
-        return IntegrationCost(*map(operator.add, astuple(self), astuple(other)))
+        return IntegrationCost(
+            self.steps + other.steps,
+            self.rejected + other.rejected,
+            self.iterations + other.iterations,
+            self.jacobians + other.jacobians,
+            self.factorisations + other.factorisations,
+        )
 
 
 @dataclass(frozen=True)

@@ -244,11 +244,10 @@ def _steps_elsewhere(
     while True:
         before = len(run.steps)
         outcome, tried = steps.take(looked_at)
-        for time in tried:
-            if _crawls(reached, length):
-                run.size = control.wanted
-                return StepOutcome.TOO_MANY_STEPS
-            reached.append(time)
+        if _crawls(reached, length):
+            run.size = control.wanted
+            return StepOutcome.TOO_MANY_STEPS
+        reached.extend(tried)
         if len(run.steps) > before:
             if run.stopped_by_guard():
                 return StepOutcome.GUARDED
