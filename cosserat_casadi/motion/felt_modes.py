@@ -91,9 +91,12 @@ def most_modes(chosen: Mapping[str, Discretisation]) -> int:
 
 def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
-    states = watched_states(history, duration)
-    moved = np.abs(states.x).max(axis=0) * displacements(history.model)
-    return history.once("felt", duration, lambda: _by_strain(history.model, moved))
+
+    def moved() -> ByStrain:
+        states = watched_states(history, duration)
+        return _by_strain(history.model, np.abs(states.x).max(axis=0) * displacements(history.model))
+
+    return history.once("felt", duration, moved)
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
@@ -219,13 +222,16 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
     What a front lacks from all rods that it comes through adds up, as errors at different times do: in squares.
     """
-    model = history.model
-    by_rod = at_fronts(history, duration)
-    squares = dict.fromkeys(by_rod, 0.0)
-    for name, by_strain in by_rod.items():
-        for other in moved_along(model.scene, name).rods:
-            squares[other] += max(by_strain) ** 2
-    return float(np.sqrt(max(squares.values())))
+
+    def lacking() -> float:
+        by_rod = at_fronts(history, duration)
+        squares = dict.fromkeys(by_rod, 0.0)
+        for name, by_strain in by_rod.items():
+            for other in moved_along(history.model.scene, name).rods:
+                squares[other] += max(by_strain) ** 2
+        return float(np.sqrt(max(squares.values())))
+
+    return history.once("lacking at fronts", duration, lacking)
 
 
 def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
