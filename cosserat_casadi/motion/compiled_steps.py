@@ -259,9 +259,7 @@ class CompiledSteps:
         run, record = self._run, self._record
         states = np.concatenate([[[now.x, now.v, now.a]], ends])
         times = np.append(now.time, facts[:-1, 0])
-        rows = StepRows(
-            run.method, run.equations.differential, states[:-1], states[1:], unknowns, facts[:, :-1], times
-        )
+        rows = StepRows(run.method, run.equations.differential, states[:-1], states[1:], unknowns, facts[:, :-1], times)
         if one:
             run.add(rows[0])
         else:

@@ -104,7 +104,7 @@ class Closing:
         return x
 
     def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """The rows of the constraints at T states, shape (T, rows): the rest of the equations takes several times as long."""
+        """The rows of the constraints at T states, shape (T, rows)."""
         (gaps,) = evaluated(self._function, x, inputs)
         return gaps[:, :, 0].copy()
 

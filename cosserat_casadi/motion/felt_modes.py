@@ -432,9 +432,7 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
     late = 0.0
     for rod, of_rod in ways.items():
         let_through = _let_through(history.model, rod)
-        for passed, way, acceleration, moved in zip(
-            let_through, of_rod, largest[rod], moved_by[rod], strict=True
-        ):
+        for passed, way, acceleration, moved in zip(let_through, of_rod, largest[rod], moved_by[rod], strict=True):
             share = last_of(acceleration) / max(acceleration.max(), TINY)
             of_any_share = float(np.sqrt(0.5 * np.pi * last_of(way) * last_of(moved)))
             late = max(late, passed * min(0.5 * last_of(way) * share, of_any_share))

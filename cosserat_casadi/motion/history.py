@@ -69,6 +69,9 @@ SHORTER = 0.25
 AT_ONCE = 1e-6
 """Time, over the duration, that counts as next to no time for changes."""
 
+CLOSED_AT_ONCE = 256
+"""Rows whose constraints are closed together: each has a matrix of its own."""
+
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
 """The remedy where nothing can follow an input that has a speed."""
 
@@ -257,8 +260,12 @@ class History:
             else:
                 instants = [self.locate(time)[1] for time in times[rows].tolist()]
                 x[rows], v[rows], a[rows] = zip(*((at.x, at.v, at.a) for at in instants), strict=True)
-            if held is not None and len(self._closing.rows):
-                x[rows] = self._closed(leg, MotionState(x[rows], v[rows], a[rows], inputs[rows]), times[rows])
+            if held is None or not len(self._closing.rows):
+                continue
+            places = np.flatnonzero(rows)
+            for first in range(0, len(places), CLOSED_AT_ONCE):
+                some = places[first : first + CLOSED_AT_ONCE]
+                x[some] = self._closed(leg, MotionState(x[some], v[some], a[some], inputs[some]), times[some])
         return MotionState(x, v, a, inputs)
 
     def _closed(self, leg: Leg, states: MotionState, times: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from itertools import accumulate
 from typing import NamedTuple
 
 import casadi as ca
@@ -74,7 +75,7 @@ class RepeatedCall:
     def __init__(self, function: ca.Function, results: int = 1, library: str | os.PathLike[str] | None = None) -> None:
         signature = _signature(function, results) if library is None else _kept_signature(function, results)
         sizes = [*signature.arguments, *(rows * columns for rows, columns in signature.results)]
-        ends = np.cumsum(sizes).tolist()
+        ends = list(accumulate(sizes))
         # One block: an array for each, and its address, would take longer than calls.
         block = np.zeros(ends[-1])
         parts = [block[end - size : end] for size, end in zip(sizes, ends, strict=True)]
@@ -97,7 +98,8 @@ class RepeatedCall:
             # The evaluation reads and writes the buffer's memory: it has to live as long.
             self._buffer = buffer
             return
-        places = block.ctypes.data + block.itemsize * (np.array(ends) - sizes)
+        first = block.ctypes.data
+        places = [first + block.itemsize * (end - size) for size, end in zip(sizes, ends, strict=True)]
         self.code = _machine_code(function.name(), os.fspath(library), signature, places)
         self.evaluate = self.code.evaluate
 
@@ -156,7 +158,7 @@ _kept_signature = lru_cache(maxsize=MOST_LOADED)(_signature)
 """Signatures of functions of shared objects, of which each model asks for new calls."""
 
 
-def _machine_code(name: str, library: str, signature: Signature, places: npt.NDArray[np.int64]) -> MachineCode:
+def _machine_code(name: str, library: str, signature: Signature, places: Sequence[int]) -> MachineCode:
     """A function in a shared object, called with arguments and results at these addresses."""
     loaded = _loaded(library)
     function = getattr(loaded, name)

@@ -157,7 +157,8 @@ class StepRows(Sequence[TimeStep]):
         if isinstance(steps, StepRows):
             return steps
         first = steps[0]
-        begins, ends = (np.array([[at.x, at.v, at.a] for at in ats]) for ats in zip(*((s.start, s.end) for s in steps)))
+        begins = np.array([[step.start.x, step.start.v, step.start.a] for step in steps])
+        ends = np.array([[step.end.x, step.end.v, step.end.a] for step in steps])
         facts = [[s.end.time, s.size, s.error, s.iterations, s.residual, s.contraction] for s in steps]
         unknowns = np.array([step.unknowns for step in steps])
         times = np.array([step.start.time for step in steps])

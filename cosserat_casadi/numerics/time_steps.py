@@ -54,6 +54,7 @@ ROUNDING = 1e-14
 FAILED_SHRINKAGE = 0.5
 """Factor of a step whose equations were not solved."""
 
+
 class StepsElsewhere(Protocol):
     """The steps of one integration, taken by other code than this module's, with the same digits."""
 
