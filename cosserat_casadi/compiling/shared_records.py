@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -50,19 +49,6 @@ class Held:
         """Have a member of the record point at an array."""
         self._kept.append(array)
         setattr(self.record, name, array.ctypes.data)
-
-    def allot(self, **shapes: tuple[int, ...]) -> list[np.ndarray[Any, Any]]:
-        """New arrays of real numbers, zero at first, that members of the record point at, by their shapes."""
-        sizes = [math.prod(shape) for shape in shapes.values()]
-        # One block: each array alone would take as long as all of them.
-        block = np.zeros(sum(sizes))
-        self._kept.append(block)
-        arrays, begin, address = [], 0, block.ctypes.data
-        for (name, shape), size in zip(shapes.items(), sizes, strict=True):
-            setattr(self.record, name, address + begin * block.itemsize)
-            arrays.append(block[begin : begin + size].reshape(shape))
-            begin += size
-        return arrays
 
     def point(self, name: str, held: Held) -> None:
         """Have a member of the record point at another record."""

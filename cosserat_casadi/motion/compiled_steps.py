@@ -73,15 +73,15 @@ class CompiledSteps:
         record = StepsRecord(unknowns=n, stop=run.stop, newton=run.bounds.error, shortest=shortest)
         self._record = record
         self._held = Held(record)
-        self._matrices, self._now, self._linearised_at, self._kept_at, self._before, _ = self._held.allot(
-            matrices=(ORDERS, n, n),
-            now=(ORDERS, n),
-            linearised_at=(ORDERS, n),
-            kept_at=(ORDERS, n),
-            before=(STAGES, n),
-            stage_times=(STAGES,),
-        )
+        self._matrices = np.zeros((ORDERS, n, n))
+        self._now, self._linearised_at, self._kept_at = np.zeros((3, ORDERS, n))
+        self._before = np.zeros((STAGES, n))
         self._rows: list[FloatArray] = []
+        self._held.share("matrices", self._matrices)
+        self._held.share("now", self._now)
+        self._held.share("before", self._before)
+        self._held.share("linearised_at", self._linearised_at)
+        self._held.share("kept_at", self._kept_at)
         self._held.share("differential", run.equations.differential.astype(np.intc))
         self._held.share("weights", np.ascontiguousarray(run.bounds.weights, dtype=float))
         kinks = np.array(run.equations.kinks, dtype=float)
@@ -97,7 +97,8 @@ class CompiledSteps:
             self._share_function()
         if not record.derivatives:
             self._held.call_back("jacobians_at", CALL, self._linearise)
-        self._held.allot(room=(self._library.steps_room(n, record.inputs),))
+        self._held.share("stage_times", np.zeros(STAGES))
+        self._held.share("room", np.zeros(self._library.steps_room(n, record.inputs)))
         record.lasting = run.settings.lasting
         record.drifting = run.settings.drifting
         record.longest_allowed = control.longest
@@ -227,7 +228,9 @@ class CompiledSteps:
         if not self._rows:
             most = 1 if one else MOST_TRIES
             shapes = {"facts": (most, FACTS), "ends": (most, ORDERS, n), "stages": (most, STAGES, n)}
-            self._rows = self._held.allot(**shapes, tried_at=(MOST_TRIES,))
+            for name, shape in {**shapes, "tried_at": (MOST_TRIES,)}.items():
+                self._rows.append(np.zeros(shape))
+                self._held.share(name, self._rows[-1])
         now = run.now
         self._now[:] = now.x, now.v, now.a
         record.time = now.time
@@ -258,8 +261,8 @@ class CompiledSteps:
         """Give the run its new steps, and the memory for a next one."""
         run, record = self._run, self._record
         states = np.concatenate([[[now.x, now.v, now.a]], ends])
-        times = np.append(now.time, facts[:-1, 0])
-        rows = StepRows(run.method, run.equations.differential, states[:-1], states[1:], unknowns, facts[:, :-1], times)
+        facts = np.column_stack([np.append(now.time, facts[:-1, 0]), facts])
+        rows = StepRows(run.method, run.equations.differential, states[:-1], states[1:], unknowns, facts[:, :-1])
         if one:
             run.add(rows[0])
         else:
@@ -268,7 +271,7 @@ class CompiledSteps:
         run.fresh = bool(record.fresh)
         linearised_at = Instant(record.kept_time, *self._kept_at.copy()) if record.kept else None
         run.linearised_at = linearised_at
-        _, size, error, *_, wanted = facts[-1].tolist()
+        _, _, size, error, *_, wanted = facts[-1].tolist()
         run.memory = CarriedStep(run.begun, size, unknowns[-1], wanted, error, run.longest, linearised_at)
         run.renew_jacobian()
         if linearised_at is not None and run.guards is not None:

@@ -7,7 +7,7 @@ is far below the tolerance of the motion.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
@@ -21,7 +21,7 @@ from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.repeated_call import external
-from cosserat_casadi.numerics.consistent_start import regular_inverses
+from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 CLOSED = 1e-12
@@ -59,24 +59,33 @@ class Closing:
         return constraint_rows(self.model)
 
     def closed(
-        self, instants: Sequence[Instant], inputs: FloatArray, equations: MotionEquations, nears: Sequence[Instant]
+        self,
+        times: FloatArray,
+        states: Sequence[FloatArray],
+        inputs: FloatArray,
+        equations: MotionEquations,
+        steps: npt.NDArray[np.intp],
     ) -> FloatArray:
-        """Unknowns at T instants, moved by the smallest displacements that close the constraints, shape (T, size).
+        """Unknowns at T times, moved by the smallest displacements that close the constraints, shape (T, size).
 
         Args:
-            instants: of the motion, in the unknowns of the model.
-            inputs: inputs at these instants, shape (T, model.inputs.size).
+            times: of the motion, shape (T,), s.
+            states: x, v and a at these times, in the unknowns of the model, shape (T, size) each.
+            inputs: inputs at these times, shape (T, model.inputs.size).
             equations: of motion, of which some rows are the constraints.
-            nears: where the first Jacobian of each instant is evaluated: an end of the step that holds it.
+            steps: number of the step that holds each time, shape (T,); one Jacobian serves a step at first.
         """
-        x = np.array([instant.x for instant in instants])
-        if not len(self.rows):
-            return x
+        x = np.array(states[0])
         best = x.copy()
         before = np.full(len(x), np.inf)
         is_here = np.zeros(len(x), dtype=bool)
-        answers = np.zeros((len(x), self.model.size, len(self.rows)))
+        answers: FloatArray | None = None
         left = np.arange(len(x))
+
+        def answer_at(row: int) -> FloatArray:
+            instant = Instant(float(times[row]), best[row], states[1][row], states[2][row])
+            return self._answer(equations.linearised(instant).stiffness)
+
         for _ in range(MOST_CORRECTIONS):
             gaps = self._gaps(x[left], inputs[left])
             largest = np.abs(gaps).max(axis=1)
@@ -84,71 +93,41 @@ class Closing:
             # Where constraints are about to depend on each other corrections may lead away.
             is_given_up = (largest > CLOSED) & leads_away & is_here[left]
             x[left[is_given_up]] = best[left[is_given_up]]
-            goes_on = ~((largest <= CLOSED) | is_given_up)
+            goes_on = (largest > CLOSED) & ~is_given_up
             left, gaps, largest, leads_away = (each[goes_on] for each in (left, gaps, largest, leads_away))
             if not len(left):
                 break
             if np.any(leads_away):
                 gaps[leads_away] = self._gaps(best[left[leads_away]], inputs[left[leads_away]])
             best[left[~leads_away]] = x[left[~leads_away]]
-            is_renewed = leads_away | (largest > CONTRACTED * before[left])
-            if np.all(np.isinf(before[left])):
-                answers[left] = self._answers(np.array([self._slopes_near(nears[row], equations) for row in left]))
-            elif np.any(is_renewed):
-                rows = left[is_renewed]
-                here = [replace(instants[row], x=best[row]) for row in rows.tolist()]
-                answers[rows] = self._answers(np.array([self._slopes(instant, equations) for instant in here]))
-                is_here[rows] = True
+            if answers is None:
+                _, firsts, of_step = np.unique(steps, return_index=True, return_inverse=True)
+                answers = np.array([answer_at(row) for row in firsts.tolist()])[of_step]
+            else:
+                for row in left[leads_away | (largest > CONTRACTED * before[left])].tolist():
+                    answers[row] = answer_at(row)
+                    is_here[row] = True
             before[left] = np.abs(gaps).max(axis=1)
             x[left] = best[left] - np.einsum("tnm,tm->tn", answers[left], gaps)
         return x
 
     def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """The rows of the constraints at T states, shape (T, rows)."""
-        (gaps,) = evaluated(self._function, x, inputs)
+        """The rows of the constraints at T states, shape (T, rows): the rest of the equations is not computed."""
+        function = external(GAPS, self.library) if self.library else functions_of_closing(self.model)[0]
+        (gaps,) = evaluated(function, x, inputs)
         return gaps[:, :, 0].copy()
 
-    @cached_property
-    def _function(self) -> ca.Function:
-        """(x, inputs) ↦ the rows of the constraints."""
-        if self.library is not None:
-            return external(GAPS, self.library)
-        function: ca.Function = kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
-        return function
-
-    def _slopes(self, instant: Instant, equations: MotionEquations) -> FloatArray:
-        """Derivatives of the rows of the constraints with the unknowns at an instant, shape (rows, size)."""
-        return np.asarray(equations.linearised(instant).stiffness[self.rows])
-
-    def _slopes_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
-        """The derivatives at an end of a step; the last ones are remembered."""
-        time, slopes = self._remembered.get("last", (None, None))
-        if slopes is None or time != near.time:
-            slopes = self._slopes(near, equations)
-            self._remembered["last"] = near.time, slopes
-        return slopes
-
-    @cached_property
-    def _remembered(self) -> dict[str, tuple[float, FloatArray]]:
-        return {}
-
-    def _answers(self, slopes: FloatArray) -> FloatArray:
-        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (T, size, rows).
-
-        Args:
-            slopes: derivatives of the rows of the constraints at T states, shape (T, rows, size).
-        """
+    def _answer(self, stiffness: FloatArray) -> FloatArray:
+        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
         moves = self.model.discrete.unknowns.differential
-        weighted = np.where(moves, slopes / self._sizes, 0.0)
-        across = weighted.swapaxes(1, 2)
+        weighted = np.where(moves, stiffness[self.rows] / self._sizes, 0.0)
         # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
-        inverses, regular = regular_inverses(weighted @ across, INDEPENDENT)
-        answers = across @ inverses
+        regular = regular_inverse(weighted @ weighted.T, INDEPENDENT)
+        if regular is not None:
+            return np.asarray(weighted.T @ regular / self._sizes[:, None])
         # Constraints that repeat each other have singular values of that size, over the largest.
-        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape[1:])
-        for row in np.flatnonzero(~regular).tolist():
-            answers[row] = np.linalg.pinv(weighted[row], rcond=rounding)
-        return np.asarray(answers / self._sizes[:, None])
+        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape)
+        return np.asarray(np.linalg.pinv(weighted, rcond=rounding) / self._sizes[:, None])
 
     @cached_property
     def _sizes(self) -> FloatArray:
@@ -167,12 +146,16 @@ def constraint_rows(model: Model) -> npt.NDArray[np.int64]:
 
 def functions_of_closing(model: Model) -> list[ca.Function]:
     """The function (x, inputs) ↦ the rows of the constraints; none where nothing is held."""
-    rows = constraint_rows(model)
-    if not len(rows):
+    if not len(constraint_rows(model)):
         return []
+    return [kept_with(model, "_gaps", lambda: _written(model))]
+
+
+def _written(model: Model) -> ca.Function:
+    rows = constraint_rows(model)
     dynamics = model.inverse_dynamics_in_scalars
     # As scalars only the constraints are left of it.
     symbols = dynamics.mx_in() if chooses(dynamics) else dynamics.sx_in()
     at_rest = {"x": symbols[0], "inputs": symbols[3]}
     residual = dynamics.call({**dict.fromkeys(dynamics.name_in(), 0), **at_rest})["residual"]
-    return [ca.Function(GAPS, list(at_rest.values()), [ca.densify(residual[rows.tolist()])], list(at_rest), ["gaps"])]
+    return ca.Function(GAPS, list(at_rest.values()), [ca.densify(residual[rows.tolist()])], list(at_rest), ["gaps"])

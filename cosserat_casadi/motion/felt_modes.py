@@ -222,16 +222,12 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
     What a front lacks from all rods that it comes through adds up, as errors at different times do: in squares.
     """
-
-    def lacking() -> float:
-        by_rod = at_fronts(history, duration)
-        squares = dict.fromkeys(by_rod, 0.0)
-        for name, by_strain in by_rod.items():
-            for other in moved_along(history.model.scene, name).rods:
-                squares[other] += max(by_strain) ** 2
-        return float(np.sqrt(max(squares.values())))
-
-    return history.once("lacking at fronts", duration, lacking)
+    by_rod = at_fronts(history, duration)
+    squares = dict.fromkeys(by_rod, 0.0)
+    for name, by_strain in by_rod.items():
+        for other in moved_along(history.model.scene, name).rods:
+            squares[other] += max(by_strain) ** 2
+    return float(np.sqrt(max(squares.values())))
 
 
 def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
@@ -426,7 +422,7 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
     own = slice(history.model.size)
     _, rates, accelerations = np.abs(np.concatenate([of_leg.ends[:, :, own] for of_leg in rows])).swapaxes(0, 1)
     # A motion that goes on had waves before: its lateness adds up.
-    sizes = np.concatenate([of_leg.sizes for of_leg in rows]) * duration / (duration - history.begin)
+    sizes = np.concatenate([of_leg.facts[:, 2] for of_leg in rows]) * duration / (duration - history.begin)
     ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
     largest = _by_strain(history.model, accelerations.max(axis=0))
     late = 0.0

@@ -262,31 +262,21 @@ class History:
                 x[rows], v[rows], a[rows] = zip(*((at.x, at.v, at.a) for at in instants), strict=True)
             if held is None or not len(self._closing.rows):
                 continue
+            equations = leg.equations or equations_of(self.model, leg.piece)
             places = np.flatnonzero(rows)
             for first in range(0, len(places), CLOSED_AT_ONCE):
                 some = places[first : first + CLOSED_AT_ONCE]
-                x[some] = self._closed(leg, MotionState(x[some], v[some], a[some], inputs[some]), times[some])
+                numbers = held.numbers[first : first + CLOSED_AT_ONCE]
+                states = x[some], v[some], a[some]
+                x[some] = self._closing.closed(times[some], states, inputs[some], equations, numbers)
         return MotionState(x, v, a, inputs)
-
-    def _closed(self, leg: Leg, states: MotionState, times: FloatArray) -> FloatArray:
-        """Unknowns at T times in the steps of a leg, with closed constraints, shape (T, size)."""
-        equations = leg.equations or equations_of(self.model, leg.piece)
-        instants, nears = [], []
-        for row, time in enumerate(times.tolist()):
-            _, step = self._step(self.number_at(time))
-            nears.append(self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - time))))
-            instants.append(Instant(time, states.x[row], states.v[row], states.a[row]))
-        if 1 < len(times) == len({near.time for near in nears}):
-            # A Jacobian serves one of them in any case.
-            nears = instants
-        return self._closing.closed(instants, states.inputs, equations, nears)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
         if not self._ends:
             leg = self.legs[0]
             return leg, self.of_model(leg.start.instant)
-        leg, step = self._step(self.number_at(time))
+        leg, step = self.steps[self.number_at(time)]
         return leg, self.of_model(step.at(time))
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
@@ -294,7 +284,7 @@ class History:
         if self.contacts is None or not self._ends:
             return ()
         number = self.number_at(time)
-        _, step = self._step(number)
+        _, step = self.steps[number]
         # The stages of a short first step have rounding over its square in their forces, and more where it begins.
         instant = step.start if time == step.start.time else step.at(time)
         return self.contacts.at(number, self.flight.to_model(instant))
@@ -320,14 +310,6 @@ class History:
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
         return min(bisect_left(self._ends, time), len(self._ends) - 1)
-
-    def _step(self, number: int) -> tuple[Leg, TimeStep]:
-        """The step of a number, and its leg."""
-        for leg in self.legs:
-            if number < len(leg.integration.steps):
-                break
-            number -= len(leg.integration.steps)
-        return leg, leg.integration.steps[number]
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times as the steps have them, shapes (T, size) and (T, inputs).

@@ -194,7 +194,6 @@ class ResolvedMotion:
         waves: whether sudden loads send waves along rods without damping.
         fronts: displacement over the length that the fronts of these waves lack.
         step_tolerance: of a step, over the length, that it was computed with; nan for steps of given size.
-        exact: the motion with steps TIGHTER times as exact, where it was computed before; else None.
     """
 
     simulator: Simulator
@@ -207,7 +206,6 @@ class ResolvedMotion:
     waves: bool = False
     fronts: float = 0.0
     step_tolerance: float = float("nan")
-    exact: History | None = None
 
 
 @dataclass
@@ -583,15 +581,10 @@ def _with_steps_of_others(search: _Search) -> ResolvedMotion:
         raise KeyboardInterrupt
     if not history.completed:
         return level
-    found = level.simulator.paths(history)
-    level = replace(
-        level,
-        history=history,
-        paths=found,
-        distance=path_distance(search.levels[-2].paths, found),
-        step_tolerance=search.step_tolerance,
-        exact=level.history,
-    )
+    paths = level.simulator.paths(history)
+    distance = path_distance(search.levels[-2].paths, paths)
+    step_tolerance = search.step_tolerance
+    level = replace(level, history=history, paths=paths, distance=distance, step_tolerance=step_tolerance)
     return _with_waves(search, level)
 
 
@@ -750,7 +743,7 @@ def _timed(search: _Search) -> TimedHistory:
         return TimedHistory(level.history, search.time_error)
     allowed = partial(_allowed, search)
     if not level.step_tolerance < search.step_tolerance:
-        return level.simulator.tightened(level.history, level.step_tolerance, allowed, fine=level.exact)
+        return level.simulator.tightened(level.history, level.step_tolerance, allowed)
     timed = _told_by_level_before(search)
     if timed.error <= allowed(timed.history):
         return timed

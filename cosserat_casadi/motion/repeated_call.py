@@ -9,8 +9,7 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from itertools import accumulate
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -18,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.compiling.scalar_program import ScalarProgram
-from cosserat_casadi.compiling.shared_records import address_of
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -38,7 +36,6 @@ class MachineCode:
         scratch: memory of the function for real numbers.
         library: the library that has the function.
         path: path of the library's file.
-        evaluate: calls the function.
     """
 
     address: int
@@ -48,7 +45,6 @@ class MachineCode:
     scratch: FloatArray
     library: ctypes.CDLL
     path: str
-    evaluate: Callable[[], object]
 
 
 class RepeatedCall:
@@ -73,35 +69,24 @@ class RepeatedCall:
     """
 
     def __init__(self, function: ca.Function, results: int = 1, library: str | os.PathLike[str] | None = None) -> None:
-        signature = _signature(function, results) if library is None else _kept_signature(function, results)
-        sizes = [*signature.arguments, *(rows * columns for rows, columns in signature.results)]
-        ends = list(accumulate(sizes))
-        # One block: an array for each, and its address, would take longer than calls.
-        block = np.zeros(ends[-1])
-        parts = [block[end - size : end] for size, end in zip(sizes, ends, strict=True)]
-        count = len(signature.arguments)
-        self.arguments = parts[:count]
+        arguments = [function.sparsity_in(i) for i in range(function.n_in())]
+        wanted = [function.sparsity_out(i) for i in range(results)]
+        for sparsity in (*arguments, *wanted):
+            if not sparsity.is_dense():
+                raise ValueError(f"{function.name()} has an argument or a result that is not dense")
+        buffer, self.evaluate = function.buffer()
+        self.arguments = [np.zeros(sparsity.nnz()) for sparsity in arguments]
         # CasADi stores column by column.
-        self.results = [
-            part.reshape(shape, order="F") for part, shape in zip(parts[count:], signature.results, strict=True)
-        ]
+        self.results = [np.zeros(sparsity.shape, order="F") for sparsity in wanted]
+        for number, argument in enumerate(self.arguments):
+            buffer.set_arg(number, argument.data)
+        for number, result in enumerate(self.results):
+            buffer.set_res(number, result.ravel(order="K").data)
+        # The evaluation reads and writes the buffer's memory: it has to live as long.
+        self._buffer = buffer
         self.program: ScalarProgram | None = None
         self.program_after: Callable[[int], ScalarProgram | None] | None = None
-        self.code: MachineCode | None = None
-        if library is None:
-            buffer, self.evaluate = function.buffer()
-            for number, part in enumerate(parts):
-                if number < count:
-                    buffer.set_arg(number, part.data)
-                else:
-                    buffer.set_res(number - count, part.data)
-            # The evaluation reads and writes the buffer's memory: it has to live as long.
-            self._buffer = buffer
-            return
-        first = block.ctypes.data
-        places = [first + block.itemsize * (end - size) for size, end in zip(sizes, ends, strict=True)]
-        self.code = _machine_code(function.name(), os.fspath(library), signature, places)
-        self.evaluate = self.code.evaluate
+        self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
     @property
     def library(self) -> str | None:
@@ -124,53 +109,15 @@ class RepeatedCall:
             argument[:] = value
         self.evaluate()
 
-
-class Signature(NamedTuple):
-    """What a call of a function needs memory for.
-
-    Attributes:
-        arguments: entries of each argument.
-        results: shapes of the results that are wanted.
-        work: numbers of addresses of arguments and of results, of whole numbers and of real numbers of its work.
-    """
-
-    arguments: tuple[int, ...]
-    results: tuple[tuple[int, int], ...]
-    work: tuple[int, int, int, int]
-
-
-def _signature(function: ca.Function, results: int) -> Signature:
-    """The memory for a call of a function whose first results are wanted.
-
-    Raises:
-        ValueError: an argument or a result is not dense.
-    """
-    arguments = [function.sparsity_in(i) for i in range(function.n_in())]
-    wanted = [function.sparsity_out(i) for i in range(results)]
-    for sparsity in (*arguments, *wanted):
-        if not sparsity.is_dense():
-            raise ValueError(f"{function.name()} has an argument or a result that is not dense")
-    work = function.sz_arg(), function.sz_res(), max(function.sz_iw(), 1), max(function.sz_w(), 1)
-    return Signature(tuple(s.nnz() for s in arguments), tuple(s.shape for s in wanted), work)
-
-
-_kept_signature = lru_cache(maxsize=MOST_LOADED)(_signature)
-"""Signatures of functions of shared objects, of which each model asks for new calls."""
-
-
-def _machine_code(name: str, library: str, signature: Signature, places: Sequence[int]) -> MachineCode:
-    """A function in a shared object, called with arguments and results at these addresses."""
-    loaded = _loaded(library)
-    function = getattr(loaded, name)
-    count = len(signature.arguments)
-    arguments, results = (np.zeros(size, dtype=np.uintp) for size in signature.work[:2])
-    arguments[:count] = places[:count]
-    results[: len(signature.results)] = places[count:]
-    integers, scratch = np.zeros(signature.work[2], dtype=np.longlong), np.zeros(signature.work[3])
-    memory = [ctypes.c_void_p(array.ctypes.data) for array in (arguments, results, integers, scratch)]
-    return MachineCode(
-        address_of(function), arguments, results, integers, scratch, loaded, library, partial(function, *memory, 0)
-    )
+    def _machine_code(self, function: ca.Function, library: str) -> MachineCode:
+        loaded = _loaded(library)
+        address = ctypes.cast(getattr(loaded, function.name()), ctypes.c_void_p).value
+        assert address is not None, "a function has an address"
+        arguments, results = (np.zeros(size, dtype=np.uintp) for size in (function.sz_arg(), function.sz_res()))
+        arguments[: len(self.arguments)] = [array.ctypes.data for array in self.arguments]
+        results[: len(self.results)] = [array.ctypes.data for array in self.results]
+        integers, scratch = np.zeros(max(function.sz_iw(), 1), dtype=np.longlong), np.zeros(max(function.sz_w(), 1))
+        return MachineCode(address, arguments, results, integers, scratch, loaded, library)
 
 
 class Libraries(NamedTuple):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -333,33 +334,24 @@ def _scale(sizes: FloatArray) -> FloatArray:
 
 
 def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
-    """Inverse of a square matrix by :func:`regular_inverses`; None where it may not be regular."""
-    inverses, (is_regular,) = regular_inverses(matrix[None], rank)
-    return np.asarray(inverses[0]) if is_regular else None
-
-
-def regular_inverses(matrices: FloatArray, rank: float) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """Inverses of k matrices, and whether the singular values of each are all above a share of its largest one.
+    """Inverse of a matrix whose singular values are all above a share of the largest; None where they may not be.
 
     It takes a tenth of the time of the singular values. The condition in the norm of sums of columns, times the number
     of columns, bounds the ratio of the singular values.
 
     Args:
-        matrices: shape (k, n, n).
+        matrix: square.
         rank: the share.
-
-    Returns:
-        the inverses, shape (k, n, n), no numbers where there is none; and whether each is clearly regular, shape (k,).
     """
     try:
-        inverses = np.asarray(np.linalg.inv(matrices), dtype=float)
+        inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
     except np.linalg.LinAlgError:
-        if len(matrices) == 1:
-            return np.full(matrices.shape, np.nan), np.zeros(1, dtype=bool)
-        # NumPy gives none where one is singular.
-        parts = [regular_inverses(matrix[None], rank) for matrix in matrices]
-        return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
-    # Norms of small matrices by NumPy's own take as long as the inverses.
-    norms = np.abs(np.stack([matrices, inverses])).sum(axis=2).max(axis=2)
+        return None
+    condition = len(matrix) * _largest_column(matrix) * _largest_column(inverse)
     # A condition that is not a number is not below the bound.
-    return inverses, norms[0] * norms[1] * matrices.shape[1] * rank < 1.0
+    return inverse if condition * rank < 1.0 else None
+
+
+def _largest_column(matrix: npt.NDArray[Any]) -> float:
+    """Norm of a small matrix by its columns: NumPy's own takes as long as the inverse."""
+    return float(np.abs(matrix).sum(axis=0).max())

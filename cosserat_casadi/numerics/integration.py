@@ -117,18 +117,14 @@ class Integration:
     @property
     def end_times(self) -> list[float]:
         """Time at the end of each step, s."""
-        if isinstance(self.steps, StepRows):
-            times: list[float] = self.steps.end_times.tolist()
-            return times
-        return [step.end.time for step in self.steps]
+        times: list[float] = StepRows.of(self.steps).facts[:, 1].tolist() if self.steps else []
+        return times
 
     @property
     def sizes(self) -> list[float]:
         """Size of each step, s."""
-        if isinstance(self.steps, StepRows):
-            sizes: list[float] = self.steps.sizes.tolist()
-            return sizes
-        return [step.size for step in self.steps]
+        sizes: list[float] = StepRows.of(self.steps).facts[:, 2].tolist() if self.steps else []
+        return sizes
 
 
 def stalled_at(start: Instant) -> Integration:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import overload
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -124,82 +124,55 @@ class TimeStep(StepPolynomial):
         return self.at_share((time - self.start.time) / self.size, time)
 
 
+@dataclass(frozen=True, eq=False)
 class StepRows(Sequence[TimeStep]):
     """Steps of n unknowns one after the other, as arrays: the record of a step is made where it is asked for.
 
-    Args:
+    Attributes:
         method: the collocation method, with s stages.
         differential: which entries have accelerations, shape (n,).
         begins: x, v and a at the beginning of each of k steps, shape (k, 3, n).
         ends: x, v and a at the end of each step, shape (k, 3, n).
         unknowns: of the stages of each step, shape (k, s, n).
-        facts: time at the end and size, s, error, iterations, residual and contraction of each step, shape (k, 6).
-        begin_times: time at which each step begins, shape (k,), s.
+        facts: times at the beginning and at the end, size, s, error, iterations, residual and contraction of each step,
+            shape (k, 7).
     """
 
-    def __init__(
-        self,
-        method: Collocation,
-        differential: npt.NDArray[np.bool_],
-        begins: FloatArray,
-        ends: FloatArray,
-        unknowns: FloatArray,
-        facts: FloatArray,
-        begin_times: FloatArray,
-    ) -> None:
-        self.method, self.differential = method, differential
-        self.begins, self.ends, self.unknowns = begins, ends, unknowns
-        self.facts, self.begin_times = facts, begin_times
+    method: Collocation
+    differential: npt.NDArray[np.bool_]
+    begins: FloatArray
+    ends: FloatArray
+    unknowns: FloatArray
+    facts: FloatArray
 
     @classmethod
     def of(cls, steps: Sequence[TimeStep]) -> StepRows:
         """Steps of one method, at least one, as arrays."""
         if isinstance(steps, StepRows):
             return steps
-        first = steps[0]
         begins = np.array([[step.start.x, step.start.v, step.start.a] for step in steps])
         ends = np.array([[step.end.x, step.end.v, step.end.a] for step in steps])
-        facts = [[s.end.time, s.size, s.error, s.iterations, s.residual, s.contraction] for s in steps]
+        facts = [
+            (one.start.time, one.end.time, one.size, one.error, one.iterations, one.residual, one.contraction)
+            for one in steps
+        ]
         unknowns = np.array([step.unknowns for step in steps])
-        times = np.array([step.start.time for step in steps])
-        return cls(first.method, first.differential, begins, ends, unknowns, np.array(facts), times)
+        return cls(steps[0].method, steps[0].differential, begins, ends, unknowns, np.array(facts))
 
     @classmethod
     def joined(cls, blocks: Sequence[StepRows]) -> StepRows:
         """Blocks of steps of one method as one."""
-        if len(blocks) == 1:
-            return blocks[0]
-        parts = zip(*((b.begins, b.ends, b.unknowns, b.facts, b.begin_times) for b in blocks), strict=True)
-        return cls(blocks[0].method, blocks[0].differential, *(np.concatenate(part) for part in parts))
+        parts = zip(*((block.begins, block.ends, block.unknowns, block.facts) for block in blocks), strict=True)
+        return cls(blocks[0].method, blocks[0].differential, *map(np.concatenate, parts))
 
     def __len__(self) -> int:
         return len(self.facts)
 
-    @overload
-    def __getitem__(self, number: int) -> TimeStep: ...
-    @overload
-    def __getitem__(self, number: slice) -> StepRows: ...
-    def __getitem__(self, number: int | slice) -> TimeStep | StepRows:
-        if isinstance(number, slice):
-            parts = (self.begins, self.ends, self.unknowns, self.facts, self.begin_times)
-            return StepRows(self.method, self.differential, *(part[number] for part in parts))
-        time, size, error, iterations, residual, contraction = self.facts[number].tolist()
-        start = Instant(float(self.begin_times[number]), *self.begins[number])
-        end = Instant(time, *self.ends[number])
-        of_stages = self.unknowns[number]
-        return TimeStep(
-            self.method, self.differential, start, size, of_stages, end, error, int(iterations), residual, contraction
-        )
-
-    @property
-    def end_times(self) -> FloatArray:
-        """Time at the end of each step, shape (k,), s."""
-        return np.asarray(self.facts[:, 0])
-
-    @property
-    def sizes(self) -> FloatArray:
-        """Size of each step, shape (k,), s."""
-        return np.asarray(self.facts[:, 1])
+    def __getitem__(self, number: Any) -> Any:
+        begun, ended, size, error, iterations, *last = self.facts[number].tolist()
+        start, end = Instant(begun, *self.begins[number]), Instant(ended, *self.ends[number])
+        unknowns = self.unknowns[number]
+        return TimeStep(self.method, self.differential, start, size, unknowns, end, error, int(iterations), *last)
 
 
 class HeldTimes:
@@ -211,31 +184,32 @@ class HeldTimes:
         steps: of n unknowns.
         numbers: which of the steps holds each time, shape (T,).
         times: shape (T,), s.
+
+    Attributes:
+        numbers: which of the steps holds each time, shape (T,).
     """
 
     def __init__(self, steps: StepRows, numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
-        self._steps, self._step = steps, numbers
-        self._method, self._differential = steps.method, steps.differential
-        self._sizes = steps.sizes[numbers]
-        self._shares = (times - steps.begin_times[numbers]) / self._sizes
-        self._at_end = np.flatnonzero(times == steps.end_times[numbers])
+        self._steps, self.numbers = steps, numbers
+        begun, ended, self._sizes = steps.facts[numbers, :3].T
+        self._shares = (times - begun) / self._sizes
+        self._at_end = np.flatnonzero(times == ended)
         self._unknowns = steps.unknowns[numbers]
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
-        begins = self._steps.begins[self._step, :2]
-        moved = self._summed(self._method.double_integrals_at)
-        displacement = (self._shares * self._sizes)[:, None] * begins[:, 1] + self._sizes[:, None] ** 2 * moved
-        x = begins[:, 0] + displacement
-        if not np.all(self._differential):
-            x = np.where(self._differential, x, self._summed(self._method.values_at))
+        x, v = self._steps.begins[self.numbers, :2].swapaxes(0, 1)
+        moved = self._summed(self._steps.method.double_integrals_at)
+        x = x + (self._shares * self._sizes)[:, None] * v + self._sizes[:, None] ** 2 * moved
+        if not np.all(self._steps.differential):
+            x = np.where(self._steps.differential, x, self._summed(self._steps.method.values_at))
         return self._with_ends(x, 0)
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
-        gained = self._sizes[:, None] * self._summed(self._method.integrals_at)
-        velocities = self._steps.begins[self._step, 1] + gained
-        v, a = (np.where(self._differential, each, 0.0) for each in (velocities, self._summed(self._method.values_at)))
+        gained = self._sizes[:, None] * self._summed(self._steps.method.integrals_at)
+        rates = self._steps.begins[self.numbers, 1] + gained, self._summed(self._steps.method.values_at)
+        v, a = (np.where(self._steps.differential, each, 0.0) for each in rates)
         return self._with_ends(v, 1), self._with_ends(a, 2)
 
     def _summed(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
@@ -243,7 +217,7 @@ class HeldTimes:
 
     def _with_ends(self, values: FloatArray, order: int) -> FloatArray:
         # The end of a step may have been put right.
-        values[self._at_end] = self._steps.ends[self._step[self._at_end], order]
+        values[self._at_end] = self._steps.ends[self.numbers[self._at_end], order]
         return values
 
 

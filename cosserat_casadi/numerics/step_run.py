@@ -124,9 +124,8 @@ class StepRun:
     @property
     def now(self) -> Instant:
         """The last instant reached."""
-        if self.rows:
-            return self.rows[-1][-1].end
-        return self.steps[-1].end if self.steps else self.start
+        steps: Sequence[TimeStep] = self.rows[-1] if self.rows else self.steps
+        return steps[-1].end if steps else self.start
 
     def result(self, outcome: StepOutcome) -> Integration:
         """The end of the integration."""
