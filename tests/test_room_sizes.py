@@ -29,7 +29,7 @@ LINES = {
     "mjcf": 1_055,
     "model": 11_655,
     "motion": 15_045,
-    "numerics": 5_335,
+    "numerics": 5_390,
     "obstacles": 415,
     "page": 825,
     "paths": 2_740,

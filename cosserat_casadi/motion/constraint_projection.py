@@ -113,7 +113,10 @@ class Closing:
 
     def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """The rows of the constraints at T states, shape (T, rows): the rest of the equations is not computed."""
-        function = external(GAPS, self.library) if self.library else functions_of_closing(self.model)[0]
+        if self.library is None:
+            function = kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
+        else:
+            function = external(GAPS, self.library)
         (gaps,) = evaluated(function, x, inputs)
         return gaps[:, :, 0].copy()
 
@@ -146,16 +149,12 @@ def constraint_rows(model: Model) -> npt.NDArray[np.int64]:
 
 def functions_of_closing(model: Model) -> list[ca.Function]:
     """The function (x, inputs) ↦ the rows of the constraints; none where nothing is held."""
-    if not len(constraint_rows(model)):
-        return []
-    return [kept_with(model, "_gaps", lambda: _written(model))]
-
-
-def _written(model: Model) -> ca.Function:
     rows = constraint_rows(model)
+    if not len(rows):
+        return []
     dynamics = model.inverse_dynamics_in_scalars
     # As scalars only the constraints are left of it.
     symbols = dynamics.mx_in() if chooses(dynamics) else dynamics.sx_in()
     at_rest = {"x": symbols[0], "inputs": symbols[3]}
     residual = dynamics.call({**dict.fromkeys(dynamics.name_in(), 0), **at_rest})["residual"]
-    return ca.Function(GAPS, list(at_rest.values()), [ca.densify(residual[rows.tolist()])], list(at_rest), ["gaps"])
+    return [ca.Function(GAPS, list(at_rest.values()), [ca.densify(residual[rows.tolist()])], list(at_rest), ["gaps"])]

@@ -20,7 +20,6 @@ from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER, displacements
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.tip_paths import watched_arms, watched_states
-from cosserat_casadi.numerics.step import StepRows
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
@@ -415,14 +414,13 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
         duration: its end, s.
         moved_by: the displacements of :func:`felt`.
     """
-    rows = [StepRows.of(leg.integration.steps) for leg in history.legs if leg.integration.steps]
-    if not rows:
+    if not history.rows:
         return 0.0
     # Strains are the same in the coordinates of the steps; forces of contacts stand behind the unknowns of the model.
     own = slice(history.model.size)
-    _, rates, accelerations = np.abs(np.concatenate([of_leg.ends[:, :, own] for of_leg in rows])).swapaxes(0, 1)
+    _, rates, accelerations = np.abs(np.concatenate([rows.ends[:, :, own] for rows in history.rows])).swapaxes(0, 1)
     # A motion that goes on had waves before: its lateness adds up.
-    sizes = np.concatenate([of_leg.facts[:, 2] for of_leg in rows]) * duration / (duration - history.begin)
+    sizes = np.concatenate([rows.facts[:, 2] for rows in history.rows]) * duration / (duration - history.begin)
     ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
     largest = _by_strain(history.model, accelerations.max(axis=0))
     late = 0.0

@@ -229,10 +229,15 @@ class History:
         """All steps in their order, with the pieces that they belong to."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
+    @property
+    def rows(self) -> list[StepRows]:
+        """The steps of each leg that has some, as arrays."""
+        return [StepRows.of(leg.integration.steps) for leg in self.legs if leg.integration.steps]
+
     @cached_property
     def statistics(self) -> StepStatistics:
         """Statistics of the steps: numbers, iterations and sizes."""
-        sizes = [size for leg in self.legs for size in leg.integration.sizes]
+        sizes = [size for rows in self.rows for size in rows.facts[:, 2].tolist()]
         counts = [leg.integration.statistics for leg in self.legs]
         return StepStatistics(
             steps=sum(count.steps for count in counts),
@@ -263,12 +268,11 @@ class History:
             if held is None or not len(self._closing.rows):
                 continue
             equations = leg.equations or equations_of(self.model, leg.piece)
-            places = np.flatnonzero(rows)
-            for first in range(0, len(places), CLOSED_AT_ONCE):
-                some = places[first : first + CLOSED_AT_ONCE]
-                numbers = held.numbers[first : first + CLOSED_AT_ONCE]
+            for first in range(0, np.count_nonzero(rows), CLOSED_AT_ONCE):
+                part = slice(first, first + CLOSED_AT_ONCE)
+                some = np.flatnonzero(rows)[part]
                 states = x[some], v[some], a[some]
-                x[some] = self._closing.closed(times[some], states, inputs[some], equations, numbers)
+                x[some] = self._closing.closed(times[some], states, inputs[some], equations, held.numbers[part])
         return MotionState(x, v, a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
@@ -374,7 +378,7 @@ class History:
 
     @cached_property
     def _ends(self) -> list[float]:
-        return [time for leg in self.legs for time in leg.integration.end_times]
+        return [time for rows in self.rows for time in rows.facts[:, 1].tolist()]
 
 
 @dataclass(frozen=True)
@@ -405,8 +409,6 @@ class FreeFlight:
 
     def restart_of_steps(self, restart: Restart[Phases]) -> Restart[Phases]:
         """A restart whose state is as the steps have it, from one in the unknowns of the model."""
-        if self.coordinates is None:
-            return restart
         return replace(restart, start=replace(restart.start, instant=self.to_steps(restart.start.instant)))
 
     def settled_in_steps(self, settling: Settling) -> Settle:
@@ -585,9 +587,8 @@ def integrated(
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
         following = pieces[number].end - pieces[number].start if number < len(pieces) else np.inf
         settings = replace(settings, first=min(legs[-1].integration.next_size, following))
-    if legs[-1].integration.outcome is not StepOutcome.COMPLETED:
-        # A cable may become slack or taut in the very end: there is nothing to go on with.
-        legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
+    # A cable may become slack or taut in the very end: there is nothing to go on with.
+    legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
     return history()
 
 

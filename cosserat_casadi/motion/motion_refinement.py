@@ -571,10 +571,7 @@ def _with_tolerance(search: _Search) -> Motion:
 
 
 def _with_steps_of_others(search: _Search) -> ResolvedMotion:
-    """The last level with the steps of the levels before, where it was wrongly foreseen to be the last of all.
-
-    The distances of levels with equal steps tell what their modes lack.
-    """
+    """The last level, which was wrongly foreseen to be the last of all, with the steps of the levels before."""
     level = search.last
     history = level.simulator.controlled(search.step_tolerance)
     if history.outcome is StepOutcome.INTERRUPTED:
@@ -583,8 +580,7 @@ def _with_steps_of_others(search: _Search) -> ResolvedMotion:
         return level
     paths = level.simulator.paths(history)
     distance = path_distance(search.levels[-2].paths, paths)
-    step_tolerance = search.step_tolerance
-    level = replace(level, history=history, paths=paths, distance=distance, step_tolerance=step_tolerance)
+    level = replace(level, history=history, paths=paths, distance=distance, step_tolerance=search.step_tolerance)
     return _with_waves(search, level)
 
 

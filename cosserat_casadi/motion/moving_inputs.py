@@ -166,11 +166,7 @@ class MovingInputs:
 
     def at(self, t: float) -> InputState:
         """The inputs at a time; where they jump, their limits from later times."""
-        orders = np.zeros((3, len(self._constant)))
-        orders[0] = self._constant
-        for motion, path in zip(self._motions, self._paths, strict=True):
-            orders[:, self._slices[motion.input]] += path.within(t, np.inf).at(t)
-        return InputState(*orders)
+        return self._piece(t, np.inf, slack=0.0).at(t)
 
     def pieces(self, duration: float) -> list[Piece]:
         """Spans of time in which all inputs are smooth, one after the other from 0 to the duration (s)."""
@@ -196,17 +192,14 @@ class MovingInputs:
 
     def breaks(self, duration: float) -> list[Break]:
         """Breaks of the inputs from 0 to the duration (s), in the order of time: the inputs rest before 0."""
-        return [*self._breaks_at_start(), *self._breaks_inside(duration)]
-
-    def _breaks_inside(self, duration: float) -> list[Break]:
-        found = []
+        found = self._breaks_at_start()
         for motion, path in zip(self._motions, self._paths, strict=True):
             found += [Break(motion.input, time, order) for time, order in path.breaks if 0.0 < time < duration]
         return sorted(found, key=lambda entry: (entry.time, entry.order))
 
     def jumps(self, duration: float) -> list[Break]:
         """Times from 0 to the duration (s) at which the value of an input itself jumps: loads that act suddenly."""
-        return [entry for entry in self._breaks_inside(duration) if entry.order == 0]
+        return [entry for entry in self.breaks(duration) if entry.order == 0]
 
     def _breaks_at_start(self) -> list[Break]:
         """Inputs that begin to move at once, or to accelerate at once."""

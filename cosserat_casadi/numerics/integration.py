@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -10,7 +11,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.step import CarriedStep, StepRows, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, TimeStep
 
 
 class StepOutcome(Enum):
@@ -78,13 +79,7 @@ class IntegrationCost:
 
     def __add__(self, other: IntegrationCost) -> IntegrationCost:
         """Numbers of both integrations."""
-        return IntegrationCost(
-            self.steps + other.steps,
-            self.rejected + other.rejected,
-            self.iterations + other.iterations,
-            self.jacobians + other.jacobians,
-            self.factorisations + other.factorisations,
-        )
+        return IntegrationCost(*map(operator.add, vars(self).values(), vars(other).values()))
 
 
 @dataclass(frozen=True)
@@ -113,18 +108,6 @@ class Integration:
     def end(self) -> Instant:
         """The last instant that was reached."""
         return self.steps[-1].end if self.steps else self.start
-
-    @property
-    def end_times(self) -> list[float]:
-        """Time at the end of each step, s."""
-        times: list[float] = StepRows.of(self.steps).facts[:, 1].tolist() if self.steps else []
-        return times
-
-    @property
-    def sizes(self) -> list[float]:
-        """Size of each step, s."""
-        sizes: list[float] = StepRows.of(self.steps).facts[:, 2].tolist() if self.steps else []
-        return sizes
 
 
 def stalled_at(start: Instant) -> Integration:
