@@ -263,8 +263,8 @@ class History:
                 parts = held.positions(), *held.rates()
                 x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
             else:
-                instants = [self.locate(time)[1] for time in times[rows].tolist()]
-                x[rows], v[rows], a[rows] = zip(*((at.x, at.v, at.a) for at in instants), strict=True)
+                instants = [(at.x, at.v, at.a) for _, at in map(self.locate, times[rows].tolist())]
+                x[rows], v[rows], a[rows] = np.reshape(instants, (-1, 3, self.model.size)).swapaxes(0, 1)
             if held is None or not len(self._closing.rows):
                 continue
             equations = leg.equations or equations_of(self.model, leg.piece)
