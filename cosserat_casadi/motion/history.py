@@ -70,7 +70,7 @@ AT_ONCE = 1e-6
 """Time, over the duration, that counts as next to no time for changes."""
 
 CLOSED_AT_ONCE = 256
-"""Rows whose constraints are closed together: each has a matrix of its own."""
+"""Rows whose constraints are closed together: each has a matrix in memory."""
 
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
 """The remedy where nothing can follow an input that has a speed."""
