@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.metrics import ROUNDING, distance_of_poses
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
@@ -247,7 +248,19 @@ def safety_for(model: Model) -> float:
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
-    """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model."""
+    """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model.
+
+    None is believed of modes that are blind to what loads roll up.
+    """
+    settles, correction = _settled_correction(solution)
+    if not settles:
+        return False, correction
+    elements = TurnedElements(solution.model.discrete)
+    return not elements.hide_waves(solution.x, correction.missing), correction
+
+
+def _settled_correction(solution: Solution) -> tuple[bool, Correction]:
+    """Whether corrections settle, and the last one."""
     # A look that leaves the answer within its tolerance need not be repeated.
     enough = enough_for(solution.model)
     settled = settled_for(solution.model)

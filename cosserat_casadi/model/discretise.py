@@ -131,18 +131,18 @@ def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
 
 
 def enriched(
-    discretisation: Discretisation, signal_modes: int, above_modes: int, *, in_layers: bool = False
+    discretisation: Discretisation, seeing_modes: int, above_modes: int, *, in_layers: bool = False
 ) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
         discretisation: of a rod.
-        signal_modes: modes below which a rod is blind to what the scene puts along it.
+        seeing_modes: modes below which a rod is blind to what goes on along it.
         above_modes: intervals beyond the modes, of :func:`nodes_above_modes`.
         in_layers: whether layers press the rod.
     """
     added = ADDED_MODES_IN_LAYERS if in_layers else ADDED_MODES
-    modes = tuple(max(count + added, signal_modes) for count in discretisation.modes)
+    modes = tuple(max(count + added, seeing_modes) for count in discretisation.modes)
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + above_modes)
     transport = discretisation.transport
     if transport == "magnus8":

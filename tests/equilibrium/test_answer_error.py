@@ -210,6 +210,34 @@ def test_shape_knows_the_error_of_modes_that_even_the_richer_model_lacks() -> No
     assert LEAST < ratio < MOST_ABOVE, ratio
 
 
+@pytest.mark.parametrize("modes", [3, 25])
+def test_coils_put_waves_and_their_products_into_modes_that_an_answer_lacks(modes: int) -> None:
+    """Five turns wave up to a degree of 16, products of waves up to 32: three modes more see neither."""
+    drawn = spring()
+    solution = solve(build(drawn, discretise(drawn, modes, 75, "magnus8")))
+    reference = solve(build(drawn, discretise(drawn, 44, 100, "magnus8")), estimate_error=False)
+    assert solution.error_estimate is not None
+    assert 1.0 < solution.error_estimate / pose_distance(solution, reference) < MOST_ABOVE
+
+
+def rolled_up(force: float) -> Scene:
+    """A planar rod that a moment rolls into three turns, with a force at its tip."""
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    return scene(push(force=[force, 0, 0], moment=[0, 6 * np.pi, 0]), rods=[straight])
+
+
+def test_modes_that_are_blind_to_what_loads_roll_up_do_not_know_their_error() -> None:
+    """Of four modes and three more the tip sees a hundredth of its error; a circle has none that could be missed."""
+    pulled, circle = (solve(build(rolled_up(force), discretise(rolled_up(force), 4, 24))) for force in (1.0, 0.0))
+    seen = solve(build(rolled_up(1.0), discretise(rolled_up(1.0), 12, 24, "magnus8")))
+    assert pose_distance(pulled, seen) > 1e-3
+    assert pulled.error_estimate == estimates.UNKNOWN
+    assert pulled.within_tolerance is False
+    assert seen.error_estimate is not None and circle.error_estimate is not None
+    assert pose_distance(seen, solve(rolled_up(1.0))) < seen.error_estimate < 1e-4
+    assert circle.error_estimate < 1e-10
+
+
 def test_parameters_move_the_stiffness_of_missing_modes() -> None:
     bent = scene(push(), rods=[TAPERED], parameters=["rod.material.youngs_modulus"])
     model = build(bent, discretise(bent, 3, 10))
