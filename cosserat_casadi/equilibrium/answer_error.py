@@ -424,9 +424,9 @@ def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
-    whole = _corrected(solution, correction.known, correction.missing)
-    fewer = _corrected(solution, correction.known, _without_last(solution, correction).missing)
-    return _rest(abs(whole.change - fewer.change), correction.change)
+    whole = richer_balance(solution, correction.known, correction.missing).poses
+    fewer = richer_balance(solution, correction.known, _without_last(solution, correction).missing).poses
+    return _rest(change_size(whole.change_from(fewer)), correction.change)
 
 
 def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:

@@ -2,8 +2,8 @@
 
 A force of fixed direction goes round in the frame of a section that turns. Over an element that turns by T the strain
 oscillates with it, and Legendre coefficients of such a wave are small up to a degree of about T/2. The modes that an
-answer lacks tell its error where the richer model has these degrees. Where it has not, and its modes do carry something,
-the error of the answer is not known. See docs/theory.md, section 10.
+answer lacks tell its error where the richer model has these degrees. Where it lacks them, and its modes do carry
+something, the error of the answer is not known. See docs/theory.md, section 10.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class TurnedElements:
 
     @cached_property
     def turns(self) -> FloatArray:
-        """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; 0 where none turns."""
+        """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; or 0."""
         turns = np.zeros(self.discrete.size)
         for name, rod in self.discrete.nominal.rods.items():
             first = self.discrete.unknowns.strain(name).start
@@ -107,7 +107,7 @@ class TurnedElements:
 
 
 def _elements(discrete: DiscreteScene) -> Indices:
-    """Element of each strain coordinate, all elements of all rods numbered in a row, shape (n,); −1 of other unknowns."""
+    """Element of each strain coordinate, in a row over all rods, shape (n,); −1 of other unknowns."""
     elements = np.full(discrete.size, -1)
     before = 0
     for name, rod in discrete.rods.items():

@@ -152,16 +152,16 @@ static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian,
   return change;
 }
 
-/* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is the part of the two
-   highest degrees in the whole change. */
+/* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is what the two highest
+   degrees move over the whole change. */
 static real rest_of_series(const real *x, const real *inputs, real change, workspace *work) {
   if (change <= ERROR_FLOOR) return 0;
   const real *richer = work->balance + 2 * N + MISSING;
   for (int i = 0; i < MISSING; i++) work->fewer[i] = IS_AMONG_LAST[i] ? 0 : work->missing[i];
   (void)balance(x, work->missing, inputs, work);
-  const real whole = largest_change(work->watched, richer);
+  memcpy(work->watched_after, richer, sizeof work->watched_after);
   (void)balance(x, work->fewer, inputs, work);
-  const real last = ABSOLUTE(whole - largest_change(work->watched, richer));
+  const real last = largest_change(richer, work->watched_after);
   real ratio = last / change;
   if (ratio < ERROR_FASTEST) ratio = ERROR_FASTEST;
   if (!(ratio <= ERROR_SLOWEST)) ratio = ERROR_SLOWEST;
