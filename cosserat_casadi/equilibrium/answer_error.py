@@ -64,6 +64,9 @@ SLOWEST = 0.7
 UNKNOWN = 1.0
 """Error of an answer that no correction settles near: the whole length."""
 
+LARGEST_KNOWN = 0.3
+"""Error beyond which an answer is so far from the truth that a correction may lead to another equilibrium."""
+
 NO_WRENCH = 1e-6
 """Wrench, in units of EI/ℓ, below which one counts as none, and errors are relative to it."""
 
@@ -98,13 +101,15 @@ class Correction:
         contracts: whether the missing modes moved by at most half of their step before, and would have before the
             unknowns of the answer followed. A wall that they run into is not in their stiffness: then they bounce, and
             watched poses may settle by chance.
-        settled: whether the correction before it gave about the same change.
+        rests: whether the missing modes moved by a small part of all that they moved.
+        settled: whether they rest, and the correction before it gave about the same change.
     """
 
     known: FloatArray
     missing: FloatArray
     change: float
     contracts: bool = True
+    rests: bool = False
     settled: bool = False
 
 
@@ -222,7 +227,7 @@ def answer_error(solution: Solution) -> AnswerError:
     with_rest = safety * (1.0 + _share_beyond(solution, correction, corrected, shape_change))
     shape = with_rest * shape_change + ROUNDING
     wrench = with_rest * _wrench_change(solution, corrected, correction) + ROUNDING
-    return AnswerError(watched, max(shape, watched), wrench)
+    return AnswerError(_if_known(watched), _if_known(max(shape, watched)), _if_known(wrench))
 
 
 def watched_error(solution: Solution) -> float:
@@ -234,7 +239,13 @@ def watched_error(solution: Solution) -> float:
     believed, correction = believed_correction(solution)
     if not believed:
         return UNKNOWN
-    return _safety_of(solution, correction) * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
+    change = correction.change + _rest_of_series(solution, correction)
+    return _if_known(_safety_of(solution, correction) * change + ROUNDING)
+
+
+def _if_known(error: float) -> float:
+    """An estimate of an error where corrections can tell it, else that it is not known."""
+    return error if error <= LARGEST_KNOWN else UNKNOWN
 
 
 def _safety_of(solution: Solution, correction: Correction) -> float:
@@ -271,7 +282,8 @@ def _settled_correction(solution: Solution) -> tuple[bool, Correction]:
             for correction in corrections:
                 if not np.isfinite(correction.change):
                     break
-                if correction.contracts and abs(correction.change - before) <= settled * correction.change:
+                rests = correction.contracts and correction.rests
+                if rests and abs(correction.change - before) <= settled * correction.change:
                     return True, replace(correction, settled=True)
                 if correction.contracts and correction.change <= enough:
                     return True, correction
@@ -319,7 +331,8 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         # by chance then, and is not believed either.
         bounces = before is None and not _contracts(missing_step, balance.missing_step)
         change = change_with_following(solution, balance, following)
-        yield Correction(known, missing, change, contracts=not (bounces or bounced))
+        rests = _rests(solution, missing, missing_step)
+        yield Correction(known, missing, change, contracts=not (bounces or bounced), rests=rests)
         before = missing_step
         bounced = bounces
 
@@ -347,6 +360,12 @@ def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) ->
 def _contracts(before: FloatArray, step: FloatArray) -> bool:
     """Whether a step of the missing modes is at most half as long as the one before it, or rounding."""
     longest = max(CONTRACTING * float(np.linalg.norm(before)), SHORTEST)
+    return bool(np.linalg.norm(step) <= longest)
+
+
+def _rests(solution: Solution, missing: FloatArray, step: FloatArray) -> bool:
+    """Whether the last step of the missing modes is a small part of all of them, or rounding."""
+    longest = max(settled_for(solution.model) * float(np.linalg.norm(missing)), SHORTEST)
     return bool(np.linalg.norm(step) <= longest)
 
 
@@ -403,17 +422,18 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
             return
         step = -regular_inverse(jacobian) @ residual
         unknowns = unknowns + step
-        missing_step = step[~richer.known]
+        missing, missing_step = unknowns[~richer.known], step[~richer.known]
+        correction = _corrected(solution, unknowns[richer.known] - solution.x, missing)
         contracts = before is not None and _contracts(before, missing_step)
-        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known], contracts=contracts)
+        yield replace(correction, contracts=contracts, rests=_rests(solution, missing, missing_step))
         before = missing_step
 
 
-def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Correction:
     """A correction with the largest change of a watched pose or length; infinite where one is not finite."""
     poses = richer_balance(solution, known, missing).poses
     change = change_size(poses.change_from(watched_at(solution, solution.x)))
-    return Correction(known, missing, change, contracts)
+    return Correction(known, missing, change)
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
@@ -471,17 +491,18 @@ def _wrench_change(solution: Solution, corrected: Solution, correction: Correcti
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
+    # What Newton has left of the balance, a wrench that is none has too.
+    left = solution.residual_norm * (1 + float(np.linalg.norm(solution.x)))
     for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION, BlockKind.STOP):
-        change = _relative_change(solution.x[entries], correction.known[entries])
-        changes.append(change)
+        changes.append(_relative_change(solution.x[entries], correction.known[entries], left))
     for rod in discrete.rods.values():
         moment, force = _base_wrench_in_units(solution, rod)
         new_moment, new_force = _base_wrench_in_units(corrected, rod)
         whole = float(np.linalg.norm([*moment, *force]))
         # Next to a large force a small moment is not known to all of its digits, and the other way round.
         least = max(NO_WRENCH, SMALL_PART * whole)
-        changes.append(_relative_change(moment, new_moment - moment, least))
-        changes.append(_relative_change(force, new_force - force, least))
+        changes.append(_relative_change(moment, new_moment - moment, left, least))
+        changes.append(_relative_change(force, new_force - force, left, least))
     return max(changes)
 
 
@@ -493,7 +514,7 @@ def _base_wrench_in_units(solution: Solution, rod: DiscreteRod) -> tuple[FloatAr
     return moment, force
 
 
-def _relative_change(values: FloatArray, difference: FloatArray, least: float = NO_WRENCH) -> float:
-    """Size of a difference over the size of the values, or over the least size that counts."""
+def _relative_change(values: FloatArray, difference: FloatArray, left: float, least: float = NO_WRENCH) -> float:
+    """Size of a difference, and what is left of the balance, over the size of the values, or the least that counts."""
     size = max(float(np.linalg.norm(values)), least)
-    return float(np.linalg.norm(difference)) / size
+    return (float(np.linalg.norm(difference)) + left) / size

@@ -38,7 +38,8 @@ NODES_ABOVE_MODES_IN_CONTACT = 8
 """Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""
 
 NODES_ABOVE_MODES_BESIDE_KINKS = 12
-"""Intervals beyond the modes of a strain where the pull of a cable has a kink: the error of intervals falls slowly."""
+"""Intervals beyond the modes of a strain where the pull of a cable, or the drag of a rod along a stream, has a kink: the
+error of intervals falls slowly."""
 
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
@@ -125,7 +126,8 @@ def nodes_for(modes: int) -> int:
 
 def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
     """Intervals beyond the modes of a strain on which the error of a rod shows, which touches something or nothing."""
-    if any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators):
+    of_cables = any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators)
+    if of_cables or any(isinstance(load, scenes.Flow) for load in scene.loads):
         return NODES_ABOVE_MODES_BESIDE_KINKS
     return NODES_ABOVE_MODES_IN_CONTACT if touches else NODES_ABOVE_MODES
 
