@@ -38,8 +38,7 @@ NODES_ABOVE_MODES_IN_CONTACT = 8
 """Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""
 
 NODES_ABOVE_MODES_BESIDE_KINKS = 12
-"""Intervals beyond the modes of a strain where the pull of a cable, or the drag of a rod along a stream, has a kink: the
-error of intervals falls slowly."""
+"""Intervals beyond the modes of a strain beside a kink in the pull of a cable, or in drag: their error falls slowly."""
 
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
