@@ -43,11 +43,8 @@ NODES_ABOVE_MODES_BESIDE_KINKS = 12
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
 
-ENOUGH_GROWTH = 1.4
-"""Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
-
-ENOUGH_GROWTH_OF_HIGHEST = 1.25
-"""Factor on the intervals that shows five sixths of the error of the highest order, which has none above it."""
+ENOUGH_GROWTH = {"magnus4": 1.7, "magnus6": 1.4, "magnus8": 1.3}
+"""Factor on the intervals that shows seven eighths of the error of the order too; no order is above the highest."""
 
 
 def discretise(
@@ -146,8 +143,9 @@ def enriched(
     modes = tuple(max(count + added, seeing_modes) for count in discretisation.modes)
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + above_modes)
     transport = discretisation.transport
-    if transport == "magnus8":
-        nodes = max(nodes, ceil(ENOUGH_GROWTH_OF_HIGHEST * discretisation.nodes))
-    elif nodes < ENOUGH_GROWTH * discretisation.nodes:
-        transport = NEXT_ORDER.get(transport, transport)
+    growth = ENOUGH_GROWTH.get(transport, 1.0) * discretisation.nodes
+    if transport in NEXT_ORDER and nodes < growth:
+        transport = NEXT_ORDER[transport]
+    else:
+        nodes = max(nodes, ceil(growth))
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)

@@ -210,7 +210,7 @@ def test_shape_knows_the_error_of_modes_that_even_the_richer_model_lacks() -> No
     assert LEAST < ratio < MOST_ABOVE, ratio
 
 
-@pytest.mark.parametrize(("turns", "force", "modes", "finer"), [(5, 4.0, 25, 44), (10, 1.0, 15, 76)])
+@pytest.mark.parametrize(("turns", "force", "modes", "finer"), [(5, 4.0, 25, 44), (10, 0.3, 15, 76)])
 def test_coils_put_waves_and_their_products_into_modes_that_an_answer_lacks(
     turns: int, force: float, modes: int, finer: int
 ) -> None:
