@@ -515,6 +515,6 @@ def _base_wrench_in_units(solution: Solution, rod: DiscreteRod) -> tuple[FloatAr
 
 
 def _relative_change(values: FloatArray, difference: FloatArray, left: float, least: float = NO_WRENCH) -> float:
-    """Size of a difference, and what is left of the balance, over the size of the values, or the least that counts."""
+    """Size of a difference and of the residual, over the size of the values, or over the least size that counts."""
     size = max(float(np.linalg.norm(values)), least)
     return (float(np.linalg.norm(difference)) + left) / size

@@ -75,7 +75,7 @@ def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discr
     """Refuse a discretisation that is not one of the rods of a scene.
 
     Raises:
-        SceneError: a rod has none, or one of other strains or elements than its own; all faults at once.
+        SceneError: a rod has no discretisation, or one of other strains or elements; all faults at once.
     """
     rods = {rod.name: rod for rod in scene.rods}
     names = ", ".join(rods)
