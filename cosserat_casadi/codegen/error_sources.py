@@ -69,7 +69,6 @@ def error_words(model: Model, names: Names) -> Words:
         "error_contracting": answer_error.CONTRACTING,
         "error_first_look": answer_error.FIRST_LOOK,
         "error_enough": answer_error.enough_for(model),
-        "error_largest": answer_error.LARGEST_KNOWN,
         "error_fastest": answer_error.FASTEST,
         "error_slowest": answer_error.SLOWEST,
         "error_floor": ROUNDING,

@@ -64,9 +64,6 @@ SLOWEST = 0.7
 UNKNOWN = 1.0
 """Error of an answer that no correction settles near: the whole length."""
 
-LARGEST_KNOWN = 0.3
-"""Error beyond which an answer is so far from the truth that a correction may lead to another equilibrium."""
-
 NO_WRENCH = 1e-6
 """Wrench, in units of EI/ℓ, below which one counts as none, and errors are relative to it."""
 
@@ -227,7 +224,7 @@ def answer_error(solution: Solution) -> AnswerError:
     with_rest = safety * (1.0 + _share_beyond(solution, correction, corrected, shape_change))
     shape = with_rest * shape_change + ROUNDING
     wrench = with_rest * _wrench_change(solution, corrected, correction) + ROUNDING
-    return AnswerError(_if_known(watched), _if_known(max(shape, watched)), _if_known(wrench))
+    return AnswerError(watched, max(shape, watched), wrench)
 
 
 def watched_error(solution: Solution) -> float:
@@ -239,13 +236,7 @@ def watched_error(solution: Solution) -> float:
     believed, correction = believed_correction(solution)
     if not believed:
         return UNKNOWN
-    change = correction.change + _rest_of_series(solution, correction)
-    return _if_known(_safety_of(solution, correction) * change + ROUNDING)
-
-
-def _if_known(error: float) -> float:
-    """An estimate of an error where corrections can tell it, else that it is not known."""
-    return error if error <= LARGEST_KNOWN else UNKNOWN
+    return _safety_of(solution, correction) * (correction.change + _rest_of_series(solution, correction)) + ROUNDING
 
 
 def _safety_of(solution: Solution, correction: Correction) -> float:

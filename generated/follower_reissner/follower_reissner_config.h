@@ -81,5 +81,4 @@ static const follower_reissner_real ERROR_SLOWEST = (follower_reissner_real)0.7;
 static const follower_reissner_real ERROR_WHOLE_TURN = (follower_reissner_real)6.283185307179586;
 static const follower_reissner_real ERROR_BEYOND_TURN = (follower_reissner_real)3;
 static const follower_reissner_real ERROR_UNSEEN = (follower_reissner_real)1e-05;
-static const follower_reissner_real ERROR_LARGEST = (follower_reissner_real)0.3;
 static const follower_reissner_real ERROR_FLOOR = (follower_reissner_real)2e-14;

@@ -168,12 +168,6 @@ static real rest_of_series(const real *x, const real *inputs, real change, works
   return last * ratio / (1 - ratio);
 }
 
-/* An estimate where corrections can tell it; 1 where the answer is so far from the truth that they may lead to another
-   equilibrium. */
-static real if_known(real error) {
-  return error <= ERROR_LARGEST ? error : 1;
-}
-
 /* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. */
 static real estimated_error(const real *x, const real *inputs, updated_jacobian *jacobian, workspace *work) {
   const loads at = full_load(inputs);
@@ -209,10 +203,10 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
     const int is_enough = change <= ERROR_ENOUGH;
     if (believed && (settled || is_enough) && hides_waves(x, work->missing)) return 1;
     if (believed && settled) {
-      return if_known(ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x));
+      return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x);
     }
     /* A look that leaves the answer within its tolerance need not be repeated. */
-    if (believed && is_enough) return if_known(ERROR_FIRST_LOOK * change + least_error(x));
+    if (believed && is_enough) return ERROR_FIRST_LOOK * change + least_error(x);
     bounced = bounces;
     change_before = change;
     step_before = step;

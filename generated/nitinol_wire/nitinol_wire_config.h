@@ -81,5 +81,4 @@ static const nitinol_wire_real ERROR_SLOWEST = (nitinol_wire_real)0.7;
 static const nitinol_wire_real ERROR_WHOLE_TURN = (nitinol_wire_real)6.283185307179586;
 static const nitinol_wire_real ERROR_BEYOND_TURN = (nitinol_wire_real)3;
 static const nitinol_wire_real ERROR_UNSEEN = (nitinol_wire_real)1e-05;
-static const nitinol_wire_real ERROR_LARGEST = (nitinol_wire_real)0.3;
 static const nitinol_wire_real ERROR_FLOOR = (nitinol_wire_real)2e-14;

@@ -81,5 +81,4 @@ static const planar_strip_real ERROR_SLOWEST = (planar_strip_real)0.7;
 static const planar_strip_real ERROR_WHOLE_TURN = (planar_strip_real)6.283185307179586;
 static const planar_strip_real ERROR_BEYOND_TURN = (planar_strip_real)3;
 static const planar_strip_real ERROR_UNSEEN = (planar_strip_real)1e-05;
-static const planar_strip_real ERROR_LARGEST = (planar_strip_real)0.3;
 static const planar_strip_real ERROR_FLOOR = (planar_strip_real)2e-14;

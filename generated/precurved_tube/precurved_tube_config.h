@@ -81,5 +81,4 @@ static const precurved_tube_real ERROR_SLOWEST = (precurved_tube_real)0.7;
 static const precurved_tube_real ERROR_WHOLE_TURN = (precurved_tube_real)6.283185307179586;
 static const precurved_tube_real ERROR_BEYOND_TURN = (precurved_tube_real)3;
 static const precurved_tube_real ERROR_UNSEEN = (precurved_tube_real)1e-05;
-static const precurved_tube_real ERROR_LARGEST = (precurved_tube_real)0.3;
 static const precurved_tube_real ERROR_FLOOR = (precurved_tube_real)2e-14;

@@ -86,5 +86,4 @@ static const six_rod_platform_real ERROR_SLOWEST = (six_rod_platform_real)0.7;
 static const six_rod_platform_real ERROR_WHOLE_TURN = (six_rod_platform_real)6.283185307179586;
 static const six_rod_platform_real ERROR_BEYOND_TURN = (six_rod_platform_real)3;
 static const six_rod_platform_real ERROR_UNSEEN = (six_rod_platform_real)0.0001;
-static const six_rod_platform_real ERROR_LARGEST = (six_rod_platform_real)0.3;
 static const six_rod_platform_real ERROR_FLOOR = (six_rod_platform_real)2e-14;

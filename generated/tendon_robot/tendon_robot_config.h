@@ -81,5 +81,4 @@ static const tendon_robot_real ERROR_SLOWEST = (tendon_robot_real)0.7;
 static const tendon_robot_real ERROR_WHOLE_TURN = (tendon_robot_real)6.283185307179586;
 static const tendon_robot_real ERROR_BEYOND_TURN = (tendon_robot_real)3;
 static const tendon_robot_real ERROR_UNSEEN = (tendon_robot_real)1e-05;
-static const tendon_robot_real ERROR_LARGEST = (tendon_robot_real)0.3;
 static const tendon_robot_real ERROR_FLOOR = (tendon_robot_real)2e-14;
