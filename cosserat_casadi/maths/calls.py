@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
-from itertools import islice
+from itertools import chain, islice
 
 import casadi as ca
 import numpy as np
@@ -50,24 +50,17 @@ def in_scalars(function: ca.Function, name: str) -> ca.Function:
 def with_shared_terms(
     name: str, symbols: Sequence[Matrix], results: Sequence[Matrix], *words: list[str]
 ) -> ca.Function:
-    """A function of results whose equal terms are one term.
+    """A function symbols ↦ results whose equal terms are one term; words are names of its arguments and results.
 
     Where results make one call several times, CasADi before 3.8 may merge these calls into one that gives a number
     twice, and refuse it. It does not where columns that make the call once each are merged one after the other.
-
-    Args:
-        name: what the function is called.
-        symbols: its arguments.
-        results: expressions of its results.
-        words: names of its arguments, names of its results; or nothing.
     """
     try:
         return ca.Function(name, [*symbols], ca.cse([*results]), *words)
     except RuntimeError:
         merged: list[Matrix] = []
-        for result in results:
-            for column in ca.horzsplit(result):
-                merged = list(ca.cse([*merged, column]))
+        for column in chain.from_iterable(map(ca.horzsplit, results)):
+            merged = list(ca.cse([*merged, column]))
     columns = iter(merged)
     whole = [ca.horzcat(result[:, :0], *islice(columns, result.shape[1])) for result in results]
     return ca.Function(name, [*symbols], whole, *words)
