@@ -38,7 +38,12 @@ from cosserat_casadi import (  # noqa: E402
 )
 from cosserat_casadi.accuracy.refine import solve_rods  # noqa: E402
 from cosserat_casadi.codegen.contact.compiled import CompiledContact  # noqa: E402
-from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_error_estimate  # noqa: E402
+from cosserat_casadi.equilibrium.answer_error import (  # noqa: E402
+    UNKNOWN,
+    believed_correction,
+    richer_unknowns,
+    with_error_estimate,
+)
 from cosserat_casadi.equilibrium.metrics import cable_distance, pose_distance, prolong  # noqa: E402
 from cosserat_casadi.errors import CosseratError, ExportError  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
@@ -222,6 +227,12 @@ def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case |
     estimate = answer.shape_error_estimate if shape else answer.error_estimate
     if estimate is None:
         return None
+    if true > estimate and not model.scene.touches_exactly:
+        # The reference may be another equilibrium: that on the branch of the answer is looked for from its correction.
+        beside = solve(finer, inputs, start=_corrected(answer, finer), estimate_error=False)
+        if beside.converged and _distance(answer, beside, shape=shape) < true:
+            reference = beside
+            true = _distance(answer, reference, shape=shape)
     tolerance = model.scene.accuracy.tolerance
     told = not estimate <= tolerance
     cost = np.nan if model.scene.touches_exactly else (estimated - solved) / (solved - began)
@@ -234,6 +245,13 @@ def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case |
     own_error = own.shape_error_estimate if shape else own.error_estimate
     decided = own_error is not None and own_error <= KNOWN * true
     return replace(case, decided=decided)
+
+
+def _corrected(answer: Solution, finer: Model) -> FloatArray:
+    """Unknowns of the finer model at an answer with the last of its corrections."""
+    _, correction = believed_correction(answer)
+    unknowns = richer_unknowns(answer, correction.known, correction.missing)
+    return prolong(replace(answer, model=answer.model.richer, x=unknowns), finer)
 
 
 def _estimate_in_c(

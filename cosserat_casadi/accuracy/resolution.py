@@ -22,6 +22,7 @@ import numpy as np
 from cosserat_casadi.accuracy.preview import FinerShift, Preview
 from cosserat_casadi.equilibrium.answer_error import FASTEST, SLOWEST
 from cosserat_casadi.maths.pose_change import change_size
+from cosserat_casadi.model.required_modes import WAVES_FACTOR
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SAFETY = 2.0
@@ -32,9 +33,6 @@ GRID_SAFETY = 1.5
 
 SUM_SAFETY = 2.0
 """Factor on the change by finer sums of layers, whose stiffness changes with them."""
-
-WAVES_FACTOR = 2
-"""Factor on modes and intervals at which a look is taken for waves that the last coefficients do not show."""
 
 FURTHER_MODES = 4
 """Modes and intervals added for a look at rods without waves, more than one uneven step of their error."""

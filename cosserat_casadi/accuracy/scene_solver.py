@@ -24,7 +24,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.required_modes import SLOW_MODES, signal_modes
 from cosserat_casadi.model.scene_rods import rod_properties
 from cosserat_casadi.model.watched import SAMPLES
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -36,9 +36,6 @@ LOG = logging.getLogger(__name__)
 
 TIGHT = 1e-6
 """Tolerance below which a reference solution takes the rotation integrator of eighth order, else of sixth."""
-
-SLOW_MODES = 7
-"""Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
 
 MOST_VAIN_DESCENTS = 3
 """Discretisations on which descent is tried in vain: on few modes a rod may have no stable equilibrium."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.compiling.c_tables import numbers
-from cosserat_casadi.equilibrium import answer_error
+from cosserat_casadi.equilibrium import answer_error, blindness
 from cosserat_casadi.equilibrium.metrics import ROUNDING
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.watched import POSE_SIZE, watched_cables, watched_owners
@@ -39,6 +39,7 @@ def error_words(model: Model, names: Names) -> Words:
     if not estimates_errors(names):
         return {"error_reals": 0}
     richer = model.discrete.richer
+    elements = blindness.TurnedElements(model.discrete)
     tolerance = model.scene.accuracy.tolerance
     watched_count = len(watched_owners(model.discrete))
     cable_count = len(watched_cables(model.discrete))
@@ -51,6 +52,15 @@ def error_words(model: Model, names: Names) -> Words:
         "watched_cables": cable_count,
         "richer_size": richer.discrete.size,
         "is_among_last": numbers(richer.is_among_last.astype(int).tolist()),
+        "elements": len(elements.unloaded),
+        "element_of_unknown": numbers(elements.of_unknowns.tolist()),
+        "turns": numbers(elements.turns.tolist()),
+        "unloaded_turns": numbers(elements.unloaded.tolist()),
+        "element_of_missing": numbers(elements.of_missing.tolist()),
+        "modes_of_missing": numbers(elements.modes_of_missing.tolist()),
+        "error_whole_turn": blindness.WHOLE_TURN,
+        "error_beyond_turn": blindness.BEYOND,
+        "error_unseen": blindness.UNSEEN * tolerance,
         "scene_tolerance": f"{tolerance:g}",
         "error_sweeps": answer_error.MOST_SWEEPS,
         "error_safety": answer_error.safety_for(model),

@@ -31,7 +31,7 @@ from cosserat_casadi.codegen.stage import (
 )
 from cosserat_casadi.compiling.cache import kept_texts
 from cosserat_casadi.compiling.compiler import compiled_texts, find_compiler
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, with_shared_terms
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.motion.collocated_stage import MotionStage, StageEquations, differential_places
@@ -196,7 +196,7 @@ def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca
     words = plain.name_in()[:-1]
     first = words.index("inputs")
     slopes = [ca.jacobian(residual, argument) for argument in arguments[first:]]
-    return ca.Function(name, [*arguments], ca.cse(slopes), words, [f"by_{word}" for word in words[first:]])
+    return with_shared_terms(name, arguments, slopes, words, [f"by_{word}" for word in words[first:]])
 
 
 def _columns(stage: MotionStage, differential: float, algebraic: float, stiffness: Matrix) -> Matrix:

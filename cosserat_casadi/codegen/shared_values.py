@@ -17,6 +17,7 @@ import casadi as ca
 from cosserat_casadi.compiling.listing import Called, Computed, Listing, Read
 from cosserat_casadi.compiling.printed_kernels import PrintedKernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, columns_in_fours, scalars_in_c, shared_in_c
+from cosserat_casadi.maths.calls import with_shared_terms
 
 FEWEST_SHARED = 100
 """Number of shared values from which on they become a kernel; of fewer a call saves little code."""
@@ -59,21 +60,6 @@ def _arguments_of(function: ca.Function, known: dict[tuple[str, ...], ca.SX]) ->
     return symbols
 
 
-def _joint(symbols: list[ca.SX], results: list[ca.SX]) -> ca.Function:
-    """One function of the results of several, whose equal values are one value.
-
-    Where three functions make one call, CasADi before 3.8 merges it into a call with two equal results, and refuses
-    it. It does not where functions are merged one after the other.
-    """
-    try:
-        return ca.Function("joint", symbols, ca.cse(results))
-    except RuntimeError:
-        merged: list[ca.SX] = []
-        for result in results:
-            merged = list(ca.cse([*merged, result]))
-        return ca.Function("joint", symbols, merged)
-
-
 class _Sharing:
     """Functions on their way to kernels that they share.
 
@@ -89,7 +75,7 @@ class _Sharing:
         for function, arguments in zip(functions, self._arguments, strict=True):
             results.append(ca.vertcat(*map(ca.vec, function.call(arguments))))
         symbols = list(known.values())
-        self._listing = Listing(_joint(symbols, results))
+        self._listing = Listing(with_shared_terms("joint", symbols, results))
         entries = [symbol.nonzeros() for symbol in symbols]
         self._read = {
             number: entries[value.argument][value.entry]

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.equilibrium.metrics import ROUNDING, distance_of_poses
 from cosserat_casadi.equilibrium.solution import Equilibrium, Solution
@@ -97,13 +98,15 @@ class Correction:
         contracts: whether the missing modes moved by at most half of their step before, and would have before the
             unknowns of the answer followed. A wall that they run into is not in their stiffness: then they bounce, and
             watched poses may settle by chance.
-        settled: whether the correction before it gave about the same change.
+        rests: whether the missing modes moved by a small part of all that they moved.
+        settled: whether they rest, and the correction before it gave about the same change.
     """
 
     known: FloatArray
     missing: FloatArray
     change: float
     contracts: bool = True
+    rests: bool = False
     settled: bool = False
 
 
@@ -247,7 +250,19 @@ def safety_for(model: Model) -> float:
 
 
 def believed_correction(solution: Solution) -> tuple[bool, Correction]:
-    """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model."""
+    """Whether a correction is believed, and the last one: by sweeps, else by Newton's steps on the richer model.
+
+    None is believed of modes that are blind to what loads roll up.
+    """
+    settles, correction = _settled_correction(solution)
+    if not settles:
+        return False, correction
+    elements = TurnedElements(solution.model.discrete)
+    return not elements.hide_waves(solution.x, correction.missing), correction
+
+
+def _settled_correction(solution: Solution) -> tuple[bool, Correction]:
+    """Whether corrections settle, and the last one."""
     # A look that leaves the answer within its tolerance need not be repeated.
     enough = enough_for(solution.model)
     settled = settled_for(solution.model)
@@ -258,7 +273,8 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
             for correction in corrections:
                 if not np.isfinite(correction.change):
                     break
-                if correction.contracts and abs(correction.change - before) <= settled * correction.change:
+                rests = correction.contracts and correction.rests
+                if rests and abs(correction.change - before) <= settled * correction.change:
                     return True, replace(correction, settled=True)
                 if correction.contracts and correction.change <= enough:
                     return True, correction
@@ -306,7 +322,8 @@ def _sweeps(solution: Solution) -> Iterator[Correction]:
         # by chance then, and is not believed either.
         bounces = before is None and not _contracts(missing_step, balance.missing_step)
         change = change_with_following(solution, balance, following)
-        yield Correction(known, missing, change, contracts=not (bounces or bounced))
+        rests = _rests(solution, missing, missing_step)
+        yield Correction(known, missing, change, contracts=not (bounces or bounced), rests=rests)
         before = missing_step
         bounced = bounces
 
@@ -334,6 +351,12 @@ def _following(solution: Solution, inverse: FloatArray, residual: FloatArray) ->
 def _contracts(before: FloatArray, step: FloatArray) -> bool:
     """Whether a step of the missing modes is at most half as long as the one before it, or rounding."""
     longest = max(CONTRACTING * float(np.linalg.norm(before)), SHORTEST)
+    return bool(np.linalg.norm(step) <= longest)
+
+
+def _rests(solution: Solution, missing: FloatArray, step: FloatArray) -> bool:
+    """Whether the last step of the missing modes is a small part of all of them, or rounding."""
+    longest = max(settled_for(solution.model) * float(np.linalg.norm(missing)), SHORTEST)
     return bool(np.linalg.norm(step) <= longest)
 
 
@@ -390,17 +413,18 @@ def _newton_steps(solution: Solution) -> Iterator[Correction]:
             return
         step = -regular_inverse(jacobian) @ residual
         unknowns = unknowns + step
-        missing_step = step[~richer.known]
+        missing, missing_step = unknowns[~richer.known], step[~richer.known]
+        correction = _corrected(solution, unknowns[richer.known] - solution.x, missing)
         contracts = before is not None and _contracts(before, missing_step)
-        yield _corrected(solution, unknowns[richer.known] - solution.x, unknowns[~richer.known], contracts=contracts)
+        yield replace(correction, contracts=contracts, rests=_rests(solution, missing, missing_step))
         before = missing_step
 
 
-def _corrected(solution: Solution, known: FloatArray, missing: FloatArray, *, contracts: bool = True) -> Correction:
+def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Correction:
     """A correction with the largest change of a watched pose or length; infinite where one is not finite."""
     poses = richer_balance(solution, known, missing).poses
     change = change_size(poses.change_from(watched_at(solution, solution.x)))
-    return Correction(known, missing, change, contracts)
+    return Correction(known, missing, change)
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
@@ -411,9 +435,9 @@ def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
-    whole = _corrected(solution, correction.known, correction.missing)
-    fewer = _corrected(solution, correction.known, _without_last(solution, correction).missing)
-    return _rest(abs(whole.change - fewer.change), correction.change)
+    whole = richer_balance(solution, correction.known, correction.missing).poses
+    fewer = richer_balance(solution, correction.known, _without_last(solution, correction).missing).poses
+    return _rest(change_size(whole.change_from(fewer)), correction.change)
 
 
 def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:
@@ -458,17 +482,18 @@ def _wrench_change(solution: Solution, corrected: Solution, correction: Correcti
     """Largest relative change of a wrench: of the bases of rods, and of multipliers and tensions among the unknowns."""
     changes = [0.0]
     discrete = solution.model.discrete
+    # What Newton has left of the balance, a wrench that is none has too.
+    left = solution.residual_norm * (1 + float(np.linalg.norm(solution.x)))
     for _, entries in discrete.unknowns.of_kind(BlockKind.MULTIPLIER, BlockKind.TENSION, BlockKind.STOP):
-        change = _relative_change(solution.x[entries], correction.known[entries])
-        changes.append(change)
+        changes.append(_relative_change(solution.x[entries], correction.known[entries], left))
     for rod in discrete.rods.values():
         moment, force = _base_wrench_in_units(solution, rod)
         new_moment, new_force = _base_wrench_in_units(corrected, rod)
         whole = float(np.linalg.norm([*moment, *force]))
         # Next to a large force a small moment is not known to all of its digits, and the other way round.
         least = max(NO_WRENCH, SMALL_PART * whole)
-        changes.append(_relative_change(moment, new_moment - moment, least))
-        changes.append(_relative_change(force, new_force - force, least))
+        changes.append(_relative_change(moment, new_moment - moment, left, least))
+        changes.append(_relative_change(force, new_force - force, left, least))
     return max(changes)
 
 
@@ -480,7 +505,7 @@ def _base_wrench_in_units(solution: Solution, rod: DiscreteRod) -> tuple[FloatAr
     return moment, force
 
 
-def _relative_change(values: FloatArray, difference: FloatArray, least: float = NO_WRENCH) -> float:
-    """Size of a difference over the size of the values, or over the least size that counts."""
+def _relative_change(values: FloatArray, difference: FloatArray, left: float, least: float = NO_WRENCH) -> float:
+    """Size of a difference and of the residual, over the size of the values, or over the least size that counts."""
     size = max(float(np.linalg.norm(values)), least)
-    return float(np.linalg.norm(difference)) / size
+    return (float(np.linalg.norm(difference)) + left) / size

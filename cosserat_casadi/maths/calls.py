@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from itertools import chain, islice
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 MOST_MAPPED = 64
 """Maps of functions over many arguments that are kept: as many as a few searches for modes ask for."""
@@ -44,6 +45,25 @@ def in_scalars(function: ca.Function, name: str) -> ca.Function:
     """A function under another name as scalar instructions, with common terms shared."""
     symbols = function.sx_in()
     return ca.Function(name, symbols, ca.cse(function.call(symbols)), function.name_in(), function.name_out())
+
+
+def with_shared_terms(
+    name: str, symbols: Sequence[Matrix], results: Sequence[Matrix], *words: list[str]
+) -> ca.Function:
+    """A function symbols ↦ results whose equal terms are one term; words are names of its arguments and results.
+
+    Where results make one call several times, CasADi before 3.8 may merge these calls into one that gives a number
+    twice, and refuse it. It does not where columns that make the call once each are merged one after the other.
+    """
+    try:
+        return ca.Function(name, [*symbols], ca.cse([*results]), *words)
+    except RuntimeError:
+        merged: list[Matrix] = []
+        for column in chain.from_iterable(map(ca.horzsplit, results)):
+            merged = list(ca.cse([*merged, column]))
+    columns = iter(merged)
+    whole = [ca.horzcat(result[:, :0], *islice(columns, result.shape[1])) for result in results]
+    return ca.Function(name, [*symbols], whole, *words)
 
 
 def with_dense_results(function: ca.Function, name: str) -> ca.Function:

@@ -18,6 +18,7 @@ from cosserat_casadi.model import operations
 from cosserat_casadi.model.constraint_rank import check_constraints
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers, with_parameters
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.element_ends import check_discretisation
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import check_loads
 from cosserat_casadi.model.load_potential import loads_have_potential
@@ -295,13 +296,15 @@ def build(
 
     Raises:
         SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be
-            where it is.
+            where it is; or the discretisation is not one of the scene's rods.
     """
     refuse_tubes(scene)
     if not moving:
         refuse(list(exact_rods(scene, "what is at rest")))
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
+    if discretisation is not None:
+        check_discretisation(scene, discretisation)
     nominal = discrete_scene(scene, input_layout(scene), chosen, moving)
     check_loads(nominal)
     if scene.obstacles:

@@ -40,7 +40,7 @@ from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import HISTORY, Input, InputLayout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.model.registry import EFFECTS, remembering
-from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.required_modes import seeing_modes
 from cosserat_casadi.model.scene_constraints import (
     FORCE_WEIGHT,
     PlacedConstraint,
@@ -537,11 +537,10 @@ class DiscreteScene:
     def richer(self) -> Richer:
         """This scene with modes and intervals added, on which the error of an answer shows."""
         nominal = self.nominal
-        modes = signal_modes(nominal.scene)
         discretisation = {
             name: enriched(
                 rod.discretisation,
-                modes,
+                seeing_modes(nominal.scene, name),
                 nodes_above_modes(nominal.scene, name, touches=bool(nominal.scene.obstacles or self.pairs)),
                 in_layers=name in self.pressed_rods,
             )

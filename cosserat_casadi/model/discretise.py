@@ -38,16 +38,13 @@ NODES_ABOVE_MODES_IN_CONTACT = 8
 """Intervals beyond the modes of a strain where obstacles press on a few nodes: so short a push needs more of them."""
 
 NODES_ABOVE_MODES_BESIDE_KINKS = 12
-"""Intervals beyond the modes of a strain where the pull of a cable has a kink: the error of intervals falls slowly."""
+"""Intervals beyond the modes of a strain beside a kink in the pull of a cable, or in drag: their error falls slowly."""
 
 NEXT_ORDER = {"magnus4": "magnus6", "magnus6": "magnus8"}
 """Rotation integrators of a higher order, so that the error of the order itself shows."""
 
-ENOUGH_GROWTH = 1.4
-"""Factor on the intervals that shows the error of the order too: three quarters of it at the fourth, the lowest."""
-
-ENOUGH_GROWTH_OF_HIGHEST = 1.25
-"""Factor on the intervals that shows five sixths of the error of the highest order, which has none above it."""
+ENOUGH_GROWTH = {"magnus4": 1.7, "magnus6": 1.4, "magnus8": 1.3}
+"""Factor on the intervals that shows seven eighths of the error of the order too; no order is above the highest."""
 
 
 def discretise(
@@ -125,28 +122,30 @@ def nodes_for(modes: int) -> int:
 
 def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
     """Intervals beyond the modes of a strain on which the error of a rod shows, which touches something or nothing."""
-    if any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators):
+    of_cables = any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators)
+    if of_cables or any(isinstance(load, scenes.Flow) for load in scene.loads):
         return NODES_ABOVE_MODES_BESIDE_KINKS
     return NODES_ABOVE_MODES_IN_CONTACT if touches else NODES_ABOVE_MODES
 
 
 def enriched(
-    discretisation: Discretisation, signal_modes: int, above_modes: int, *, in_layers: bool = False
+    discretisation: Discretisation, seeing_modes: int, above_modes: int, *, in_layers: bool = False
 ) -> Discretisation:
     """A discretisation with modes added to every strain, on intervals that resolve them.
 
     Args:
         discretisation: of a rod.
-        signal_modes: modes below which a rod is blind to what the scene puts along it.
+        seeing_modes: modes below which a rod is blind to what goes on along it.
         above_modes: intervals beyond the modes, of :func:`nodes_above_modes`.
         in_layers: whether layers press the rod.
     """
     added = ADDED_MODES_IN_LAYERS if in_layers else ADDED_MODES
-    modes = tuple(max(count + added, signal_modes) for count in discretisation.modes)
+    modes = tuple(max(count + added, seeing_modes) for count in discretisation.modes)
     nodes = max(discretisation.nodes + ADDED_NODES, max(modes) + above_modes)
     transport = discretisation.transport
-    if transport == "magnus8":
-        nodes = max(nodes, ceil(ENOUGH_GROWTH_OF_HIGHEST * discretisation.nodes))
-    elif nodes < ENOUGH_GROWTH * discretisation.nodes:
-        transport = NEXT_ORDER.get(transport, transport)
+    growth = ENOUGH_GROWTH.get(transport, 1.0) * discretisation.nodes
+    if transport in NEXT_ORDER and nodes < growth:
+        transport = NEXT_ORDER[transport]
+    else:
+        nodes = max(nodes, ceil(growth))
     return replace(discretisation, modes=modes, nodes=nodes, transport=transport)

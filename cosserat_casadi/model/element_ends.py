@@ -6,7 +6,7 @@ of the scene's own numbers, so that the order of the places along a rod must sta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,11 +14,12 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.rod.discretisation import Discretisation
 
 NARROWEST = 1e-6
 """Width of an element relative to the rod below which its ends are taken to meet."""
@@ -68,6 +69,39 @@ def check_places(rod: str, ends: Sequence[float]) -> None:
             problem = f"its elements would end at {before!r} and at {after!r}, too near each other to compute with"
             remedy = "give what meets on the rod the same abscissa X, or move one"
             raise SceneError(Problem(rod, problem, remedy))
+
+
+def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discretisation]) -> None:
+    """Refuse a discretisation that is not one of the rods of a scene.
+
+    Raises:
+        SceneError: a rod has no discretisation, or one of other strains or elements; all faults at once.
+    """
+    rods = {rod.name: rod for rod in scene.rods}
+    names = ", ".join(rods)
+    unknown = [name for name in discretisation if name not in rods]
+    problems = [
+        Problem(f"discretisation.{name}", "is no rod of the scene", f"its rods are {names}") for name in unknown
+    ]
+    remedy = "make it with discretise(scene)"
+    for name, rod in rods.items():
+        where = f"discretisation.{name}"
+        if name not in discretisation:
+            problems.append(Problem(where, "missing", remedy))
+            continue
+        own = discretisation[name]
+        if len(own.modes) != len(rod.admitted) or min(own.modes) < 1:
+            wanted = f"must be {len(rod.admitted)} numbers >= 1, one for each strain, got {own.modes}"
+            problems.append(Problem(f"{where}.modes", wanted, remedy))
+        if own.nodes < 1:
+            problems.append(Problem(f"{where}.nodes", f"must be >= 1, got {own.nodes}", remedy))
+        ends = {0.0, 1.0, *map(float, places_on(scene, name))}
+        ascend = all(before < after for before, after in pairwise(own.breaks))
+        if not ascend or not ends <= set(own.breaks) or (min(own.breaks), max(own.breaks)) != (0.0, 1.0):
+            asked_for = ", ".join(f"{end:g}" for end in sorted(ends))
+            problem = f"must ascend from 0 to 1, with element ends at {asked_for}, got {own.breaks}"
+            problems.append(Problem(f"{where}.breaks", problem, remedy))
+    refuse(problems)
 
 
 def moved_ends(

@@ -100,10 +100,17 @@ class InputLayout(StackedLayout[Input]):
         """Problems of a value."""
         faults = list(super()._faults(entry, value))
         yield from faults
-        if not faults and entry.declared.positive and not np.all(value > 0.0):
+        if faults:
+            return
+        declared = entry.declared
+        if declared.positive and not np.all(value > 0.0):
             yield Problem(entry.name, f"must be > 0, got {value.item()}")
-        elif not faults and entry.declared.nonzero and not np.any(value):
+        elif declared.nonzero and not np.any(value):
             yield Problem(entry.name, "must not be zero", "w, x, y, z; its norm does not matter")
+        elif declared.lower is not None and np.any(value < declared.lower):
+            yield Problem(entry.name, f"must be >= {declared.lower:g}, got {value.min():g}")
+        elif np.any(value > entry.upper):
+            yield Problem(entry.name, f"must be <= {entry.upper:g}, got {value.max():g}")
 
     def of_load(self, name: str, field: str) -> slice | None:
         """Slice of a field of a load or an actuator in the stacked vector; None where the scene fixes it."""

@@ -10,6 +10,8 @@ have decayed can be a reference solution (docs/theory.md, section 10).
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
+from math import ceil
 
 import casadi as ca
 import numpy as np
@@ -17,6 +19,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.routing import holes
+from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.element_ends import element_ends
@@ -34,6 +37,15 @@ FAINT = 1e-3
 
 BEYOND = 2
 """Modes beyond a signal's degree, whose decay tells how fast the rest converges."""
+
+SECTIONS_OF_TURN = 64
+"""Sections of an element at which its unloaded curvature is summed."""
+
+SLOW_MODES = 7
+"""Modes that see any signal that varies slowly, whose square has few modes as well."""
+
+WAVES_FACTOR = 2
+"""Factor on modes at which products of waves show, which have twice their frequency."""
 
 PROJECTIONS = (12, 24, 48, 96, 192)
 """Modes of the projections of an actuator, tried one after the other until two agree."""
@@ -113,6 +125,37 @@ def _projection(actuator: scenes.Actuator, discrete_rod: DiscreteRod) -> FloatAr
         degrees = discrete_rod.degrees(component)
         np.maximum.at(sizes, degrees, np.abs(gradient[columns] / units[columns]))
     return sizes
+
+
+def seeing_modes(scene: scenes.Scene, rod: str) -> int:
+    """Modes of every strain of a rod from which on a richer model sees what its scene and its own turns put along it.
+
+    Over an element that turns by T a force of fixed direction puts waves into the strains, whose coefficients are small
+    up to about the degree T/2. Bending multiplies waves, and puts some at twice the degree.
+    """
+    record = next(record for record in scene.rods if record.name == rod)
+    turn = max(unloaded_turns(record, element_ends(scene, rod)))
+    of_turn = ceil(turn / 2) + BEYOND if turn > 2 * np.pi else 0
+    waves = max(signal_modes(scene), of_turn)
+    return waves if waves <= SLOW_MODES else WAVES_FACTOR * waves
+
+
+@lru_cache(maxsize=64)
+def unloaded_turns(record: scenes.Rod, breaks: tuple[float, ...]) -> tuple[float, ...]:
+    """Angle through which sections of an unloaded rod turn along each of its elements, summed, rad.
+
+    Args:
+        record: the rod, whose curvature is numbers.
+        breaks: ends of its elements.
+    """
+    properties = rod_properties(record)
+    points, weights = gauss_legendre(SECTIONS_OF_TURN)
+    turns = []
+    for start, end in pairwise(breaks):
+        X = start + (end - start) * (points + 1) / 2
+        curvature = np.linalg.norm(known(properties.intrinsic_curvature(X)), axis=1)
+        turns.append(properties.length * (end - start) / 2 * float(weights @ curvature))
+    return tuple(turns)
 
 
 def _series_degree(component: npt.ArrayLike) -> int:

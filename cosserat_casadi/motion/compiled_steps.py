@@ -25,7 +25,7 @@ from cosserat_casadi.motion.steps_library import CALL, StepsRecord, steps_librar
 from cosserat_casadi.numerics.collocation import STAGES, radau
 from cosserat_casadi.numerics.integration import IntegrationCost, StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation
-from cosserat_casadi.numerics.step import CarriedStep, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, StepRows
 from cosserat_casadi.numerics.step_control import StepControl
 from cosserat_casadi.numerics.step_run import StepRun
 
@@ -33,7 +33,7 @@ ORDERS = 3
 """Arguments of inverse dynamics that are as many as its unknowns: x, v, a."""
 
 FACTS = 7
-"""Numbers of a step beside its state and its stages."""
+"""Numbers of a step beside its state and its stages: the facts of :class:`StepRows`, and the size wanted next."""
 
 MOST_TRIES = 64
 """Steps that are tried in one call: then an interrupt is seen."""
@@ -70,20 +70,20 @@ class CompiledSteps:
         self._control = control
         self._without_program: RepeatedCall | None = None
         n = run.equations.size
-        self._matrices = np.zeros((3, n, n))
-        self._now, self._linearised_at, self._kept_at = np.zeros((3, 3, n))
-        self._before = np.zeros((STAGES, n))
         record = StepsRecord(unknowns=n, stop=run.stop, newton=run.bounds.error, shortest=shortest)
         self._record = record
         self._held = Held(record)
-        self._held.call_back("jacobians_at", CALL, self._linearise)
-        self._held.share("differential", run.equations.differential.astype(np.intc))
-        self._held.share("weights", np.ascontiguousarray(run.bounds.weights, dtype=float))
+        self._matrices = np.zeros((ORDERS, n, n))
+        self._now, self._linearised_at, self._kept_at = np.zeros((3, ORDERS, n))
+        self._before = np.zeros((STAGES, n))
+        self._rows: list[FloatArray] = []
         self._held.share("matrices", self._matrices)
         self._held.share("now", self._now)
         self._held.share("before", self._before)
         self._held.share("linearised_at", self._linearised_at)
         self._held.share("kept_at", self._kept_at)
+        self._held.share("differential", run.equations.differential.astype(np.intc))
+        self._held.share("weights", np.ascontiguousarray(run.bounds.weights, dtype=float))
         kinks = np.array(run.equations.kinks, dtype=float)
         record.kink_count = len(kinks)
         self._held.share("kinks", kinks)
@@ -95,6 +95,8 @@ class CompiledSteps:
             self._share_kernel(residual.rows)
         else:
             self._share_function()
+        if not record.derivatives:
+            self._held.call_back("jacobians_at", CALL, self._linearise)
         self._held.share("stage_times", np.zeros(STAGES))
         self._held.share("room", np.zeros(self._library.steps_room(n, record.inputs)))
         record.lasting = run.settings.lasting
@@ -131,10 +133,11 @@ class CompiledSteps:
                 array[:] = values
 
         inputs_at(self._run.start.time)
-        self._held.call_back("inputs_at", CALL, inputs_at)
         if residual.cubics is not None:
             record.cubics_begin, cubics = residual.cubics
             self._held.share("cubics", np.ascontiguousarray(cubics))
+        elif residual.moves:
+            self._held.call_back("inputs_at", CALL, inputs_at)
         if call.code is None:
             self._held.call_back("residual_at", CALL, partial(_evaluate, call, state, rows))
             self._without_program = None if call.program_after is None else call
@@ -212,8 +215,8 @@ class CompiledSteps:
         for held, matrix in zip(self._matrices, (linear.stiffness, linear.damping, linear.mass), strict=True):
             held[:] = matrix.T
 
-    def take(self, most: int) -> tuple[StepOutcome | None, list[float]]:
-        """Take steps, at most so many.
+    def take(self, one: bool) -> tuple[StepOutcome | None, list[float]]:
+        """Take a step, or many, which the run then has as rows.
 
         Returns:
             how the motion ends, None where it goes on; and the time before each step that was tried, s.
@@ -221,17 +224,16 @@ class CompiledSteps:
         run, record, control = self._run, self._record, self._control
         n = run.equations.size
         tries = MOST_TRIES if self._without_program is None else FEW_TRIES
-        most = min(most, tries)
-        facts = np.zeros((most, FACTS))
-        ends = np.zeros((most, 3, n))
-        stages = np.zeros((most, STAGES, n))
-        tried = np.zeros(MOST_TRIES)
-        for name, array in (("facts", facts), ("ends", ends), ("stages", stages), ("tried_at", tried)):
-            setattr(record, name, array.ctypes.data)
+        record.most_steps, record.most_tries = 1 if one else tries, tries
+        if not self._rows:
+            most = 1 if one else MOST_TRIES
+            shapes = {"facts": (most, FACTS), "ends": (most, ORDERS, n), "stages": (most, STAGES, n)}
+            for name, shape in {**shapes, "tried_at": (MOST_TRIES,)}.items():
+                self._rows.append(np.zeros(shape))
+                self._held.share(name, self._rows[-1])
         now = run.now
         self._now[:] = now.x, now.v, now.a
         record.time = now.time
-        record.most_steps, record.most_tries = most, tries
         record.wanted, record.refused = control.wanted, control.refused
         record.last_size, record.last_error = control.last_size, control.last_error
         counted = record.rejected, record.iterations, record.jacobians, record.factorisations
@@ -245,7 +247,9 @@ class CompiledSteps:
             factorisations=record.factorisations - counted[3],
         )
         run.size = record.size
-        self._taken(facts[: record.steps], ends, stages)
+        *taken, tried = self._rows
+        if record.steps:
+            self._taken(now, one, *(array[: record.steps].copy() for array in taken))
         raise_what_was_raised()
         call = self._without_program
         if outcome is None and call is not None and call.program_after is not None:
@@ -253,36 +257,22 @@ class CompiledSteps:
             self._share_program(call.program)
         return outcome, tried[: record.tries].tolist()
 
-    def _taken(self, facts: FloatArray, ends: FloatArray, stages: FloatArray) -> None:
+    def _taken(self, now: Instant, one: bool, facts: FloatArray, ends: FloatArray, unknowns: FloatArray) -> None:
         """Give the run its new steps, and the memory for a next one."""
         run, record = self._run, self._record
-        now = run.now
-        method, differential = run.method, run.equations.differential
-        # A motion has thousands of steps: rows are taken apart all at once.
-        rows = zip(facts.tolist(), ends[:, 0], ends[:, 1], ends[:, 2], stages, strict=False)
-        for fact, x, v, a, unknowns in rows:
-            time, size, error, iterations, residual, contraction, wanted = fact
-            step = TimeStep(
-                method=method,
-                differential=differential,
-                start=now,
-                size=size,
-                unknowns=unknowns,
-                end=Instant(time, x, v, a),
-                error=error,
-                iterations=int(iterations),
-                residual=residual,
-                contraction=contraction,
-            )
-            run.add(step)
-            now = run.steps[-1].end
-        if not len(facts):
-            return
+        states = np.concatenate([[[now.x, now.v, now.a]], ends])
+        facts = np.column_stack([np.append(now.time, facts[:-1, 0]), facts])
+        rows = StepRows(run.method, run.equations.differential, states[:-1], states[1:], unknowns, facts[:, :-1])
+        if one:
+            run.add(rows[0])
+        else:
+            run.rows.append(rows)
         run.longest = record.longest
         run.fresh = bool(record.fresh)
         linearised_at = Instant(record.kept_time, *self._kept_at.copy()) if record.kept else None
         run.linearised_at = linearised_at
-        run.memory = CarriedStep(run.begun, size, unknowns, wanted, error, run.longest, linearised_at)
+        _, _, size, error, *_, wanted = facts[-1].tolist()
+        run.memory = CarriedStep(run.begun, size, unknowns[-1], wanted, error, run.longest, linearised_at)
         run.renew_jacobian()
         if linearised_at is not None and run.guards is not None:
             run.linearisation = Linearisation(*(matrix.T.copy() for matrix in self._matrices))

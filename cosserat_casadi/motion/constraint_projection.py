@@ -6,20 +6,21 @@ is far below the tolerance of the motion.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.calls import chooses
+from cosserat_casadi.maths.calls import chooses, evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.repeated_call import RepeatedCall, external
+from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -57,62 +58,67 @@ class Closing:
         """Rows of the residual that are constraints on positions alone."""
         return constraint_rows(self.model)
 
-    def closed(self, instant: Instant, inputs: FloatArray, equations: MotionEquations, near: Instant) -> FloatArray:
-        """Unknowns at an instant, moved by the smallest displacement that closes the constraints, shape (size,).
+    def closed(
+        self,
+        times: FloatArray,
+        states: Sequence[FloatArray],
+        inputs: FloatArray,
+        equations: MotionEquations,
+        steps: npt.NDArray[np.intp],
+    ) -> FloatArray:
+        """Unknowns at T times, moved by the smallest displacements that close the constraints, shape (T, size).
 
         Args:
-            instant: of the motion, in the unknowns of the model.
-            inputs: inputs at that instant, shape (model.inputs.size,).
+            times: of the motion, shape (T,), s.
+            states: x, v and a at these times, in the unknowns of the model, shape (T, size) each.
+            inputs: inputs at these times, shape (T, model.inputs.size).
             equations: of motion, of which some rows are the constraints.
-            near: where the first Jacobian is evaluated: an end of the step that the instant is in, for many instants.
+            steps: number of the step that holds each time, shape (T,); one Jacobian serves a step at first.
         """
-        x = instant.x
-        if not len(self.rows):
-            return x
-        best = x
-        before = np.inf
-        answer = None
-        is_here = False
+        x = np.array(states[0])
+        best = x.copy()
+        before = np.full(len(x), np.inf)
+        is_here = np.zeros(len(x), dtype=bool)
+        answers: FloatArray | None = None
+        left = np.arange(len(x))
+
+        def answer_at(row: int) -> FloatArray:
+            instant = Instant(float(times[row]), best[row], states[1][row], states[2][row])
+            return self._answer(equations.linearised(instant).stiffness)
+
         for _ in range(MOST_CORRECTIONS):
-            gaps = self._gaps(x, inputs)
-            largest = np.abs(gaps).max()
-            if largest <= CLOSED:
-                break
-            leads_away = not largest < before
+            gaps = self._gaps(x[left], inputs[left])
+            largest = np.abs(gaps).max(axis=1)
+            leads_away = ~(largest < before[left])
             # Where constraints are about to depend on each other corrections may lead away.
-            if leads_away and is_here:
-                return best
-            if leads_away:
-                gaps = self._gaps(best, inputs)
+            is_given_up = (largest > CLOSED) & leads_away & is_here[left]
+            x[left[is_given_up]] = best[left[is_given_up]]
+            goes_on = (largest > CLOSED) & ~is_given_up
+            left, gaps, largest, leads_away = (each[goes_on] for each in (left, gaps, largest, leads_away))
+            if not len(left):
+                break
+            if np.any(leads_away):
+                gaps[leads_away] = self._gaps(best[left[leads_away]], inputs[left[leads_away]])
+            best[left[~leads_away]] = x[left[~leads_away]]
+            if answers is None:
+                _, firsts, of_step = np.unique(steps, return_index=True, return_inverse=True)
+                answers = np.array([answer_at(row) for row in firsts.tolist()])[of_step]
             else:
-                best = x
-            if answer is None:
-                answer = self._answer_near(near, equations)
-            elif leads_away or largest > CONTRACTED * before:
-                answer = self._answer(equations.linearised(replace(instant, x=best)).stiffness)
-                is_here = True
-            before = np.abs(gaps).max()
-            x = best - answer @ gaps
+                for row in left[leads_away | (largest > CONTRACTED * before[left])].tolist():
+                    answers[row] = answer_at(row)
+                    is_here[row] = True
+            before[left] = np.abs(gaps).max(axis=1)
+            x[left] = best[left] - np.einsum("tnm,tm->tn", answers[left], gaps)
         return x
 
-    @cached_property
-    def _gaps(self) -> RepeatedCall:
-        """(x, inputs) ↦ the rows of the constraints: the rest of the equations takes several times as long."""
-        if self.library is not None:
-            return RepeatedCall(external(GAPS, self.library))
-        return RepeatedCall(kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0]))
-
-    def _answer_near(self, near: Instant, equations: MotionEquations) -> FloatArray:
-        """Displacements that answer to gaps, as :meth:`_answer`, at an end of a step; the last answer is remembered."""
-        time, answer = self._remembered.get("last", (None, None))
-        if answer is None or time != near.time:
-            answer = self._answer(equations.linearised(near).stiffness)
-            self._remembered["last"] = near.time, answer
-        return answer
-
-    @cached_property
-    def _remembered(self) -> dict[str, tuple[float, FloatArray]]:
-        return {}
+    def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """The rows of the constraints at T states, shape (T, rows): the rest of the equations is not computed."""
+        if self.library is None:
+            function = kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
+        else:
+            function = external(GAPS, self.library)
+        (gaps,) = evaluated(function, x, inputs)
+        return gaps[:, :, 0].copy()
 
     def _answer(self, stiffness: FloatArray) -> FloatArray:
         """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""

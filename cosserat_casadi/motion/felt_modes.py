@@ -90,9 +90,12 @@ def most_modes(chosen: Mapping[str, Discretisation]) -> int:
 
 def felt(history: History, duration: float) -> ByStrain:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
-    states = watched_states(history, duration)
-    moved = np.abs(states.x).max(axis=0) * displacements(history.model)
-    return history.once("felt", duration, lambda: _by_strain(history.model, moved))
+
+    def moved() -> ByStrain:
+        states = watched_states(history, duration)
+        return _by_strain(history.model, np.abs(states.x).max(axis=0) * displacements(history.model))
+
+    return history.once("felt", duration, moved)
 
 
 def _by_strain(model: Model, sizes: FloatArray) -> ByStrain:
@@ -218,11 +221,10 @@ def lacking_at_fronts(history: History, duration: float) -> float:
 
     What a front lacks from all rods that it comes through adds up, as errors at different times do: in squares.
     """
-    model = history.model
     by_rod = at_fronts(history, duration)
     squares = dict.fromkeys(by_rod, 0.0)
     for name, by_strain in by_rod.items():
-        for other in moved_along(model.scene, name).rods:
+        for other in moved_along(history.model.scene, name).rods:
             squares[other] += max(by_strain) ** 2
     return float(np.sqrt(max(squares.values())))
 
@@ -412,22 +414,19 @@ def out_of_phase(history: History, duration: float, moved_by: ByStrain) -> float
         duration: its end, s.
         moved_by: the displacements of :func:`felt`.
     """
-    if not history.steps:
+    if not history.rows:
         return 0.0
     # Strains are the same in the coordinates of the steps; forces of contacts stand behind the unknowns of the model.
     own = slice(history.model.size)
-    ends = [step.end for _, step in history.steps]
+    _, rates, accelerations = np.abs(np.concatenate([rows.ends[:, :, own] for rows in history.rows])).swapaxes(0, 1)
     # A motion that goes on had waves before: its lateness adds up.
-    sizes = np.array([step.size for _, step in history.steps]) * duration / (duration - history.begin)
-    rates = np.abs([end.v[own] for end in ends])
+    sizes = np.concatenate([rows.facts[:, 2] for rows in history.rows]) * duration / (duration - history.begin)
     ways = _by_strain(history.model, sizes @ rates * displacements(history.model))
-    accelerations = _by_strain(history.model, np.abs([end.a[own] for end in ends]).max(axis=0))
+    largest = _by_strain(history.model, accelerations.max(axis=0))
     late = 0.0
     for rod, of_rod in ways.items():
         let_through = _let_through(history.model, rod)
-        for passed, way, acceleration, moved in zip(
-            let_through, of_rod, accelerations[rod], moved_by[rod], strict=True
-        ):
+        for passed, way, acceleration, moved in zip(let_through, of_rod, largest[rod], moved_by[rod], strict=True):
             share = last_of(acceleration) / max(acceleration.max(), TINY)
             of_any_share = float(np.sqrt(0.5 * np.pi * last_of(way) * last_of(moved)))
             late = max(late, passed * min(0.5 * last_of(way) * share, of_any_share))

@@ -128,7 +128,7 @@ def go_on(
     for strand in checkpoint.strands[1:]:
         other = model
         if strand.discretisation != first.discretisation:
-            other = moving_model(scene, strand.discretisation)
+            other = _model_of_strand(scene, None, strand)
         beside, told = gone_on(strand, other, "going on, for the error")
         if told.outcome is StepOutcome.INTERRUPTED:
             message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
@@ -185,23 +185,13 @@ def _moving(subject: Scene | Model, simulation: Simulation | None) -> Scene:
 
 
 def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Checkpoint) -> Model:
-    """The model of a strand.
+    """The model of the first strand, whose tips are where those of the checkpoint are.
 
     Raises:
         SceneError: the scene does not have its state.
     """
-    refused = of_another_scene()
-    if {rod.name for rod in scene.rods} != set(strand.discretisation):
-        raise refused
-    try:
-        model = moving_model(scene, strand.discretisation) if given is None else given
-    except ValueError as error:
-        raise refused from error
-    at, contacts = strand.resume.at, strand.resume.contacts
-    if (contacts is not None) != scene.rubs_exactly:
-        raise refused
-    if model.discretisation != strand.discretisation or len(strand.settings.tolerance) != model.size:
-        raise refused
+    model = _model_of_strand(scene, given, strand)
+    at = strand.resume.at
     inputs = moving_inputs(model).at(at.time).value
     if can_be_centred(model):
         at = CentredCoordinates(model).to_model(at)
@@ -209,5 +199,22 @@ def _model_of(scene: Scene, given: Model | None, strand: Strand, checkpoint: Che
     for name, rod in model.discrete.rods.items():
         position = np.asarray(model.tip[name](x, inputs)[0]).ravel()
         if not np.abs(position - checkpoint.tips[name]).max() <= AGREEMENT * rod.properties.length:
-            raise refused
+            raise of_another_scene()
+    return model
+
+
+def _model_of_strand(scene: Scene, given: Model | None, strand: Strand) -> Model:
+    """The model of a strand, with as many unknowns as its state has.
+
+    Raises:
+        SceneError: the scene does not have its state.
+    """
+    try:
+        model = moving_model(scene, strand.discretisation) if given is None else given
+    except (SceneError, ValueError) as error:
+        raise of_another_scene() from error
+    rubs = strand.resume.contacts is not None
+    sizes = {len(strand.settings.tolerance), len(strand.resume.at.x[: model.size]), model.size}
+    if len(sizes) > 1 or model.discretisation != strand.discretisation or rubs != scene.rubs_exactly:
+        raise of_another_scene()
     return model

@@ -39,7 +39,7 @@ from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.motion_equations import Instant, Jacobians, MotionEquations
-from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, TimeStep
+from cosserat_casadi.numerics.step import CarriedStep, HeldTimes, StepRows, TimeStep
 from cosserat_casadi.numerics.time_steps import integrate
 
 Known = TypeVar("Known")
@@ -68,6 +68,9 @@ SHORTER = 0.25
 
 AT_ONCE = 1e-6
 """Time, over the duration, that counts as next to no time for changes."""
+
+CLOSED_AT_ONCE = 256
+"""Rows whose constraints are closed together: each has a matrix in memory."""
 
 AT_REST = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
 """The remedy where nothing can follow an input that has a speed."""
@@ -226,10 +229,15 @@ class History:
         """All steps in their order, with the pieces that they belong to."""
         return [(leg, step) for leg in self.legs for step in leg.integration.steps]
 
+    @property
+    def rows(self) -> list[StepRows]:
+        """The steps of each leg that has some, as arrays."""
+        return [StepRows.of(leg.integration.steps) for leg in self.legs if leg.integration.steps]
+
     @cached_property
     def statistics(self) -> StepStatistics:
         """Statistics of the steps: numbers, iterations and sizes."""
-        sizes = [step.size for _, step in self.steps]
+        sizes = [size for rows in self.rows for size in rows.facts[:, 2].tolist()]
         counts = [leg.integration.statistics for leg in self.legs]
         return StepStatistics(
             steps=sum(count.steps for count in counts),
@@ -242,9 +250,8 @@ class History:
 
     def at(self, time: float) -> MotionState:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
-        leg, instant = self.locate(time)
-        inputs = leg.piece.at(instant.time).value
-        return MotionState(self._closed(leg, instant, inputs), instant.v, instant.a, inputs)
+        states = self.states(np.array([time]))
+        return MotionState(states.x[0], states.v[0], states.a[0], states.inputs[0])
 
     def states(self, times: FloatArray) -> MotionState:
         """The states at T times that were reached, as :meth:`at`, a row for each time."""
@@ -255,27 +262,22 @@ class History:
             if held is not None and self.flight.coordinates is None:
                 parts = held.positions(), *held.rates()
                 x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
-            for row in np.flatnonzero(rows).tolist():
-                instant = Instant(float(times[row]), x[row], v[row], a[row])
-                if held is None or self.flight.coordinates is not None:
-                    _, instant = self.locate(instant.time)
-                x[row], v[row], a[row] = self._closed(leg, instant, inputs[row]), instant.v, instant.a
+            else:
+                instants = [(at.x, at.v, at.a) for _, at in map(self.locate, times[rows].tolist())]
+                x[rows], v[rows], a[rows] = np.reshape(instants, (-1, 3, self.model.size)).swapaxes(0, 1)
+            if held is None or not len(self._closing.rows):
+                continue
+            equations = leg.equations or equations_of(self.model, leg.piece)
+            for first in range(0, np.count_nonzero(rows), CLOSED_AT_ONCE):
+                part = slice(first, first + CLOSED_AT_ONCE)
+                some = np.flatnonzero(rows)[part]
+                states = x[some], v[some], a[some]
+                x[some] = self._closing.closed(times[some], states, inputs[some], equations, held.numbers[part])
         return MotionState(x, v, a, inputs)
-
-    def _closed(self, leg: Leg, instant: Instant, inputs: FloatArray) -> FloatArray:
-        """Unknowns at an instant of a leg with closed constraints."""
-        if not len(self._closing.rows):
-            return instant.x
-        equations = leg.equations or equations_of(self.model, leg.piece)
-        near = instant
-        if self.steps:
-            _, step = self.steps[self.number_at(instant.time)]
-            near = self.of_model(min(step.end, step.start, key=lambda end: abs(end.time - instant.time)))
-        return self._closing.closed(instant, inputs, equations, near)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
-        if not self.steps:
+        if not self._ends:
             leg = self.legs[0]
             return leg, self.of_model(leg.start.instant)
         leg, step = self.steps[self.number_at(time)]
@@ -283,7 +285,7 @@ class History:
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """The contacts at a time that was reached; none in a scene without exact contact."""
-        if self.contacts is None or not self.steps:
+        if self.contacts is None or not self._ends:
             return ()
         number = self.number_at(time)
         _, step = self.steps[number]
@@ -311,7 +313,7 @@ class History:
 
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
-        return min(bisect_left(self._ends, time), len(self.steps) - 1)
+        return min(bisect_left(self._ends, time), len(self._ends) - 1)
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times as the steps have them, shapes (T, size) and (T, inputs).
@@ -332,16 +334,16 @@ class History:
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
         """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
-        if not self.steps:
+        if not self._ends:
             yield self.legs[0], np.ones(len(times), dtype=bool), None
             return
-        numbers = np.minimum(np.searchsorted(self._ends, times), len(self.steps) - 1)
+        numbers = np.minimum(np.searchsorted(self._ends, times), len(self._ends) - 1)
         first = 0
         for leg in self.legs:
             steps = leg.integration.steps
             rows = (first <= numbers) & (numbers < first + len(steps))
             if np.any(rows):
-                yield leg, rows, HeldTimes(steps, numbers[rows] - first, times[rows])
+                yield leg, rows, HeldTimes(StepRows.of(steps), numbers[rows] - first, times[rows])
             first += len(steps)
 
     def once(self, name: str, duration: float, computed: Callable[[], Known]) -> Known:
@@ -376,7 +378,7 @@ class History:
 
     @cached_property
     def _ends(self) -> list[float]:
-        return [step.end.time for _, step in self.steps]
+        return [time for rows in self.rows for time in rows.facts[:, 1].tolist()]
 
 
 @dataclass(frozen=True)

@@ -538,6 +538,9 @@ def _with_tolerance(search: _Search) -> Motion:
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
         level = ResolvedMotion(simulator, history, found, rung, modes, distance, unseen, step_tolerance=step_tolerance)
         search.levels.append(_with_waves(search, level))
+        if step_tolerance < search.step_tolerance and search.space_error > SPACE_SHARE * search.tolerance:
+            search.levels[-1] = _with_steps_of_others(search)
+            distance = search.last.distance
         hopeless = search.hopeless
         if hopeless is not None:
             return _given_up(search, hopeless)
@@ -565,6 +568,20 @@ def _with_tolerance(search: _Search) -> Motion:
         left = search.left_over_distance(search.order)
         companions.append(Companion(search.levels[-2].history, left, by_modes=True))
     return _judged(search, finest, search.space_error + timed.error, companions)
+
+
+def _with_steps_of_others(search: _Search) -> ResolvedMotion:
+    """The last level, which was wrongly foreseen to be the last of all, with the steps of the levels before."""
+    level = search.last
+    history = level.simulator.controlled(search.step_tolerance)
+    if history.outcome is StepOutcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    if not history.completed:
+        return level
+    paths = level.simulator.paths(history)
+    distance = path_distance(search.levels[-2].paths, paths)
+    level = replace(level, history=history, paths=paths, distance=distance, step_tolerance=search.step_tolerance)
+    return _with_waves(search, level)
 
 
 def _with_waves(search: _Search, level: ResolvedMotion) -> ResolvedMotion:
@@ -692,8 +709,7 @@ def _seems_last(search: _Search, modes: int) -> bool:
 
     The level is then computed with the more exact steps at once, which the last level before may tell the error of.
     """
-    # With fronts, what the level before tells is too much: a chain of rods missed a tolerance of 6e-3 that it meets.
-    if not search.levels or search.scene.has_contact or search.last.fronts > 0.0 or is_struck(search.last.history):
+    if not search.levels or search.scene.has_contact or is_struck(search.last.history):
         return False
     duration = search.simulation.duration
     lacks = [max(lacking(level.history, duration), level.fronts) for level in search.levels[-2:]]

@@ -67,12 +67,6 @@ def poses_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Poses:
     return Poses(position[:, :, 0], quaternion[:, :, 0])
 
 
-def frames_of(function: ca.Function, x: FloatArray, inputs: FloatArray) -> Frames:
-    """Frames of a tip or a body; arguments as in :func:`poses_of`."""
-    position, _, rotation = evaluated(function, x, inputs)
-    return Frames(position[:, :, 0], rotation)
-
-
 def section_poses(model: Model, rod: str, X: npt.ArrayLike, x: FloatArray, inputs: FloatArray) -> Poses:
     """Poses of k sections of a rod: the interpolant through the nodes, as of a solution.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
-from dataclasses import astuple, dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -79,7 +79,7 @@ class IntegrationCost:
 
     def __add__(self, other: IntegrationCost) -> IntegrationCost:
         """Numbers of both integrations."""
-        return IntegrationCost(*map(operator.add, astuple(self), astuple(other)))
+        return IntegrationCost(*map(operator.add, vars(self).values(), vars(other).values()))
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Integration:
     """
 
     start: Instant
-    steps: tuple[TimeStep, ...]
+    steps: Sequence[TimeStep]
     outcome: StepOutcome
     next_size: float
     statistics: IntegrationCost

@@ -124,52 +124,101 @@ class TimeStep(StepPolynomial):
         return self.at_share((time - self.start.time) / self.size, time)
 
 
+@dataclass(frozen=True, eq=False)
+class StepRows(Sequence[TimeStep]):
+    """Steps of n unknowns one after the other, as arrays: the record of a step is made where it is asked for.
+
+    Attributes:
+        method: the collocation method, with s stages.
+        differential: which entries have accelerations, shape (n,).
+        begins: x, v and a at the beginning of each of k steps, shape (k, 3, n).
+        ends: x, v and a at the end of each step, shape (k, 3, n).
+        unknowns: of the stages of each step, shape (k, s, n).
+        facts: times at the beginning and at the end, size, s, error, iterations, residual and contraction of each step,
+            shape (k, 7).
+    """
+
+    method: Collocation
+    differential: npt.NDArray[np.bool_]
+    begins: FloatArray
+    ends: FloatArray
+    unknowns: FloatArray
+    facts: FloatArray
+
+    @classmethod
+    def of(cls, steps: Sequence[TimeStep]) -> StepRows:
+        """Steps of one method, at least one, as arrays."""
+        if isinstance(steps, StepRows):
+            return steps
+        begins = np.array([[step.start.x, step.start.v, step.start.a] for step in steps])
+        ends = np.array([[step.end.x, step.end.v, step.end.a] for step in steps])
+        facts = [
+            (one.start.time, one.end.time, one.size, one.error, one.iterations, one.residual, one.contraction)
+            for one in steps
+        ]
+        unknowns = np.array([step.unknowns for step in steps])
+        return cls(steps[0].method, steps[0].differential, begins, ends, unknowns, np.array(facts))
+
+    @classmethod
+    def joined(cls, blocks: Sequence[StepRows]) -> StepRows:
+        """Blocks of steps of one method as one."""
+        parts = zip(*((block.begins, block.ends, block.unknowns, block.facts) for block in blocks), strict=True)
+        return cls(blocks[0].method, blocks[0].differential, *map(np.concatenate, parts))
+
+    def __len__(self) -> int:
+        return len(self.facts)
+
+    def __getitem__(self, number: Any) -> Any:
+        begun, ended, size, error, iterations, *last = self.facts[number].tolist()
+        start, end = Instant(begun, *self.begins[number]), Instant(ended, *self.ends[number])
+        unknowns = self.unknowns[number]
+        return TimeStep(self.method, self.differential, start, size, unknowns, end, error, int(iterations), *last)
+
+
 class HeldTimes:
     """T times in the steps that hold them, with the motion there by the polynomials of these steps.
 
     :meth:`TimeStep.at` computes the same numbers for one time.
 
     Args:
-        steps: of one method and the same n unknowns.
+        steps: of n unknowns.
         numbers: which of the steps holds each time, shape (T,).
         times: shape (T,), s.
+
+    Attributes:
+        numbers: which of the steps holds each time, shape (T,).
     """
 
-    def __init__(self, steps: Sequence[TimeStep], numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
-        used, self._step = np.unique(numbers, return_inverse=True)
-        self._steps = [steps[number] for number in used.tolist()]
-        self._method, self._differential = self._steps[0].method, self._steps[0].differential
-        self._sizes = self._of_each([step.size for step in self._steps])
-        self._shares = (times - self._of_each([step.start.time for step in self._steps])) / self._sizes
-        self._at_end = times == self._of_each([step.end.time for step in self._steps])
-        self._unknowns = self._of_each([step.unknowns for step in self._steps])
+    def __init__(self, steps: StepRows, numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
+        self._steps, self.numbers = steps, numbers
+        begun, ended, self._sizes = steps.facts[numbers, :3].T
+        self._shares = (times - begun) / self._sizes
+        self._at_end = np.flatnonzero(times == ended)
+        self._unknowns = steps.unknowns[numbers]
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
-        begin = self._of_each([step.start.x for step in self._steps])
-        velocity = self._of_each([step.start.v for step in self._steps])
-        moved = self._summed(self._method.double_integrals_at)
-        displacement = (self._shares * self._sizes)[:, None] * velocity + self._sizes[:, None] ** 2 * moved
-        x = np.where(self._differential, begin + displacement, self._summed(self._method.values_at))
-        return self._with_ends(x, [step.end.x for step in self._steps])
+        x, v = self._steps.begins[self.numbers, :2].swapaxes(0, 1)
+        moved = self._summed(self._steps.method.double_integrals_at)
+        x = x + (self._shares * self._sizes)[:, None] * v + self._sizes[:, None] ** 2 * moved
+        if not np.all(self._steps.differential):
+            x = np.where(self._steps.differential, x, self._summed(self._steps.method.values_at))
+        return self._with_ends(x, 0)
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
-        gained = self._sizes[:, None] * self._summed(self._method.integrals_at)
-        velocities = self._of_each([step.start.v for step in self._steps]) + gained
-        v, a = (np.where(self._differential, each, 0.0) for each in (velocities, self._summed(self._method.values_at)))
-        ends = [step.end for step in self._steps]
-        return self._with_ends(v, [end.v for end in ends]), self._with_ends(a, [end.a for end in ends])
-
-    def _of_each(self, values: Sequence[Any]) -> FloatArray:
-        return np.array(values)[self._step]
+        gained = self._sizes[:, None] * self._summed(self._steps.method.integrals_at)
+        rates = self._steps.begins[self.numbers, 1] + gained, self._summed(self._steps.method.values_at)
+        v, a = (np.where(self._steps.differential, each, 0.0) for each in rates)
+        return self._with_ends(v, 1), self._with_ends(a, 2)
 
     def _summed(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
         return np.asarray(np.einsum("ts,tsn->tn", weights(self._shares), self._unknowns))
 
-    def _with_ends(self, values: FloatArray, ends: Sequence[FloatArray]) -> FloatArray:
+    def _with_ends(self, values: FloatArray, order: int) -> FloatArray:
         # The end of a step may have been put right.
-        return np.where(self._at_end[:, None], self._of_each(ends), values)
+        values[self._at_end] = self._steps.ends[self.numbers[self._at_end], order]
+        return values
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from cosserat_casadi.numerics.guards import Guards, crossing, remembering
 from cosserat_casadi.numerics.integration import Integration, IntegrationCost, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import CarriedStep, StepPolynomial, TimeStep, extrapolated, restricted
+from cosserat_casadi.numerics.step import CarriedStep, StepPolynomial, StepRows, TimeStep, extrapolated, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error, overlooked_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
@@ -62,7 +63,8 @@ class StepRun:
         settings: how to step.
         start: where the motion begins.
         stop: time at which it shall end, s.
-        steps: the steps taken.
+        steps: the steps taken one by one.
+        rows: blocks of the steps taken after these by other code, which nothing looks at one by one.
         size: of the step to be tried next, s.
         bounds: weights of an error, and when Newton's method stops.
         linearisation: the Jacobian in use; None where the next step needs a new one.
@@ -87,6 +89,7 @@ class StepRun:
     settled: Settle | None = None
     guard: int | None = None
     steps: list[TimeStep] = field(default_factory=list)
+    rows: list[StepRows] = field(default_factory=list)
     size: float = 0.0
     linearisation: Linearisation | None = None
     fresh: bool = False
@@ -121,12 +124,17 @@ class StepRun:
     @property
     def now(self) -> Instant:
         """The last instant reached."""
-        return self.steps[-1].end if self.steps else self.start
+        steps: Sequence[TimeStep] = self.rows[-1] if self.rows else self.steps
+        return steps[-1].end if steps else self.start
 
     def result(self, outcome: StepOutcome) -> Integration:
         """The end of the integration."""
-        statistics = replace(self.cost, steps=len(self.steps))
-        return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard, self.memory)
+        steps: Sequence[TimeStep] = tuple(self.steps)
+        if self.rows:
+            before = [StepRows.of(steps)] if steps else []
+            steps = StepRows.joined([*before, *self.rows])
+        statistics = replace(self.cost, steps=len(steps))
+        return Integration(self.start, steps, outcome, self.size, statistics, self.guard, self.memory)
 
     def renew_jacobian(self) -> None:
         """Have the next step evaluate a new Jacobian."""

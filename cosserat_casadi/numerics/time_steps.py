@@ -54,15 +54,12 @@ ROUNDING = 1e-14
 FAILED_SHRINKAGE = 0.5
 """Factor of a step whose equations were not solved."""
 
-AT_ONCE = 64
-"""Steps that other code takes in one call, where nothing is to be done after each."""
-
 
 class StepsElsewhere(Protocol):
     """The steps of one integration, taken by other code than this module's, with the same digits."""
 
-    def take(self, most: int) -> tuple[StepOutcome | None, list[float]]:
-        """Take steps, at most so many.
+    def take(self, one: bool) -> tuple[StepOutcome | None, list[float]]:
+        """Take a step, or many, which the run then has as rows.
 
         Returns:
             how the motion ends, None where it goes on; and the time before each step that was tried, s.
@@ -247,12 +244,11 @@ def _steps_elsewhere(
     reached = deque([run.now.time], maxlen=TRIES)
     while True:
         before = len(run.steps)
-        outcome, tried = steps.take(1 if looked_at else AT_ONCE)
-        for time in tried:
-            if _crawls(reached, length):
-                run.size = control.wanted
-                return StepOutcome.TOO_MANY_STEPS
-            reached.append(time)
+        outcome, tried = steps.take(looked_at)
+        if _crawls(reached, length):
+            run.size = control.wanted
+            return StepOutcome.TOO_MANY_STEPS
+        reached.extend(tried)
         if len(run.steps) > before:
             if run.stopped_by_guard():
                 return StepOutcome.GUARDED

@@ -36,7 +36,7 @@ int nitinol_wire_k_richer_balance(const casadi_real** arg, casadi_real** res, ca
 #define nitinol_wire_k_richer_balance_SZ_ARG 4
 #define nitinol_wire_k_richer_balance_SZ_RES 1
 #define nitinol_wire_k_richer_balance_SZ_IW 0
-#define nitinol_wire_k_richer_balance_SZ_W 718
+#define nitinol_wire_k_richer_balance_SZ_W 893
 int nitinol_wire_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_watched_SZ_ARG 2
 #define nitinol_wire_k_watched_SZ_RES 1

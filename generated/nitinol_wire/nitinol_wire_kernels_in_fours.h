@@ -5,10 +5,10 @@ static void MADE(nitinol_wire_kernels_increments_turn)(const casadi_real *given,
   b1 = GIVEN(4) + (GIVEN(8) * GIVEN(12) - GIVEN(0) * GIVEN(20)) / EACH(12.0);
   b2 = GIVEN(8) + (GIVEN(0) * GIVEN(16) - GIVEN(4) * GIVEN(12)) / EACH(12.0);
   b3 = b0 * b0 + b1 * b1 + b2 * b2;
-  b4 = EACH((-2.7557319223985893e-06)) + b3 * (EACH(2.505210838544172e-08) + b3 * (EACH((-1.6059043836821613e-10)) + b3 * (EACH(7.647163731819816e-13) + b3 * (EACH((-2.8114572543455206e-15)) + b3 * (EACH(8.22063524662433e-18) + EACH((-1.9572941063391263e-20)) * b3)))));
-  b4 = EACH(C[0]) + b3 * (EACH((-0.008333333333333333)) + b3 * (EACH(0.0001984126984126984) + b3 * b4));
-  b5 = EACH(0.0005208333333333333) + b3 * (EACH((-3.1001984126984127e-06)) + b3 * (EACH(1.076457782186949e-08) + b3 * (EACH((-2.446494959515793e-11)) + b3 * (EACH(3.920664999224027e-14) + b3 * (EACH((-4.667458332409556e-17)) + EACH(4.289943320229371e-20) * b3)))));
-  b5 = EACH(1.0) + b3 * (EACH((-0.041666666666666664)) + b3 * b5);
+  b4 = EACH(C[0]) + b3 * (EACH(C[1]) + b3 * (EACH(C[2]) + b3 * (EACH(C[3]) + b3 * (EACH(C[4]) + b3 * (EACH(C[5]) + EACH(C[6]) * b3)))));
+  b4 = EACH(C[7]) + b3 * (EACH(C[8]) + b3 * (EACH(C[9]) + b3 * b4));
+  b5 = EACH(C[10]) + b3 * (EACH(C[11]) + b3 * (EACH(C[12]) + b3 * (EACH(C[13]) + b3 * (EACH(C[14]) + b3 * (EACH(C[15]) + EACH(C[16]) * b3)))));
+  b5 = EACH(1.0) + b3 * (EACH(C[17]) + b3 * b5);
   b6 = b5 / EACH(2.0);
   STORE(made + 0, (EACH(1.0) - b3 * b4) / b5);
   STORE(made + 4, b6 * b0);
@@ -36,12 +36,12 @@ static void MADE(nitinol_wire_kernels_pulls_turn)(const casadi_real *given, casa
   b4 = GIVEN(40) * (GIVEN(32) * b1 - GIVEN(24) * b0) - b2 * b3;
   b5 = GIVEN(40) * (GIVEN(28) * b0 - GIVEN(32) * b3) - b2 * b1;
   b6 = b0 + (GIVEN(24) * b4 - GIVEN(28) * b5);
-  b7 = EACH(C[1]) * b6;
+  b7 = EACH(C[18]) * b6;
   b0 = GIVEN(40) * (GIVEN(24) * b3 - GIVEN(28) * b1) - b2 * b0;
   b5 = b3 + (GIVEN(32) * b5 - GIVEN(24) * b0);
-  b3 = EACH(C[1]) * b5;
+  b3 = EACH(C[18]) * b5;
   b4 = b1 + (GIVEN(28) * b0 - GIVEN(32) * b4);
-  b0 = EACH(C[1]) * b4;
+  b0 = EACH(C[18]) * b4;
   STORE(made + 0, GIVEN(16) * b7 - GIVEN(20) * b3 + b4);
   STORE(made + 4, b5 - GIVEN(12) * b7 + GIVEN(20) * b0);
   STORE(made + 8, b6 + GIVEN(12) * b3 - GIVEN(16) * b0);
@@ -79,22 +79,22 @@ static void MADE(nitinol_wire_kernels_variations_turn)(const casadi_real *given,
   b13 = b6 * GIVEN(24);
   b2 = b13 + b2 * GIVEN(32);
   b14 = GIVEN(44) * b7 + GIVEN(56) * b1 + GIVEN(68) * b2;
-  b15 = EACH(C[1]) * GIVEN(20);
+  b15 = EACH(C[18]) * GIVEN(20);
   b10 = b10 + b0 * GIVEN(24);
   b13 = b0 * GIVEN(28) - b13;
   b8 = EACH(1.0) - (b3 + b8);
   b3 = GIVEN(44) * b10 + GIVEN(56) * b13 + GIVEN(68) * b8;
-  b0 = EACH(C[1]) * GIVEN(16);
+  b0 = EACH(C[18]) * GIVEN(16);
   b16 = GIVEN(48) * b4 + GIVEN(60) * b9 + GIVEN(72) * b11;
   b17 = GIVEN(48) * b7 + GIVEN(60) * b1 + GIVEN(72) * b2;
   b18 = GIVEN(48) * b10 + GIVEN(60) * b13 + GIVEN(72) * b8;
   b11 = GIVEN(52) * b4 + GIVEN(64) * b9 + GIVEN(76) * b11;
   b2 = GIVEN(52) * b7 + GIVEN(64) * b1 + GIVEN(76) * b2;
   b8 = GIVEN(52) * b10 + GIVEN(64) * b13 + GIVEN(76) * b8;
-  b13 = EACH(C[1]) * GIVEN(12);
-  b10 = EACH(C[1]) * GIVEN(8);
-  b1 = EACH(C[1]) * GIVEN(4);
-  b7 = EACH(C[1]) * GIVEN(0);
+  b13 = EACH(C[18]) * GIVEN(12);
+  b10 = EACH(C[18]) * GIVEN(8);
+  b1 = EACH(C[18]) * GIVEN(4);
+  b7 = EACH(C[18]) * GIVEN(0);
   b9 = GIVEN(52) * GIVEN(24) + GIVEN(64) * GIVEN(28) + GIVEN(76) * GIVEN(32);
   b5 = EACH(0.5) / b5;
   b4 = GIVEN(44) * GIVEN(24) + GIVEN(56) * GIVEN(28) + GIVEN(68) * GIVEN(32);
@@ -124,12 +124,12 @@ static void MADE(nitinol_wire_kernels_variations_turn)(const casadi_real *given,
   b30 = GIVEN(56) * GIVEN(80) + GIVEN(60) * GIVEN(84) + GIVEN(64) * GIVEN(88);
   b31 = GIVEN(40) * (GIVEN(32) * b19 - GIVEN(24) * b9) - b6 * b30;
   b32 = GIVEN(40) * (GIVEN(28) * b9 - GIVEN(32) * b30) - b6 * b19;
-  b33 = EACH(C[1]) * (b9 + (GIVEN(24) * b31 - GIVEN(28) * b32));
+  b33 = EACH(C[18]) * (b9 + (GIVEN(24) * b31 - GIVEN(28) * b32));
   b9 = GIVEN(40) * (GIVEN(24) * b30 - GIVEN(28) * b19) - b6 * b9;
-  b32 = EACH(C[1]) * (b30 + (GIVEN(32) * b32 - GIVEN(24) * b9));
+  b32 = EACH(C[18]) * (b30 + (GIVEN(32) * b32 - GIVEN(24) * b9));
   b30 = EACH((-1.0)) * b32;
   b6 = EACH((-1.0)) * b33;
-  b31 = EACH(C[1]) * (b19 + (GIVEN(28) * b9 - GIVEN(32) * b31));
+  b31 = EACH(C[18]) * (b19 + (GIVEN(28) * b9 - GIVEN(32) * b31));
   b9 = EACH((-1.0)) * b31;
   STORE(made + 0, b12 - b14 * b15 + b3 * b0);
   STORE(made + 4, b16 - b17 * b15 + b18 * b0);
@@ -189,7 +189,7 @@ static void MADE(nitinol_wire_kernels_fwd1_pulls_turn)(const casadi_real *given,
   b5 = GIVEN(40) * b2 - b3 * b4;
   b6 = GIVEN(28) * b0 - GIVEN(32) * b4;
   b7 = GIVEN(40) * b6 - b3 * b1;
-  b8 = EACH(C[1]) * (b0 + (GIVEN(24) * b5 - GIVEN(28) * b7));
+  b8 = EACH(C[18]) * (b0 + (GIVEN(24) * b5 - GIVEN(28) * b7));
   b9 = GIVEN(88) * GIVEN(168) + GIVEN(76) * GIVEN(180);
   b9 = GIVEN(80) * GIVEN(160) + GIVEN(68) * GIVEN(172) + (GIVEN(84) * GIVEN(164) + GIVEN(72) * GIVEN(176)) + b9;
   b10 = GIVEN(88) * GIVEN(144) + GIVEN(52) * GIVEN(180);
@@ -202,17 +202,17 @@ static void MADE(nitinol_wire_kernels_fwd1_pulls_turn)(const casadi_real *given,
   b6 = b6 * GIVEN(132) + GIVEN(40) * (b0 * GIVEN(120) + GIVEN(28) * b9 - (b4 * GIVEN(124) + GIVEN(32) * b12));
   b6 = b6 - (b1 * b11 + b3 * b10);
   b13 = b9 + (b5 * GIVEN(116) + GIVEN(24) * b2 - (b7 * GIVEN(120) + GIVEN(28) * b6));
-  b14 = EACH(C[1]) * b13;
+  b14 = EACH(C[18]) * b13;
   b15 = GIVEN(24) * b4 - GIVEN(28) * b1;
   b16 = GIVEN(40) * b15 - b3 * b0;
-  b17 = EACH(C[1]) * (b4 + (GIVEN(32) * b7 - GIVEN(24) * b16));
+  b17 = EACH(C[18]) * (b4 + (GIVEN(32) * b7 - GIVEN(24) * b16));
   b4 = b15 * GIVEN(132) + GIVEN(40) * (b4 * GIVEN(116) + GIVEN(24) * b12 - (b1 * GIVEN(120) + GIVEN(28) * b10));
   b9 = b4 - (b0 * b11 + b3 * b9);
   b6 = b12 + (b7 * GIVEN(124) + GIVEN(32) * b6 - (b16 * GIVEN(116) + GIVEN(24) * b9));
-  b7 = EACH(C[1]) * b6;
+  b7 = EACH(C[18]) * b6;
   b2 = b10 + (b16 * GIVEN(120) + GIVEN(28) * b9 - (b5 * GIVEN(124) + GIVEN(32) * b2));
-  b5 = EACH(C[1]) * (b1 + (GIVEN(28) * b16 - GIVEN(32) * b5));
-  b16 = EACH(C[1]) * b2;
+  b5 = EACH(C[18]) * (b1 + (GIVEN(28) * b16 - GIVEN(32) * b5));
+  b16 = EACH(C[18]) * b2;
   STORE(made + 0, b8 * GIVEN(108) + GIVEN(16) * b14 - (b17 * GIVEN(112) + GIVEN(20) * b7) + b2);
   STORE(made + 4, b6 - (b8 * GIVEN(104) + GIVEN(12) * b14) + (b5 * GIVEN(112) + GIVEN(20) * b16));
   STORE(made + 8, b13 + (b17 * GIVEN(104) + GIVEN(12) * b7) - (b5 * GIVEN(108) + GIVEN(16) * b16));
@@ -225,6 +225,91 @@ static void MADE(nitinol_wire_kernels_fwd1_pulls)(const casadi_real *given, casa
   int turn;
   for (turn = 0; turn < turns; turn++, given += 184, made += 24)
     EVERY_LANE(MADE(nitinol_wire_kernels_fwd1_pulls_turn)(given + lane, made + lane))
+}
+
+static void MADE(nitinol_wire_kernels_increments_4_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6;
+  b0 = (GIVEN(12) * GIVEN(12) + GIVEN(16) * GIVEN(16) + GIVEN(20) * GIVEN(20)) / EACH(240.0);
+  b0 = EACH(1.0) + (GIVEN(0) * GIVEN(24) + GIVEN(4) * GIVEN(28) + GIVEN(8) * GIVEN(32)) / EACH(360.0) - b0;
+  b1 = (GIVEN(0) * GIVEN(12) + GIVEN(4) * GIVEN(16) + GIVEN(8) * GIVEN(20)) / EACH(240.0);
+  b2 = (GIVEN(0) * GIVEN(0) + GIVEN(4) * GIVEN(4) + GIVEN(8) * GIVEN(8)) / EACH(720.0);
+  b3 = EACH(C[18]) - EACH(2.0) * b2;
+  b2 = EACH(C[18]) + b2;
+  b4 = b2 * GIVEN(4) + GIVEN(28) / EACH(240.0);
+  b5 = b2 * GIVEN(8) + GIVEN(32) / EACH(240.0);
+  b6 = b0 * GIVEN(0) + b1 * GIVEN(12) + b3 * GIVEN(24) + (b4 * GIVEN(20) - b5 * GIVEN(16));
+  b2 = b2 * GIVEN(0) + GIVEN(24) / EACH(240.0);
+  b5 = b0 * GIVEN(4) + b1 * GIVEN(16) + b3 * GIVEN(28) + (b5 * GIVEN(12) - b2 * GIVEN(20));
+  b4 = b0 * GIVEN(8) + b1 * GIVEN(20) + b3 * GIVEN(32) + (b2 * GIVEN(16) - b4 * GIVEN(12));
+  b2 = b6 * b6 + b5 * b5 + b4 * b4;
+  b3 = EACH(C[0]) + b2 * (EACH(C[1]) + b2 * (EACH(C[2]) + b2 * (EACH(C[3]) + b2 * (EACH(C[4]) + b2 * (EACH(C[5]) + EACH(C[6]) * b2)))));
+  b3 = EACH(C[7]) + b2 * (EACH(C[8]) + b2 * (EACH(C[9]) + b2 * b3));
+  b1 = EACH(C[10]) + b2 * (EACH(C[11]) + b2 * (EACH(C[12]) + b2 * (EACH(C[13]) + b2 * (EACH(C[14]) + b2 * (EACH(C[15]) + EACH(C[16]) * b2)))));
+  b1 = EACH(1.0) + b2 * (EACH(C[17]) + b2 * b1);
+  b0 = b1 / EACH(2.0);
+  STORE(made + 0, (EACH(1.0) - b2 * b3) / b1);
+  STORE(made + 4, b0 * b6);
+  STORE(made + 8, b0 * b5);
+  STORE(made + 12, b0 * b4);
+  STORE(made + 16, b6);
+  STORE(made + 20, b5);
+  STORE(made + 24, b4);
+  STORE(made + 28, b1);
+  STORE(made + 32, b3);
+}
+
+static void MADE(nitinol_wire_kernels_increments_4)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 36, made += 36)
+    EVERY_LANE(MADE(nitinol_wire_kernels_increments_4_turn)(given + lane, made + lane))
+}
+
+static void MADE(nitinol_wire_kernels_pulls_5_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16;
+  b0 = (GIVEN(0) * GIVEN(0) + GIVEN(4) * GIVEN(4) + GIVEN(8) * GIVEN(8)) / EACH(720.0);
+  b1 = EACH(C[18]) + b0;
+  b2 = GIVEN(80) * GIVEN(92) + GIVEN(84) * GIVEN(96) + GIVEN(88) * GIVEN(100);
+  b3 = GIVEN(56) * GIVEN(92) + GIVEN(60) * GIVEN(96) + GIVEN(64) * GIVEN(100);
+  b4 = GIVEN(48) * GIVEN(48) / EACH(2.0);
+  b5 = GIVEN(68) * GIVEN(92) + GIVEN(72) * GIVEN(96) + GIVEN(76) * GIVEN(100);
+  b6 = GIVEN(52) * (GIVEN(44) * b3 - GIVEN(36) * b2) - b4 * b5;
+  b7 = GIVEN(52) * (GIVEN(40) * b2 - GIVEN(44) * b5) - b4 * b3;
+  b8 = b2 + (GIVEN(36) * b6 - GIVEN(40) * b7);
+  b2 = GIVEN(52) * (GIVEN(36) * b5 - GIVEN(40) * b3) - b4 * b2;
+  b7 = b5 + (GIVEN(44) * b7 - GIVEN(36) * b2);
+  b5 = GIVEN(16) * b8 - GIVEN(20) * b7;
+  b6 = b3 + (GIVEN(40) * b2 - GIVEN(44) * b6);
+  b2 = GIVEN(12) * b7 - GIVEN(16) * b6;
+  b3 = GIVEN(20) * b6 - GIVEN(12) * b8;
+  b4 = EACH(2.0) * (EACH((-1.0)) * (GIVEN(32) * b8 + GIVEN(28) * b7 + GIVEN(24) * b6));
+  b4 = EACH(0.001388888888888889) * (GIVEN(0) * b5 + GIVEN(8) * b2 + GIVEN(4) * b3 + b4);
+  b9 = EACH(C[19]) * (GIVEN(20) * b8 + GIVEN(16) * b7 + GIVEN(12) * b6);
+  b10 = (GIVEN(12) * GIVEN(12) + GIVEN(16) * GIVEN(16) + GIVEN(20) * GIVEN(20)) / EACH(240.0);
+  b10 = EACH(1.0) + (GIVEN(0) * GIVEN(24) + GIVEN(4) * GIVEN(28) + GIVEN(8) * GIVEN(32)) / EACH(360.0) - b10;
+  b11 = GIVEN(8) * b8 + GIVEN(4) * b7 + GIVEN(0) * b6;
+  b12 = EACH(0.002777777777777778) * b11;
+  b13 = b1 * GIVEN(8) + GIVEN(32) / EACH(240.0);
+  b14 = b1 * GIVEN(4) + GIVEN(28) / EACH(240.0);
+  b15 = (GIVEN(0) * GIVEN(12) + GIVEN(4) * GIVEN(16) + GIVEN(8) * GIVEN(20)) / EACH(240.0);
+  b11 = EACH(C[19]) * b11;
+  b16 = b1 * GIVEN(0) + GIVEN(24) / EACH(240.0);
+  b0 = EACH(C[18]) - EACH(2.0) * b0;
+  STORE(made + 0, b1 * b5 + EACH(2.0) * GIVEN(0) * b4 + GIVEN(12) * b9 + b10 * b6 + GIVEN(24) * b12);
+  STORE(made + 4, b10 * b7 + b1 * b3 + EACH(2.0) * GIVEN(4) * b4 + GIVEN(16) * b9 + GIVEN(28) * b12);
+  STORE(made + 8, b10 * b8 + b1 * b2 + EACH(2.0) * GIVEN(8) * b4 + GIVEN(20) * b9 + GIVEN(32) * b12);
+  STORE(made + 12, b13 * b7 - b14 * b8 + b15 * b6 + GIVEN(0) * b9 - EACH(2.0) * GIVEN(12) * b11);
+  STORE(made + 16, b16 * b8 + b15 * b7 - b13 * b6 + GIVEN(4) * b9 - EACH(2.0) * GIVEN(16) * b11);
+  STORE(made + 20, b15 * b8 - b16 * b7 + b14 * b6 + GIVEN(8) * b9 - EACH(2.0) * GIVEN(20) * b11);
+  STORE(made + 24, EACH(C[19]) * b5 + b0 * b6 + GIVEN(0) * b12);
+  STORE(made + 28, b0 * b7 + EACH(C[19]) * b3 + GIVEN(4) * b12);
+  STORE(made + 32, b0 * b8 + EACH(C[19]) * b2 + GIVEN(8) * b12);
+}
+
+static void MADE(nitinol_wire_kernels_pulls_5)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 104, made += 36)
+    EVERY_LANE(MADE(nitinol_wire_kernels_pulls_5_turn)(given + lane, made + lane))
 }
 
 static void MADE(nitinol_wire_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
@@ -248,22 +333,22 @@ static void MADE(nitinol_wire_kernels_turnings_turn)(const casadi_real *given, c
   b5 = b5 * GIVEN(24);
   b2 = b5 + b2 * GIVEN(32);
   b12 = GIVEN(44) * b6 + GIVEN(56) * b1 + GIVEN(68) * b2;
-  b13 = EACH(C[1]) * GIVEN(20);
+  b13 = EACH(C[18]) * GIVEN(20);
   b9 = b9 + b0 * GIVEN(24);
   b5 = b0 * GIVEN(28) - b5;
   b7 = EACH(1.0) - (b3 + b7);
   b3 = GIVEN(44) * b9 + GIVEN(56) * b5 + GIVEN(68) * b7;
-  b0 = EACH(C[1]) * GIVEN(16);
+  b0 = EACH(C[18]) * GIVEN(16);
   b14 = GIVEN(48) * b4 + GIVEN(60) * b8 + GIVEN(72) * b10;
   b15 = GIVEN(48) * b6 + GIVEN(60) * b1 + GIVEN(72) * b2;
   b16 = GIVEN(48) * b9 + GIVEN(60) * b5 + GIVEN(72) * b7;
   b10 = GIVEN(52) * b4 + GIVEN(64) * b8 + GIVEN(76) * b10;
   b2 = GIVEN(52) * b6 + GIVEN(64) * b1 + GIVEN(76) * b2;
   b7 = GIVEN(52) * b9 + GIVEN(64) * b5 + GIVEN(76) * b7;
-  b5 = EACH(C[1]) * GIVEN(12);
-  b9 = EACH(C[1]) * GIVEN(8);
-  b1 = EACH(C[1]) * GIVEN(4);
-  b6 = EACH(C[1]) * GIVEN(0);
+  b5 = EACH(C[18]) * GIVEN(12);
+  b9 = EACH(C[18]) * GIVEN(8);
+  b1 = EACH(C[18]) * GIVEN(4);
+  b6 = EACH(C[18]) * GIVEN(0);
   STORE(made + 0, b11 - b12 * b13 + b3 * b0);
   STORE(made + 4, b14 - b15 * b13 + b16 * b0);
   STORE(made + 8, b10 - b2 * b13 + b7 * b0);
@@ -412,8 +497,8 @@ static void MADE(nitinol_wire_k_jacobian_columns_1)(const casadi_real *w, const 
   STORE(passed + 228, b3 = w[798] * PASSED(56) + w[802] * PASSED(52) + b9 + w[155] * PASSED(144) + w[167] * PASSED(148) + b3);
   b3 = w[75] * b8 + w[79] * b6 + w[83] * b3 + w[215] * TURN(108) + w[223] * TURN(132);
   STORE(passed + 240, b6 = b4 + b3);
-  STORE(passed + 244, EACH(C[2]) * b0 + EACH(C[3]) * b7 + EACH(C[4]) * b6);
-  STORE(passed + 180, EACH(C[5]) * (b13 - b1) + EACH(C[6]) * (b5 - b2) + EACH(C[5]) * (b4 - b3));
+  STORE(passed + 244, EACH(C[20]) * b0 + EACH(C[21]) * b7 + EACH(C[22]) * b6);
+  STORE(passed + 180, EACH(C[23]) * (b13 - b1) + EACH(C[24]) * (b5 - b2) + EACH(C[23]) * (b4 - b3));
 }
 
 static void MADE(nitinol_wire_k_jacobian_columns_2)(const casadi_real *w, const casadi_real *turns,
@@ -426,8 +511,8 @@ static void MADE(nitinol_wire_k_jacobian_columns_2)(const casadi_real *w, const 
   b3 = w[264] * PASSED(196) + w[268] * PASSED(200) + w[272] * PASSED(204) + w[344] * TURN(40) + w[352] * TURN(64);
   b4 = w[110] * PASSED(208) + w[114] * PASSED(212) + w[118] * PASSED(216) + w[190] * TURN(32) + w[198] * TURN(56);
   b5 = w[111] * PASSED(220) + w[115] * PASSED(224) + w[119] * PASSED(228) + w[191] * TURN(36) + w[199] * TURN(60);
-  b6 = EACH(C[7]) * (b2 - b3);
-  b7 = EACH(C[8]) * (b4 - b5);
+  b6 = EACH(C[25]) * (b2 - b3);
+  b7 = EACH(C[26]) * (b4 - b5);
   b8 = w[84] * PASSED(156) + w[88] * PASSED(160) + w[92] * PASSED(164) + w[204] * TURN(72) + w[224] * TURN(120);
   b9 = w[241] * PASSED(168) + w[245] * PASSED(172) + w[249] * PASSED(176) + w[361] * TURN(92) + w[381] * TURN(140);
   b10 = b8 + b9;
@@ -441,11 +526,11 @@ static void MADE(nitinol_wire_k_jacobian_columns_2)(const casadi_real *w, const 
   b18 = w[277] * PASSED(168) + w[281] * PASSED(172) + w[285] * PASSED(176) + w[337] * TURN(20) + w[357] * TURN(68);
   b19 = w[121] * PASSED(184) + w[125] * PASSED(188) + w[129] * PASSED(192) + w[181] * TURN(4) + w[201] * TURN(52);
   b20 = w[276] * PASSED(196) + w[280] * PASSED(200) + w[284] * PASSED(204) + w[336] * TURN(16) + w[356] * TURN(64);
-  b21 = EACH(C[2]) * (b19 + b20);
+  b21 = EACH(C[20]) * (b19 + b20);
   b22 = w[122] * PASSED(208) + w[126] * PASSED(212) + w[130] * PASSED(216) + w[182] * TURN(8) + w[202] * TURN(56);
   b23 = w[123] * PASSED(220) + w[127] * PASSED(224) + w[131] * PASSED(228) + w[183] * TURN(12) + w[203] * TURN(60);
-  b24 = EACH(C[9]) * (b22 + b23);
-  b23 = EACH(C[8]) * (b22 - b23);
+  b24 = EACH(C[27]) * (b22 + b23);
+  b23 = EACH(C[26]) * (b22 - b23);
   b22 = w[96] * PASSED(156) + w[100] * PASSED(160) + w[104] * PASSED(164) + w[208] * TURN(72) + w[216] * TURN(96);
   b25 = w[253] * PASSED(168) + w[257] * PASSED(172) + w[261] * PASSED(176) + w[365] * TURN(92) + w[373] * TURN(116);
   b26 = w[97] * PASSED(184) + w[101] * PASSED(188) + w[105] * PASSED(192) + w[209] * TURN(76) + w[217] * TURN(100);
@@ -453,15 +538,15 @@ static void MADE(nitinol_wire_k_jacobian_columns_2)(const casadi_real *w, const 
   b28 = w[98] * PASSED(208) + w[102] * PASSED(212) + w[106] * PASSED(216) + w[210] * TURN(80) + w[218] * TURN(104);
   b29 = w[99] * PASSED(220) + w[103] * PASSED(224) + w[107] * PASSED(228) + w[211] * TURN(84) + w[219] * TURN(108);
   STORE(columns + 0, PASSED(244));
-  STORE(columns + 8, PASSED(180) + EACH(C[10]) * (b0 + b1) + EACH(C[2]) * (b2 + b3) + EACH(C[9]) * (b4 + b5));
-  b7 = EACH(C[11]) * PASSED(232) + EACH(C[12]) * PASSED(236) + EACH(C[8]) * PASSED(240) + EACH(C[13]) * (b0 - b1) + b6 + b7;
+  STORE(columns + 8, PASSED(180) + EACH(C[28]) * (b0 + b1) + EACH(C[20]) * (b2 + b3) + EACH(C[27]) * (b4 + b5));
+  b7 = EACH(C[29]) * PASSED(232) + EACH(C[30]) * PASSED(236) + EACH(C[26]) * PASSED(240) + EACH(C[31]) * (b0 - b1) + b6 + b7;
   STORE(columns + 16, b7);
-  STORE(columns + 24, EACH(C[2]) * b10 + EACH(C[3]) * b13 + EACH(C[4]) * b16);
-  b24 = EACH(C[5]) * (b8 - b9) + EACH(C[6]) * (b11 - b12) + EACH(C[5]) * (b14 - b15) + EACH(C[10]) * (b17 + b18) + b21 + b24;
+  STORE(columns + 24, EACH(C[20]) * b10 + EACH(C[21]) * b13 + EACH(C[22]) * b16);
+  b24 = EACH(C[23]) * (b8 - b9) + EACH(C[24]) * (b11 - b12) + EACH(C[23]) * (b14 - b15) + EACH(C[28]) * (b17 + b18) + b21 + b24;
   STORE(columns + 32, b24);
-  b23 = EACH(C[11]) * b10 + EACH(C[12]) * b13 + EACH(C[8]) * b16 + EACH(C[13]) * (b17 - b18) + EACH(C[7]) * (b19 - b20) + b23;
+  b23 = EACH(C[29]) * b10 + EACH(C[30]) * b13 + EACH(C[26]) * b16 + EACH(C[31]) * (b17 - b18) + EACH(C[25]) * (b19 - b20) + b23;
   STORE(columns + 40, b23);
-  STORE(columns + 48, EACH(C[14]) * (b22 + b25) + EACH(C[15]) * (b26 + b27) + EACH(C[16]) * (b28 + b29));
+  STORE(columns + 48, EACH(C[32]) * (b22 + b25) + EACH(C[33]) * (b26 + b27) + EACH(C[34]) * (b28 + b29));
 }
 
 static void MADE(nitinol_wire_k_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
@@ -546,13 +631,13 @@ static void MADE(nitinol_wire_k_tip_jacobian_columns_1)(const casadi_real *w, co
   b6 = (PASSED(32) * w[138] - b8 * w[137] + b1 * w[139]) / EACH(2.0);
   b5 = (b8 * w[138] + PASSED(32) * w[137] - b1 * w[136]) / EACH(2.0);
   b8 = (b8 * w[136] - PASSED(32) * w[139] + b1 * w[138]) / EACH(2.0);
-  STORE(columns + 0, EACH(C[17]) * b2 + b10);
+  STORE(columns + 0, EACH(C[35]) * b2 + b10);
   STORE(columns + 8, b0 + w[627] * b1);
-  STORE(columns + 16, EACH(C[17]) * b10 - b2);
-  STORE(columns + 24, EACH((-1.0)) * (EACH(C[18]) * b7 + EACH(C[19]) * b6));
-  STORE(columns + 32, EACH(C[18]) * b5 + EACH(C[19]) * b8);
-  STORE(columns + 40, EACH(C[18]) * b6 - EACH(C[19]) * b7);
-  STORE(columns + 48, EACH(C[18]) * b8 - EACH(C[19]) * b5);
+  STORE(columns + 16, EACH(C[35]) * b10 - b2);
+  STORE(columns + 24, EACH((-1.0)) * (EACH(C[36]) * b7 + EACH(C[37]) * b6));
+  STORE(columns + 32, EACH(C[36]) * b5 + EACH(C[37]) * b8);
+  STORE(columns + 40, EACH(C[36]) * b6 - EACH(C[37]) * b7);
+  STORE(columns + 48, EACH(C[36]) * b8 - EACH(C[37]) * b5);
 }
 
 static void MADE(nitinol_wire_k_tip_jacobian_columns)(const casadi_real *w, const casadi_real *turns,

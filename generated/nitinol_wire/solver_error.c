@@ -4,7 +4,7 @@
 
    cosserat_casadi/equilibrium/answer_error.py holds the same in Python, docs/theory.md, section 10, derives it.
 
-   Uses of the equations: richer_balance_at, watched_at. */
+   Uses of the equations: richer_balance_at, watched_at, tables of elements and missing coordinates. */
 
 enum {
   MISSING = SOLVER_MISSING,
@@ -67,6 +67,24 @@ static real norm_of_missing(const real *missing) {
    is not in their stiffness: then they bounce, and what is watched may settle by chance. */
 static int contracts(real before, real step) {
   return step <= ERROR_CONTRACTING * before || step <= 10 * TOLERANCE;
+}
+
+/* Whether an element turns so far that waves along it do not show in missing modes, which are not empty. No turn is more
+   than that of the unloaded element and the root mean square of what loads add. */
+static int hides_waves(const real *x, const real *missing) {
+  for (int element = 0; element < SOLVER_ELEMENTS; element++) {
+    real square = 0;
+    for (int i = 0; i < N; i++) square += ELEMENT_OF_UNKNOWN[i] == element ? TURNS[i] * TURNS[i] * x[i] * x[i] : 0;
+    const real turn = UNLOADED_TURNS[element] + SQUARE_ROOT(square);
+    if (!(turn > ERROR_WHOLE_TURN)) continue;
+    real unseen = 0;
+    for (int i = 0; i < MISSING; i++) {
+      const int is_blind = ELEMENT_OF_MISSING[i] == element && MODES_OF_MISSING[i] < turn / 2 + ERROR_BEYOND_TURN;
+      unseen += is_blind ? missing[i] * missing[i] : 0;
+    }
+    if (!(SQUARE_ROOT(unseen) <= ERROR_UNSEEN)) return 1;
+  }
+  return 0;
 }
 
 /* The balance at the corrections in the workspace, which stays there. Returns the length of the step of the missing
@@ -134,16 +152,16 @@ static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian,
   return change;
 }
 
-/* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is the part of the two
-   highest degrees in the whole change. */
+/* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is what the two highest
+   degrees move over the whole change. */
 static real rest_of_series(const real *x, const real *inputs, real change, workspace *work) {
   if (change <= ERROR_FLOOR) return 0;
   const real *richer = work->balance + 2 * N + MISSING;
   for (int i = 0; i < MISSING; i++) work->fewer[i] = IS_AMONG_LAST[i] ? 0 : work->missing[i];
   (void)balance(x, work->missing, inputs, work);
-  const real whole = largest_change(work->watched, richer);
+  memcpy(work->watched_after, richer, sizeof work->watched_after);
   (void)balance(x, work->fewer, inputs, work);
-  const real last = ABSOLUTE(whole - largest_change(work->watched, richer));
+  const real last = largest_change(richer, work->watched_after);
   real ratio = last / change;
   if (ratio < ERROR_FASTEST) ratio = ERROR_FASTEST;
   if (!(ratio <= ERROR_SLOWEST)) ratio = ERROR_SLOWEST;
@@ -180,12 +198,15 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
     /* Where the first step bounces the next one may be short by chance: neither is believed. */
     const int bounces = is_first && !contracts(step, next);
     const int believed = !bounces && !bounced;
-    const int settled = !is_first && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
+    const int rests = step <= ERROR_SETTLED * norm_of_missing(work->missing) || step <= 10 * TOLERANCE;
+    const int settled = !is_first && rests && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
+    const int is_enough = change <= ERROR_ENOUGH;
+    if (believed && (settled || is_enough) && hides_waves(x, work->missing)) return 1;
     if (believed && settled) {
       return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x);
     }
     /* A look that leaves the answer within its tolerance need not be repeated. */
-    if (believed && change <= ERROR_ENOUGH) return ERROR_FIRST_LOOK * change + least_error(x);
+    if (believed && is_enough) return ERROR_FIRST_LOOK * change + least_error(x);
     bounced = bounces;
     change_before = change;
     step_before = step;

@@ -87,6 +87,20 @@ static solver_status within_limits(solver_status end, const real *x, const real 
 /* Which missing coordinates are of one of the two highest degrees of their strain. */
 static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1};
 
+/* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
+static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const real TURNS[N] = {
+  (real)0.86710996952412, (real)0.5006261743217587, (real)0.38778336716474043, (real)0.3277367626722309,
+  (real)0.86710996952412, (real)0.5006261743217587, (real)0.38778336716474043, (real)0.3277367626722309, (real)1.0,
+  (real)0.5773502691896257, (real)0.4472135954999578, (real)0.3779644730092271, (real)0.33333333333333315};
+
+/* Angle through which sections turn along each unloaded element, rad. */
+static const real UNLOADED_TURNS[SOLVER_ELEMENTS] = {(real)2.768307559469702};
+
+/* Element of each missing coordinate, and how many modes the richer model has of its strain. */
+static const int ELEMENT_OF_MISSING[SOLVER_MISSING] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const int MODES_OF_MISSING[SOLVER_MISSING] = {7, 7, 7, 7, 7, 7, 8, 8, 8};
+
 /* Elastic steps of unknowns and missing coordinates at a corrected answer, the residual in the unknowns, and what is
    watched, one behind the other. */
 static void richer_balance_at(const real *x, const real *correction, const real *missing, const real *inputs, real *balance,

@@ -5,10 +5,10 @@ static void MADE(precurved_tube_kernels_increments_turn)(const casadi_real *give
   b1 = GIVEN(4) + (GIVEN(8) * GIVEN(12) - GIVEN(0) * GIVEN(20)) / EACH(12.0);
   b2 = GIVEN(8) + (GIVEN(0) * GIVEN(16) - GIVEN(4) * GIVEN(12)) / EACH(12.0);
   b3 = b0 * b0 + b1 * b1 + b2 * b2;
-  b4 = EACH((-2.7557319223985893e-06)) + b3 * (EACH(2.505210838544172e-08) + b3 * (EACH((-1.6059043836821613e-10)) + b3 * (EACH(7.647163731819816e-13) + b3 * (EACH((-2.8114572543455206e-15)) + b3 * (EACH(8.22063524662433e-18) + EACH((-1.9572941063391263e-20)) * b3)))));
-  b4 = EACH(0.16666666666666666) + b3 * (EACH((-0.008333333333333333)) + b3 * (EACH(0.0001984126984126984) + b3 * b4));
-  b5 = EACH(0.0005208333333333333) + b3 * (EACH((-3.1001984126984127e-06)) + b3 * (EACH(1.076457782186949e-08) + b3 * (EACH((-2.446494959515793e-11)) + b3 * (EACH(3.920664999224027e-14) + b3 * (EACH((-4.667458332409556e-17)) + EACH(4.289943320229371e-20) * b3)))));
-  b5 = EACH(1.0) + b3 * (EACH((-0.041666666666666664)) + b3 * b5);
+  b4 = EACH(C[0]) + b3 * (EACH(C[1]) + b3 * (EACH(C[2]) + b3 * (EACH(C[3]) + b3 * (EACH(C[4]) + b3 * (EACH(C[5]) + EACH(C[6]) * b3)))));
+  b4 = EACH(C[7]) + b3 * (EACH(C[8]) + b3 * (EACH(C[9]) + b3 * b4));
+  b5 = EACH(C[10]) + b3 * (EACH(C[11]) + b3 * (EACH(C[12]) + b3 * (EACH(C[13]) + b3 * (EACH(C[14]) + b3 * (EACH(C[15]) + EACH(C[16]) * b3)))));
+  b5 = EACH(1.0) + b3 * (EACH(C[17]) + b3 * b5);
   b6 = b5 / EACH(2.0);
   STORE(made + 0, (EACH(1.0) - b3 * b4) / b5);
   STORE(made + 4, b6 * b0);
@@ -36,12 +36,12 @@ static void MADE(precurved_tube_kernels_pulls_turn)(const casadi_real *given, ca
   b4 = GIVEN(40) * (GIVEN(32) * b1 - GIVEN(24) * b0) - b2 * b3;
   b5 = GIVEN(40) * (GIVEN(28) * b0 - GIVEN(32) * b3) - b2 * b1;
   b6 = b0 + (GIVEN(24) * b4 - GIVEN(28) * b5);
-  b7 = EACH(C[0]) * b6;
+  b7 = EACH(C[18]) * b6;
   b0 = GIVEN(40) * (GIVEN(24) * b3 - GIVEN(28) * b1) - b2 * b0;
   b5 = b3 + (GIVEN(32) * b5 - GIVEN(24) * b0);
-  b3 = EACH(C[0]) * b5;
+  b3 = EACH(C[18]) * b5;
   b4 = b1 + (GIVEN(28) * b0 - GIVEN(32) * b4);
-  b0 = EACH(C[0]) * b4;
+  b0 = EACH(C[18]) * b4;
   STORE(made + 0, GIVEN(16) * b7 - GIVEN(20) * b3 + b4);
   STORE(made + 4, b5 - GIVEN(12) * b7 + GIVEN(20) * b0);
   STORE(made + 8, b6 + GIVEN(12) * b3 - GIVEN(16) * b0);
@@ -79,22 +79,22 @@ static void MADE(precurved_tube_kernels_variations_turn)(const casadi_real *give
   b13 = b6 * GIVEN(24);
   b2 = b13 + b2 * GIVEN(32);
   b14 = GIVEN(44) * b7 + GIVEN(56) * b1 + GIVEN(68) * b2;
-  b15 = EACH(C[0]) * GIVEN(20);
+  b15 = EACH(C[18]) * GIVEN(20);
   b10 = b10 + b0 * GIVEN(24);
   b13 = b0 * GIVEN(28) - b13;
   b8 = EACH(1.0) - (b3 + b8);
   b3 = GIVEN(44) * b10 + GIVEN(56) * b13 + GIVEN(68) * b8;
-  b0 = EACH(C[0]) * GIVEN(16);
+  b0 = EACH(C[18]) * GIVEN(16);
   b16 = GIVEN(48) * b4 + GIVEN(60) * b9 + GIVEN(72) * b11;
   b17 = GIVEN(48) * b7 + GIVEN(60) * b1 + GIVEN(72) * b2;
   b18 = GIVEN(48) * b10 + GIVEN(60) * b13 + GIVEN(72) * b8;
   b11 = GIVEN(52) * b4 + GIVEN(64) * b9 + GIVEN(76) * b11;
   b2 = GIVEN(52) * b7 + GIVEN(64) * b1 + GIVEN(76) * b2;
   b8 = GIVEN(52) * b10 + GIVEN(64) * b13 + GIVEN(76) * b8;
-  b13 = EACH(C[0]) * GIVEN(12);
-  b10 = EACH(C[0]) * GIVEN(8);
-  b1 = EACH(C[0]) * GIVEN(4);
-  b7 = EACH(C[0]) * GIVEN(0);
+  b13 = EACH(C[18]) * GIVEN(12);
+  b10 = EACH(C[18]) * GIVEN(8);
+  b1 = EACH(C[18]) * GIVEN(4);
+  b7 = EACH(C[18]) * GIVEN(0);
   b9 = GIVEN(52) * GIVEN(24) + GIVEN(64) * GIVEN(28) + GIVEN(76) * GIVEN(32);
   b5 = EACH(0.5) / b5;
   b4 = GIVEN(44) * GIVEN(24) + GIVEN(56) * GIVEN(28) + GIVEN(68) * GIVEN(32);
@@ -124,12 +124,12 @@ static void MADE(precurved_tube_kernels_variations_turn)(const casadi_real *give
   b30 = GIVEN(56) * GIVEN(80) + GIVEN(60) * GIVEN(84) + GIVEN(64) * GIVEN(88);
   b31 = GIVEN(40) * (GIVEN(32) * b19 - GIVEN(24) * b9) - b6 * b30;
   b32 = GIVEN(40) * (GIVEN(28) * b9 - GIVEN(32) * b30) - b6 * b19;
-  b33 = EACH(C[0]) * (b9 + (GIVEN(24) * b31 - GIVEN(28) * b32));
+  b33 = EACH(C[18]) * (b9 + (GIVEN(24) * b31 - GIVEN(28) * b32));
   b9 = GIVEN(40) * (GIVEN(24) * b30 - GIVEN(28) * b19) - b6 * b9;
-  b32 = EACH(C[0]) * (b30 + (GIVEN(32) * b32 - GIVEN(24) * b9));
+  b32 = EACH(C[18]) * (b30 + (GIVEN(32) * b32 - GIVEN(24) * b9));
   b30 = EACH((-1.0)) * b32;
   b6 = EACH((-1.0)) * b33;
-  b31 = EACH(C[0]) * (b19 + (GIVEN(28) * b9 - GIVEN(32) * b31));
+  b31 = EACH(C[18]) * (b19 + (GIVEN(28) * b9 - GIVEN(32) * b31));
   b9 = EACH((-1.0)) * b31;
   STORE(made + 0, b12 - b14 * b15 + b3 * b0);
   STORE(made + 4, b16 - b17 * b15 + b18 * b0);
@@ -189,7 +189,7 @@ static void MADE(precurved_tube_kernels_fwd1_pulls_turn)(const casadi_real *give
   b5 = GIVEN(40) * b2 - b3 * b4;
   b6 = GIVEN(28) * b0 - GIVEN(32) * b4;
   b7 = GIVEN(40) * b6 - b3 * b1;
-  b8 = EACH(C[0]) * (b0 + (GIVEN(24) * b5 - GIVEN(28) * b7));
+  b8 = EACH(C[18]) * (b0 + (GIVEN(24) * b5 - GIVEN(28) * b7));
   b9 = GIVEN(88) * GIVEN(168) + GIVEN(76) * GIVEN(180);
   b9 = GIVEN(80) * GIVEN(160) + GIVEN(68) * GIVEN(172) + (GIVEN(84) * GIVEN(164) + GIVEN(72) * GIVEN(176)) + b9;
   b10 = GIVEN(88) * GIVEN(144) + GIVEN(52) * GIVEN(180);
@@ -202,17 +202,17 @@ static void MADE(precurved_tube_kernels_fwd1_pulls_turn)(const casadi_real *give
   b6 = b6 * GIVEN(132) + GIVEN(40) * (b0 * GIVEN(120) + GIVEN(28) * b9 - (b4 * GIVEN(124) + GIVEN(32) * b12));
   b6 = b6 - (b1 * b11 + b3 * b10);
   b13 = b9 + (b5 * GIVEN(116) + GIVEN(24) * b2 - (b7 * GIVEN(120) + GIVEN(28) * b6));
-  b14 = EACH(C[0]) * b13;
+  b14 = EACH(C[18]) * b13;
   b15 = GIVEN(24) * b4 - GIVEN(28) * b1;
   b16 = GIVEN(40) * b15 - b3 * b0;
-  b17 = EACH(C[0]) * (b4 + (GIVEN(32) * b7 - GIVEN(24) * b16));
+  b17 = EACH(C[18]) * (b4 + (GIVEN(32) * b7 - GIVEN(24) * b16));
   b4 = b15 * GIVEN(132) + GIVEN(40) * (b4 * GIVEN(116) + GIVEN(24) * b12 - (b1 * GIVEN(120) + GIVEN(28) * b10));
   b9 = b4 - (b0 * b11 + b3 * b9);
   b6 = b12 + (b7 * GIVEN(124) + GIVEN(32) * b6 - (b16 * GIVEN(116) + GIVEN(24) * b9));
-  b7 = EACH(C[0]) * b6;
+  b7 = EACH(C[18]) * b6;
   b2 = b10 + (b16 * GIVEN(120) + GIVEN(28) * b9 - (b5 * GIVEN(124) + GIVEN(32) * b2));
-  b5 = EACH(C[0]) * (b1 + (GIVEN(28) * b16 - GIVEN(32) * b5));
-  b16 = EACH(C[0]) * b2;
+  b5 = EACH(C[18]) * (b1 + (GIVEN(28) * b16 - GIVEN(32) * b5));
+  b16 = EACH(C[18]) * b2;
   STORE(made + 0, b8 * GIVEN(108) + GIVEN(16) * b14 - (b17 * GIVEN(112) + GIVEN(20) * b7) + b2);
   STORE(made + 4, b6 - (b8 * GIVEN(104) + GIVEN(12) * b14) + (b5 * GIVEN(112) + GIVEN(20) * b16));
   STORE(made + 8, b13 + (b17 * GIVEN(104) + GIVEN(12) * b7) - (b5 * GIVEN(108) + GIVEN(16) * b16));
@@ -225,6 +225,91 @@ static void MADE(precurved_tube_kernels_fwd1_pulls)(const casadi_real *given, ca
   int turn;
   for (turn = 0; turn < turns; turn++, given += 184, made += 24)
     EVERY_LANE(MADE(precurved_tube_kernels_fwd1_pulls_turn)(given + lane, made + lane))
+}
+
+static void MADE(precurved_tube_kernels_increments_4_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6;
+  b0 = (GIVEN(12) * GIVEN(12) + GIVEN(16) * GIVEN(16) + GIVEN(20) * GIVEN(20)) / EACH(240.0);
+  b0 = EACH(1.0) + (GIVEN(0) * GIVEN(24) + GIVEN(4) * GIVEN(28) + GIVEN(8) * GIVEN(32)) / EACH(360.0) - b0;
+  b1 = (GIVEN(0) * GIVEN(12) + GIVEN(4) * GIVEN(16) + GIVEN(8) * GIVEN(20)) / EACH(240.0);
+  b2 = (GIVEN(0) * GIVEN(0) + GIVEN(4) * GIVEN(4) + GIVEN(8) * GIVEN(8)) / EACH(720.0);
+  b3 = EACH(C[18]) - EACH(2.0) * b2;
+  b2 = EACH(C[18]) + b2;
+  b4 = b2 * GIVEN(4) + GIVEN(28) / EACH(240.0);
+  b5 = b2 * GIVEN(8) + GIVEN(32) / EACH(240.0);
+  b6 = b0 * GIVEN(0) + b1 * GIVEN(12) + b3 * GIVEN(24) + (b4 * GIVEN(20) - b5 * GIVEN(16));
+  b2 = b2 * GIVEN(0) + GIVEN(24) / EACH(240.0);
+  b5 = b0 * GIVEN(4) + b1 * GIVEN(16) + b3 * GIVEN(28) + (b5 * GIVEN(12) - b2 * GIVEN(20));
+  b4 = b0 * GIVEN(8) + b1 * GIVEN(20) + b3 * GIVEN(32) + (b2 * GIVEN(16) - b4 * GIVEN(12));
+  b2 = b6 * b6 + b5 * b5 + b4 * b4;
+  b3 = EACH(C[0]) + b2 * (EACH(C[1]) + b2 * (EACH(C[2]) + b2 * (EACH(C[3]) + b2 * (EACH(C[4]) + b2 * (EACH(C[5]) + EACH(C[6]) * b2)))));
+  b3 = EACH(C[7]) + b2 * (EACH(C[8]) + b2 * (EACH(C[9]) + b2 * b3));
+  b1 = EACH(C[10]) + b2 * (EACH(C[11]) + b2 * (EACH(C[12]) + b2 * (EACH(C[13]) + b2 * (EACH(C[14]) + b2 * (EACH(C[15]) + EACH(C[16]) * b2)))));
+  b1 = EACH(1.0) + b2 * (EACH(C[17]) + b2 * b1);
+  b0 = b1 / EACH(2.0);
+  STORE(made + 0, (EACH(1.0) - b2 * b3) / b1);
+  STORE(made + 4, b0 * b6);
+  STORE(made + 8, b0 * b5);
+  STORE(made + 12, b0 * b4);
+  STORE(made + 16, b6);
+  STORE(made + 20, b5);
+  STORE(made + 24, b4);
+  STORE(made + 28, b1);
+  STORE(made + 32, b3);
+}
+
+static void MADE(precurved_tube_kernels_increments_4)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 36, made += 36)
+    EVERY_LANE(MADE(precurved_tube_kernels_increments_4_turn)(given + lane, made + lane))
+}
+
+static void MADE(precurved_tube_kernels_pulls_5_turn)(const casadi_real *given, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16;
+  b0 = (GIVEN(0) * GIVEN(0) + GIVEN(4) * GIVEN(4) + GIVEN(8) * GIVEN(8)) / EACH(720.0);
+  b1 = EACH(C[18]) + b0;
+  b2 = GIVEN(80) * GIVEN(92) + GIVEN(84) * GIVEN(96) + GIVEN(88) * GIVEN(100);
+  b3 = GIVEN(56) * GIVEN(92) + GIVEN(60) * GIVEN(96) + GIVEN(64) * GIVEN(100);
+  b4 = GIVEN(48) * GIVEN(48) / EACH(2.0);
+  b5 = GIVEN(68) * GIVEN(92) + GIVEN(72) * GIVEN(96) + GIVEN(76) * GIVEN(100);
+  b6 = GIVEN(52) * (GIVEN(44) * b3 - GIVEN(36) * b2) - b4 * b5;
+  b7 = GIVEN(52) * (GIVEN(40) * b2 - GIVEN(44) * b5) - b4 * b3;
+  b8 = b2 + (GIVEN(36) * b6 - GIVEN(40) * b7);
+  b2 = GIVEN(52) * (GIVEN(36) * b5 - GIVEN(40) * b3) - b4 * b2;
+  b7 = b5 + (GIVEN(44) * b7 - GIVEN(36) * b2);
+  b5 = GIVEN(16) * b8 - GIVEN(20) * b7;
+  b6 = b3 + (GIVEN(40) * b2 - GIVEN(44) * b6);
+  b2 = GIVEN(12) * b7 - GIVEN(16) * b6;
+  b3 = GIVEN(20) * b6 - GIVEN(12) * b8;
+  b4 = EACH(2.0) * (EACH((-1.0)) * (GIVEN(32) * b8 + GIVEN(28) * b7 + GIVEN(24) * b6));
+  b4 = EACH(0.001388888888888889) * (GIVEN(0) * b5 + GIVEN(8) * b2 + GIVEN(4) * b3 + b4);
+  b9 = EACH(C[19]) * (GIVEN(20) * b8 + GIVEN(16) * b7 + GIVEN(12) * b6);
+  b10 = (GIVEN(12) * GIVEN(12) + GIVEN(16) * GIVEN(16) + GIVEN(20) * GIVEN(20)) / EACH(240.0);
+  b10 = EACH(1.0) + (GIVEN(0) * GIVEN(24) + GIVEN(4) * GIVEN(28) + GIVEN(8) * GIVEN(32)) / EACH(360.0) - b10;
+  b11 = GIVEN(8) * b8 + GIVEN(4) * b7 + GIVEN(0) * b6;
+  b12 = EACH(0.002777777777777778) * b11;
+  b13 = b1 * GIVEN(8) + GIVEN(32) / EACH(240.0);
+  b14 = b1 * GIVEN(4) + GIVEN(28) / EACH(240.0);
+  b15 = (GIVEN(0) * GIVEN(12) + GIVEN(4) * GIVEN(16) + GIVEN(8) * GIVEN(20)) / EACH(240.0);
+  b11 = EACH(C[19]) * b11;
+  b16 = b1 * GIVEN(0) + GIVEN(24) / EACH(240.0);
+  b0 = EACH(C[18]) - EACH(2.0) * b0;
+  STORE(made + 0, b1 * b5 + EACH(2.0) * GIVEN(0) * b4 + GIVEN(12) * b9 + b10 * b6 + GIVEN(24) * b12);
+  STORE(made + 4, b10 * b7 + b1 * b3 + EACH(2.0) * GIVEN(4) * b4 + GIVEN(16) * b9 + GIVEN(28) * b12);
+  STORE(made + 8, b10 * b8 + b1 * b2 + EACH(2.0) * GIVEN(8) * b4 + GIVEN(20) * b9 + GIVEN(32) * b12);
+  STORE(made + 12, b13 * b7 - b14 * b8 + b15 * b6 + GIVEN(0) * b9 - EACH(2.0) * GIVEN(12) * b11);
+  STORE(made + 16, b16 * b8 + b15 * b7 - b13 * b6 + GIVEN(4) * b9 - EACH(2.0) * GIVEN(16) * b11);
+  STORE(made + 20, b15 * b8 - b16 * b7 + b14 * b6 + GIVEN(8) * b9 - EACH(2.0) * GIVEN(20) * b11);
+  STORE(made + 24, EACH(C[19]) * b5 + b0 * b6 + GIVEN(0) * b12);
+  STORE(made + 28, b0 * b7 + EACH(C[19]) * b3 + GIVEN(4) * b12);
+  STORE(made + 32, b0 * b8 + EACH(C[19]) * b2 + GIVEN(8) * b12);
+}
+
+static void MADE(precurved_tube_kernels_pulls_5)(const casadi_real *given, casadi_real *made, int turns) {
+  int turn;
+  for (turn = 0; turn < turns; turn++, given += 104, made += 36)
+    EVERY_LANE(MADE(precurved_tube_kernels_pulls_5_turn)(given + lane, made + lane))
 }
 
 static void MADE(precurved_tube_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
@@ -248,22 +333,22 @@ static void MADE(precurved_tube_kernels_turnings_turn)(const casadi_real *given,
   b5 = b5 * GIVEN(24);
   b2 = b5 + b2 * GIVEN(32);
   b12 = GIVEN(44) * b6 + GIVEN(56) * b1 + GIVEN(68) * b2;
-  b13 = EACH(C[0]) * GIVEN(20);
+  b13 = EACH(C[18]) * GIVEN(20);
   b9 = b9 + b0 * GIVEN(24);
   b5 = b0 * GIVEN(28) - b5;
   b7 = EACH(1.0) - (b3 + b7);
   b3 = GIVEN(44) * b9 + GIVEN(56) * b5 + GIVEN(68) * b7;
-  b0 = EACH(C[0]) * GIVEN(16);
+  b0 = EACH(C[18]) * GIVEN(16);
   b14 = GIVEN(48) * b4 + GIVEN(60) * b8 + GIVEN(72) * b10;
   b15 = GIVEN(48) * b6 + GIVEN(60) * b1 + GIVEN(72) * b2;
   b16 = GIVEN(48) * b9 + GIVEN(60) * b5 + GIVEN(72) * b7;
   b10 = GIVEN(52) * b4 + GIVEN(64) * b8 + GIVEN(76) * b10;
   b2 = GIVEN(52) * b6 + GIVEN(64) * b1 + GIVEN(76) * b2;
   b7 = GIVEN(52) * b9 + GIVEN(64) * b5 + GIVEN(76) * b7;
-  b5 = EACH(C[0]) * GIVEN(12);
-  b9 = EACH(C[0]) * GIVEN(8);
-  b1 = EACH(C[0]) * GIVEN(4);
-  b6 = EACH(C[0]) * GIVEN(0);
+  b5 = EACH(C[18]) * GIVEN(12);
+  b9 = EACH(C[18]) * GIVEN(8);
+  b1 = EACH(C[18]) * GIVEN(4);
+  b6 = EACH(C[18]) * GIVEN(0);
   STORE(made + 0, b11 - b12 * b13 + b3 * b0);
   STORE(made + 4, b14 - b15 * b13 + b16 * b0);
   STORE(made + 8, b10 - b2 * b13 + b7 * b0);
@@ -411,7 +496,7 @@ static void MADE(precurved_tube_k_jacobian_columns_1)(const casadi_real *w, cons
   STORE(passed + 248, b7 = w[260] * PASSED(20) - w[273] * PASSED(24) + b13 + w[525] * PASSED(112) + w[537] * PASSED(116) + b7);
   STORE(passed + 200, b7 = w[445] * b4 + w[449] * b1 + w[453] * b7 + w[585] * TURN(132) + w[593] * TURN(160));
   STORE(passed + 276, b7 = b10 + b7);
-  STORE(passed + 160, EACH(C[1]) * b5 + EACH(C[2]) * b7);
+  STORE(passed + 160, EACH(C[20]) * b5 + EACH(C[21]) * b7);
   b7 = w[386] * PASSED(132);
   STORE(passed + 252, b7 = w[278] * PASSED(64) - w[285] * PASSED(56) + b3 + w[362] * PASSED(124) + w[374] * PASSED(128) + b7);
   b3 = w[390] * PASSED(132);
@@ -442,7 +527,7 @@ static void MADE(precurved_tube_k_jacobian_columns_2)(const casadi_real *w, cons
   b4 = w[395] * PASSED(176);
   STORE(passed + 296, b4 = w[266] * PASSED(44) - w[277] * PASSED(48) + PASSED(184) + w[371] * PASSED(168) + w[383] * PASSED(172) + b4);
   b5 = w[291] * b2 + w[295] * b3 + w[299] * b4 + w[431] * TURN(124) + w[439] * TURN(152);
-  STORE(passed + 324, PASSED(160) + EACH(C[3]) * b1 + EACH(C[4]) * b5);
+  STORE(passed + 324, PASSED(160) + EACH(C[22]) * b1 + EACH(C[23]) * b5);
   b6 = PASSED(188) - PASSED(192);
   b7 = PASSED(196) - PASSED(200);
   b0 = PASSED(156) - b0;
@@ -456,12 +541,12 @@ static void MADE(precurved_tube_k_jacobian_columns_2)(const casadi_real *w, cons
   b15 = w[480] * PASSED(264) + w[484] * PASSED(268) + w[488] * PASSED(148) + w[560] * TURN(44) + w[568] * TURN(72);
   b16 = b14 + b15;
   b17 = w[327] * b2 + w[331] * b3 + w[335] * b4 + w[407] * TURN(40) + w[415] * TURN(68);
-  b18 = EACH(C[5]) * b6 + EACH(C[6]) * b7 + EACH(C[7]) * b0 + EACH(C[8]) * b10 + EACH(C[9]) * b13 + EACH(C[10]) * b16 + EACH(C[11]) * b17;
+  b18 = EACH(C[24]) * b6 + EACH(C[25]) * b7 + EACH(C[26]) * b0 + EACH(C[27]) * b10 + EACH(C[28]) * b13 + EACH(C[29]) * b16 + EACH(C[30]) * b17;
   STORE(passed + 328, b18);
-  b15 = EACH(C[12]) * (b14 - b15);
-  b15 = EACH(C[13]) * PASSED(272) + EACH(C[14]) * PASSED(276) + EACH(C[15]) * b1 + EACH(C[16]) * (b8 - b9) + EACH(C[17]) * (b11 - b12) + b15;
-  STORE(passed + 332, b15 + EACH(C[6]) * b5);
-  b17 = EACH(C[18]) * b6 + EACH(C[19]) * b7 + EACH(C[20]) * b0 + EACH(C[21]) * b10 + EACH(C[22]) * b13 + EACH(C[23]) * b16 + EACH(C[24]) * b17;
+  b15 = EACH(C[31]) * (b14 - b15);
+  b15 = EACH(C[32]) * PASSED(272) + EACH(C[33]) * PASSED(276) + EACH(C[34]) * b1 + EACH(C[35]) * (b8 - b9) + EACH(C[36]) * (b11 - b12) + b15;
+  STORE(passed + 332, b15 + EACH(C[25]) * b5);
+  b17 = EACH(C[37]) * b6 + EACH(C[38]) * b7 + EACH(C[39]) * b0 + EACH(C[40]) * b10 + EACH(C[41]) * b13 + EACH(C[42]) * b16 + EACH(C[43]) * b17;
   STORE(passed + 336, b17);
   b17 = w[300] * PASSED(204) + w[304] * PASSED(208) + w[308] * PASSED(212) + w[420] * TURN(84) + w[440] * TURN(140);
   b16 = w[458] * PASSED(216) + w[462] * PASSED(220) + w[466] * PASSED(224) + w[578] * TURN(108) + w[598] * TURN(164);
@@ -473,10 +558,10 @@ static void MADE(precurved_tube_k_jacobian_columns_2)(const casadi_real *w, cons
   b5 = w[456] * PASSED(264) + w[460] * PASSED(268) + w[464] * PASSED(148) + w[576] * TURN(100) + w[596] * TURN(156);
   STORE(passed + 308, b15 = b6 + b5);
   STORE(passed + 312, b4 = w[303] * b2 + w[307] * b3 + w[311] * b4 + w[423] * TURN(96) + w[443] * TURN(152));
-  STORE(passed + 340, EACH(C[1]) * b13 + EACH(C[2]) * b7 + EACH(C[3]) * b15 + EACH(C[4]) * b4);
+  STORE(passed + 340, EACH(C[20]) * b13 + EACH(C[21]) * b7 + EACH(C[22]) * b15 + EACH(C[23]) * b4);
   STORE(passed + 316, b16 = b17 - b16);
   STORE(passed + 320, b0 = b10 - b0);
-  STORE(passed + 284, EACH(C[5]) * b16 + EACH(C[6]) * b0);
+  STORE(passed + 284, EACH(C[24]) * b16 + EACH(C[25]) * b0);
   STORE(passed + 280, b6 - b5);
 }
 
@@ -494,11 +579,11 @@ static void MADE(precurved_tube_k_jacobian_columns_3)(const casadi_real *w, cons
   b7 = w[492] * PASSED(264) + w[496] * PASSED(268) + w[500] * PASSED(148) + w[552] * TURN(16) + w[572] * TURN(72);
   b8 = b6 + b7;
   b9 = w[339] * PASSED(288) + w[343] * PASSED(292) + w[347] * PASSED(296) + w[399] * TURN(12) + w[419] * TURN(68);
-  b4 = EACH(C[17]) * (b3 - b4);
-  b7 = EACH(C[12]) * (b6 - b7);
-  b6 = EACH(C[6]) * PASSED(312);
-  b3 = EACH(C[23]) * b8;
-  b10 = EACH(C[24]) * b9;
+  b4 = EACH(C[36]) * (b3 - b4);
+  b7 = EACH(C[31]) * (b6 - b7);
+  b6 = EACH(C[25]) * PASSED(312);
+  b3 = EACH(C[42]) * b8;
+  b10 = EACH(C[43]) * b9;
   b11 = w[312] * PASSED(204) + w[316] * PASSED(208) + w[320] * PASSED(212) + w[424] * TURN(84) + w[432] * TURN(112);
   b12 = w[470] * PASSED(216) + w[474] * PASSED(220) + w[478] * PASSED(224) + w[582] * TURN(108) + w[590] * TURN(136);
   b13 = b11 + b12;
@@ -530,20 +615,20 @@ static void MADE(precurved_tube_k_jacobian_columns_3)(const casadi_real *w, cons
   STORE(columns + 32, PASSED(332));
   STORE(columns + 48, PASSED(336));
   STORE(columns + 64, PASSED(340));
-  b9 = PASSED(284) + EACH(C[7]) * PASSED(280) + EACH(C[8]) * b2 + EACH(C[9]) * b5 + EACH(C[10]) * b8 + EACH(C[11]) * b9;
+  b9 = PASSED(284) + EACH(C[26]) * PASSED(280) + EACH(C[27]) * b2 + EACH(C[28]) * b5 + EACH(C[29]) * b8 + EACH(C[30]) * b9;
   STORE(columns + 80, b9);
-  b6 = EACH(C[13]) * PASSED(300) + EACH(C[14]) * PASSED(304) + EACH(C[15]) * PASSED(308) + EACH(C[16]) * (b0 - b1) + b4 + b7 + b6;
+  b6 = EACH(C[32]) * PASSED(300) + EACH(C[33]) * PASSED(304) + EACH(C[34]) * PASSED(308) + EACH(C[35]) * (b0 - b1) + b4 + b7 + b6;
   STORE(columns + 96, b6);
-  b10 = EACH(C[18]) * PASSED(316) + EACH(C[19]) * PASSED(320) + EACH(C[20]) * PASSED(280) + EACH(C[21]) * b2 + EACH(C[22]) * b5 + b3 + b10;
+  b10 = EACH(C[37]) * PASSED(316) + EACH(C[38]) * PASSED(320) + EACH(C[39]) * PASSED(280) + EACH(C[40]) * b2 + EACH(C[41]) * b5 + b3 + b10;
   STORE(columns + 112, b10);
-  STORE(columns + 128, EACH(C[25]) * b13 + EACH(C[26]) * b16 + EACH(C[27]) * b19 + EACH(C[28]) * b20);
-  b10 = EACH(C[29]) * b12 + EACH(C[30]) * b15 + EACH(C[31]) * b18 + EACH(C[32]) * b11 + EACH(C[33]) * b23 + EACH(C[34]) * b26 + EACH(C[35]) * b27;
+  STORE(columns + 128, EACH(C[44]) * b13 + EACH(C[45]) * b16 + EACH(C[46]) * b19 + EACH(C[47]) * b20);
+  b10 = EACH(C[48]) * b12 + EACH(C[49]) * b15 + EACH(C[50]) * b18 + EACH(C[51]) * b11 + EACH(C[52]) * b23 + EACH(C[53]) * b26 + EACH(C[54]) * b27;
   STORE(columns + 144, b10);
-  b10 = EACH(C[36]) * b13 + EACH(C[37]) * b16 + EACH(C[38]) * b19 + EACH(C[39]) * b14 + EACH(C[40]) * b22 + EACH(C[41]) * b25 + EACH(C[30]) * b20;
+  b10 = EACH(C[55]) * b13 + EACH(C[56]) * b16 + EACH(C[57]) * b19 + EACH(C[58]) * b14 + EACH(C[59]) * b22 + EACH(C[60]) * b25 + EACH(C[49]) * b20;
   STORE(columns + 160, b10);
-  b27 = EACH(C[42]) * b12 + EACH(C[43]) * b15 + EACH(C[44]) * b18 + EACH(C[45]) * b11 + EACH(C[46]) * b23 + EACH(C[47]) * b26 + EACH(C[48]) * b27;
+  b27 = EACH(C[61]) * b12 + EACH(C[62]) * b15 + EACH(C[63]) * b18 + EACH(C[64]) * b11 + EACH(C[65]) * b23 + EACH(C[66]) * b26 + EACH(C[67]) * b27;
   STORE(columns + 176, b27);
-  b20 = EACH(C[49]) * b13 + EACH(C[50]) * b16 + EACH(C[51]) * b19 + EACH(C[52]) * b14 + EACH(C[53]) * b22 + EACH(C[54]) * b25 + EACH(C[55]) * b20;
+  b20 = EACH(C[68]) * b13 + EACH(C[69]) * b16 + EACH(C[70]) * b19 + EACH(C[71]) * b14 + EACH(C[72]) * b22 + EACH(C[73]) * b25 + EACH(C[74]) * b20;
   STORE(columns + 192, b20);
 }
 

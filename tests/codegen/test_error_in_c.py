@@ -137,6 +137,17 @@ def test_missing_modes_that_bounce_off_a_wall_are_told(tmp_path: Path) -> None:
         assert pressed.within_tolerance is False
 
 
+def test_modes_that_are_blind_to_what_loads_roll_up_do_not_know_their_error(tmp_path: Path) -> None:
+    """Four modes of three turns miss the waves that a force puts along them; a circle has none."""
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    rolling = push(force=[1.0, 0, 0], moment=[0, 6 * np.pi, 0])
+    rolled = scene(rolling, rods=[straight], inputs=["push.force"])
+    compiled = load(export(build(rolled, discretise(rolled, 4, 24)), tmp_path / "rolled"))
+    assert compiled.solve().error_estimate == answer_error.UNKNOWN
+    circle = compiled.solve({"push.force": [0.0, 0.0, 0.0]}).error_estimate
+    assert circle is not None and circle < 1e-10
+
+
 def test_parameters_move_the_estimate(tmp_path: Path) -> None:
     rod = {
         "name": "rod",

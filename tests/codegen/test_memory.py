@@ -67,7 +67,7 @@ def test_stack_of_batches(name: str, tmp_path: Path) -> None:
     flags = ("-O0", "-std=gnu99", "-pthread", "-Wl,-z,now", "-DBATCHES", f"-I{made.folder}")
     run("gcc", *flags, program, *sources, "-lm", "-o", tmp_path / "stack")
     stack = int(run(tmp_path / "stack").split()[0])
-    found = re.search(r"at a time\. It needs up to ([\d.]+) kB of stack", (made.folder / f"{name}.h").read_text())
+    found = re.search(r"at a time\. It needs up to\s+([\d.]+) kB of stack", (made.folder / f"{name}.h").read_text())
     assert found is not None
     said = 1000 * float(found[1])
     assert f"{name}_solve_batch {found[1]} kB" in (made.folder / "README.md").read_text()

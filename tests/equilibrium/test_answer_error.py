@@ -177,17 +177,17 @@ def test_wrench_at_the_clamp_knows_its_error() -> None:
     assert LEAST * true < coarse.wrench_error_estimate < MOST_ABOVE * true
 
 
-def spring() -> Scene:
-    """A helical spring of five turns, drawn out by a force along its axis."""
+def spring(turns: int = 5, force: float = 4.0) -> Scene:
+    """A helical spring, drawn out by a force along its axis, N."""
     wire = {
         "name": "rod",
-        "length": 0.63,
+        "length": 0.126 * turns,
         "strain": "kirchhoff",
         "stiffness": {"bending_x": 0.16, "bending_y": 0.16, "torsion": 0.124},
         "intrinsic": {"curvature": [0, 49.6, 4.34]},
         "base": {"position": [0, 0, 0], "quaternion": [0.03084, 0.706434, 0.706434, 0.03084]},
     }
-    return scene(push(force=[4.0, 0.0, 0.0]), rods=[wire], accuracy={"tolerance": 1e-9})
+    return scene(push(force=[force, 0.0, 0.0]), rods=[wire], accuracy={"tolerance": 1e-9})
 
 
 def test_intervals_of_the_highest_order_know_their_error() -> None:
@@ -208,6 +208,51 @@ def test_shape_knows_the_error_of_modes_that_even_the_richer_model_lacks() -> No
     assert solution.shape_error_estimate is not None
     ratio = solution.shape_error_estimate / pose_distance(solution, reference, SAMPLES)
     assert LEAST < ratio < MOST_ABOVE, ratio
+
+
+@pytest.mark.parametrize(("turns", "force", "modes", "finer"), [(5, 4.0, 25, 44), (10, 0.3, 15, 76)])
+def test_coils_put_waves_and_their_products_into_modes_that_an_answer_lacks(
+    turns: int, force: float, modes: int, finer: int
+) -> None:
+    """Coils wave up to a degree of π times their turns, products of waves up to twice that: three modes see neither."""
+    drawn = spring(turns, force)
+    solution = solve(build(drawn, discretise(drawn, modes, 15 * turns, "magnus8")))
+    reference = solve(build(drawn, discretise(drawn, finer, 20 * turns, "magnus8")), estimate_error=False)
+    assert solution.error_estimate is not None
+    assert 1.0 < solution.error_estimate / pose_distance(solution, reference) < MOST_ABOVE
+
+
+def rolled_up(force: float) -> Scene:
+    """A planar rod that a moment rolls into three turns, with a force at its tip."""
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    return scene(push(force=[force, 0, 0], moment=[0, 6 * np.pi, 0]), rods=[straight])
+
+
+def test_modes_that_are_blind_to_what_loads_roll_up_do_not_know_their_error() -> None:
+    """Of four modes and three more the tip sees a hundredth of its error; a circle has none that could be missed."""
+    pulled, circle = (solve(build(rolled_up(force), discretise(rolled_up(force), 4, 24))) for force in (1.0, 0.0))
+    seen = solve(build(rolled_up(1.0), discretise(rolled_up(1.0), 12, 24, "magnus8")))
+    assert pose_distance(pulled, seen) > 1e-3
+    assert pulled.error_estimate == estimates.UNKNOWN
+    assert pulled.within_tolerance is False
+    assert seen.error_estimate is not None and circle.error_estimate is not None
+    assert pose_distance(seen, solve(rolled_up(1.0))) < seen.error_estimate < 1e-4
+    assert circle.error_estimate < 1e-10
+
+
+@pytest.mark.parametrize(
+    ("modes", "nodes", "length", "velocity"),
+    [((7, 7, 1), 10, 0.6, [0.285, -0.249, -0.123]), ((5, 5, 1), 12, 0.594, [0.296, -0.161, 0.136])],
+)
+def test_a_stream_along_a_longer_rod_takes_more_intervals_and_sweeps(
+    modes: tuple[int, ...], nodes: int, length: float, velocity: list[float]
+) -> None:
+    """Its drag has a kink where it lies along the stream; of the second the watched tip settles before modes rest."""
+    read = read_scene(ROOT / "examples" / "rod_in_stream.toml", ['inputs=["rod.length", "water.velocity"]'])
+    model = build(read, discretise(read, modes, nodes))
+    longer = solve(model, {"rod.length": length, "water.velocity": velocity})
+    assert longer.error_estimate is not None
+    assert 1.0 <= longer.error_estimate / true_error(longer) < MOST_ABOVE
 
 
 def test_parameters_move_the_stiffness_of_missing_modes() -> None:

@@ -76,6 +76,17 @@ def test_bad_values_are_refused(values: dict[str, object], words: str) -> None:
         solve(build(scene(push())), values)
 
 
+def test_inputs_out_of_their_physics_are_refused_at_once() -> None:
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "offset": [0.01, 0], "tension": 2.0, "friction": 0.1}
+    pulled = scene(actuators=[cable], inputs=["cable.tension", "cable.pull"])
+    model = build(pulled, discretise(pulled, 2, 6))
+    words = r"(?s)cable.tension: must be >= 0, got -5.*cable.pull: must be <= 1, got 5"
+    for values in ({"cable.tension": -5.0, "cable.pull": 5.0}, [-5.0, 5.0]):
+        with pytest.raises(SceneError, match=words):
+            solve(model, values)
+    assert solve(model, {"cable.tension": 0.0, "cable.pull": -1.0}).converged
+
+
 def test_unloaded_rod_needs_no_step() -> None:
     solution = solve(build(scene()))
     assert solution.converged

@@ -1,4 +1,4 @@
-"""A function called at many arguments at once: as one call after the other gives it."""
+"""Functions called at many arguments at once, as one call after the other gives them, and what makes one call often."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from cosserat_casadi.maths.calls import evaluated
+from cosserat_casadi.maths.calls import evaluated, with_shared_terms
 
 
 def mixed() -> ca.Function:
@@ -35,3 +35,17 @@ def test_an_argument_may_be_empty_and_there_may_be_no_row() -> None:
     np.testing.assert_array_equal(doubled, np.full((3, 2, 1), 2.0))
     (none,) = evaluated(function, np.zeros((0, 2)), np.zeros((0, 0)))
     assert none.shape == (0, 2, 1)
+
+
+def test_a_call_that_results_make_often_is_made_once() -> None:
+    """CasADi 3.7 refuses a function whose calls are merged at once."""
+    x, factors = ca.SX.sym("x", 2), np.array([2.0, 3.0, 4.0])
+    kernel = ca.Function("kernel", [x], [ca.sin(x), ca.dot(x, x)], {"never_inline": True})
+    upper, lower = (ca.horzcat(*(kernel(x)[0][row] * factor for factor in factors)) for row in range(2))
+    function = with_shared_terms("both", [x], [upper, ca.SX(1, 0), lower + kernel(x)[1]], ["x"], ["a", "none", "b"])
+    codes = [function.instruction_id(k) for k in range(function.n_instructions())]
+    assert codes.count(ca.OP_CALL) == 1
+    a, none, b = (np.asarray(result)[0] for result in function([0.3, -0.2]))
+    np.testing.assert_allclose(a, factors * np.sin(0.3), rtol=1e-15)
+    assert none.shape == (0,)
+    np.testing.assert_allclose(b, 0.13 - factors * np.sin(0.2), rtol=1e-15)

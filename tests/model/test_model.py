@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Discretisation, Model, Scene, build, discretise
+from cosserat_casadi import Discretisation, Model, Scene, SceneError, build, discretise
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from tests.derivatives import central_differences
 from tests.equilibria import solve
@@ -341,3 +344,24 @@ def test_base_given_by_tangent_vs_by_quaternion() -> None:
     assert_allclose(one.tip().position, other.tip().position, rtol=0, atol=1e-12)
     straight = solve(coarse(scene(rods=[rod(base={"tangent": tangent})])))
     assert_allclose(straight.tip().position, 0.8 * np.array(tangent) / np.linalg.norm(tangent), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"breaks": (0.0, 0.33, 1.0)},
+            r"discretisation.rod.breaks: must ascend from 0 to 1, with element ends at 0, 0.5",
+        ),
+        ({"breaks": (0.0, 0.5, 0.2, 1.0)}, "must ascend from 0 to 1"),
+        ({"modes": (3,), "nodes": 0}, r"(?s)rod.modes: must be 3 numbers >= 1.*rod.nodes: must be >= 1, got 0"),
+    ],
+)
+def test_a_discretisation_of_another_rod_is_refused(changes: dict[str, Any], words: str) -> None:
+    inner = {"name": "push", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [1, 0, 0]}
+    pushed = scene(inner)
+    own = discretise(pushed, 3, 8)["rod"]
+    with pytest.raises(SceneError, match=words):
+        build(pushed, {"rod": replace(own, **changes)})
+    with pytest.raises(SceneError, match=r"(?s)discretisation.other: is no rod.*discretisation.rod: missing"):
+        build(pushed, {"other": own})

@@ -100,7 +100,7 @@ def test_steps_that_python_began_are_gone_on_with_in_c() -> None:
         assert asked[-2][1] <= 0.4 < asked[-1][1]
         assert_allclose(joined.end.x, alone.end.x, rtol=0, atol=1e-8)
         # What C has taken over leaves no trace: the first step of its own is as long as that of Python.
-        sizes = [[step.size for step in taken.steps[: len(asked) + 1]] for taken in (joined, alone)]
+        sizes = [[step.size for step in list(taken.steps)[: len(asked) + 1]] for taken in (joined, alone)]
         assert_allclose(*sizes, rtol=1e-6, atol=0)
 
 

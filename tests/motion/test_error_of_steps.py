@@ -18,7 +18,7 @@ from cosserat_casadi.motion import simulate as motion_simulate
 from cosserat_casadi.motion.event_restart import LAID_DOWN, ContactEvent
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.motion_refinement import ResolvedMotion
-from cosserat_casadi.motion.pose_series import frames_of
+from cosserat_casadi.motion.pose_series import poses_of
 from cosserat_casadi.motion.simulate import (
     LEAST_SLOPE,
     LEAST_SLOPE_AFTER_IMPACTS,
@@ -164,7 +164,7 @@ def test_error_of_steps_that_are_the_same_about_an_event() -> None:
     told = simulator.finer(TimedHistory(history, float("nan"), 1e-2), TIGHTER)
     times = np.linspace(0.0, 1.0, 201)
     x, inputs = told.history.rough_positions(times)
-    found = -frames_of(simulator.model.body["weight"], x, inputs).position[:, 2] - length
+    found = -poses_of(simulator.model.body["weight"], x, inputs).position[:, 2] - length
     rate = np.sqrt(stiffness / mass)
     fallen = np.where(times < np.arccos(1.0 - held) / rate, 1.0 - np.cos(rate * times), held)
     assert np.abs(found - sag * fallen).max() / length < told.error < 1e-4

@@ -151,6 +151,17 @@ def test_what_does_not_fit_is_refused(tmp_path: Path) -> None:
         moved(swing(0.1875), file)
 
 
+@pytest.mark.parametrize("number", [0, -1])
+def test_a_motion_does_not_go_on_from_other_modes_than_its_states_have(number: int) -> None:
+    first = moved(swing(0.0625))
+    assert first.end is not None and len(first.end.strands) > 1
+    data = first.end.to_data()
+    (own,) = data["strands"][number]["discretisation"].values()
+    own["modes"] = [count + 1 for count in own["modes"]]
+    with pytest.raises(SceneError, match="of another scene"):
+        moved(swing(0.1875), Checkpoint.from_data(data))
+
+
 def test_modes_that_were_enough_for_a_rod_at_rest_are_judged_anew_where_it_is_knocked() -> None:
     knock = {
         "input": "push.force",

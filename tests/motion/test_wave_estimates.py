@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Motion, Scene, build, discretise, scene_from_dict, simulate
+from cosserat_casadi.maths.calls import evaluated
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.felt_modes import (
@@ -23,7 +24,6 @@ from cosserat_casadi.motion.felt_modes import (
     let_through_at_tip,
 )
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.pose_series import frames_of
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.tip_paths import paths
 from tests.families import mostly_slow
@@ -403,7 +403,7 @@ def test_the_arm_of_a_twist_follows_parameters() -> None:
 
 def turn_of_tip(history: History, times: FloatArray) -> FloatArray:
     """Turn of the tip of a rod that twists, at these times, rad."""
-    rotations = frames_of(history.model.tip["rod"], *history.rough_positions(times)).rotation
+    _, _, rotations = evaluated(history.model.tip["rod"], *history.rough_positions(times))
     x_axes, tangent = rotations[:, :, 0], rotations[0, :, 2]
     return np.unwrap(np.arctan2(x_axes @ np.cross(tangent, x_axes[0]), x_axes @ x_axes[0]))
 

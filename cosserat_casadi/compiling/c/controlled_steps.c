@@ -668,7 +668,7 @@ static solver_motion_status solve_with_jacobian(real *contraction, workspace *wo
   const stage_factors factors = 0;
   guess_stages(work->iterate, work);
   if (!work->linearised) renew_jacobian(work->iterate, work);
-  if (!all_finite(work->matrices, ORDERS * N * N)) return not_solved(work);
+  if (work->factorised == 0 && !all_finite(work->matrices, ORDERS * N * N)) return not_solved(work);
   if (work->factorised != work->size) {
     work->factorisations++;
     work->factorised = factorise_step(work->size, work) ? work->size : 0;

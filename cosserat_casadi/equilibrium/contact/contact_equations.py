@@ -37,7 +37,7 @@ from cosserat_casadi.model.discrete_scene import with_numbers
 from cosserat_casadi.model.discretise import enriched, nodes_above_modes
 from cosserat_casadi.model.element_ends import element_ends, places_on
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
-from cosserat_casadi.model.required_modes import signal_modes
+from cosserat_casadi.model.required_modes import seeing_modes
 from cosserat_casadi.model.scene_equations import SceneEquations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import solved
@@ -82,10 +82,11 @@ def richer(grids: Grids, scene: scenes.Scene) -> Grids:
         grids: of the answer.
         scene: without contacts.
     """
-    modes = signal_modes(scene)
-    return Grids(
-        {name: enriched(rod, modes, nodes_above_modes(scene, name, touches=True)) for name, rod in grids.rods.items()}
-    )
+    rods = {}
+    for name, rod in grids.rods.items():
+        modes = seeing_modes(scene, name)
+        rods[name] = enriched(rod, modes, nodes_above_modes(scene, name, touches=True))
+    return Grids(rods)
 
 
 @dataclass(frozen=True)

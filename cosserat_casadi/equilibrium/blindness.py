@@ -1,0 +1,120 @@
+"""Turns that modes are blind to: an element that loads roll up carries waves of strain that few modes do not see.
+
+A force of fixed direction goes round in the frame of a section that turns. Over an element that turns by T the strain
+oscillates with it, and Legendre coefficients of such a wave are small up to a degree of about T/2. The modes that an
+answer lacks tell its error where the richer model has these degrees. Where it lacks them, and its modes do carry
+something, the error of the answer is not known. See docs/theory.md, section 10.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.grid import gauss_legendre
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.required_modes import unloaded_turns
+
+WHOLE_TURN = 2 * np.pi
+"""Turn of an element, rad, within which there is no whole wave to miss."""
+
+BEYOND = 3
+"""Modes beyond T/2 from which on a richer model sees waves of an element that turns by T."""
+
+UNSEEN = 0.1
+"""Strain in missing modes, over the tolerance, below which no wave matters; curvatures times the length."""
+
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class TurnedElements:
+    """Elements of a scene, numbered rod after rod, with what tells their turns and what the richer model sees of them.
+
+    Attributes:
+        discrete: the scene whose answers are judged.
+    """
+
+    discrete: DiscreteScene
+
+    @cached_property
+    def unloaded(self) -> FloatArray:
+        """Angle through which sections turn along each unloaded element, summed, shape (elements,), rad."""
+        scene = self.discrete.nominal.scene
+        return np.concatenate([unloaded_turns(rod, self.discrete.rods[rod.name].grid.breaks) for rod in scene.rods])
+
+    @cached_property
+    def of_unknowns(self) -> Indices:
+        """Element that each unknown turns, shape (n,); −1 of unknowns that turn none."""
+        return np.where(self.turns > 0, _elements(self.discrete), -1)
+
+    @cached_property
+    def turns(self) -> FloatArray:
+        """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; or 0."""
+        turns = np.zeros(self.discrete.size)
+        for name, rod in self.discrete.nominal.rods.items():
+            first = self.discrete.unknowns.strain(name).start
+            points, weights = gauss_legendre(max(rod.discretisation.modes) + 1)
+            breaks = np.asarray(rod.discretisation.breaks)
+            widths = np.diff(breaks)
+            places = (breaks[:-1, None] + widths[:, None] * (points + 1) / 2).ravel()
+            element = np.repeat(np.arange(len(widths)), len(points))
+            shares = np.repeat(widths, len(points)) * rod.length
+            for component in rod.angular:
+                by_unit = shares[:, None] * rod.shape_functions(component, places, element)
+                squares = (np.tile(weights, len(widths))[:, None] / 2 * by_unit**2).sum(axis=0)
+                columns = rod.columns[component]
+                turns[first + columns.start : first + columns.stop] = np.sqrt(squares)
+        return turns
+
+    @cached_property
+    def of_missing(self) -> Indices:
+        """Element of each missing coordinate, shape (missing,)."""
+        richer = self.discrete.richer
+        return _elements(richer.discrete)[~richer.known]
+
+    @cached_property
+    def modes_of_missing(self) -> Indices:
+        """Modes that the richer model has of the strain of each missing coordinate, shape (missing,)."""
+        richer = self.discrete.richer
+        modes = np.zeros(richer.discrete.size, dtype=np.int64)
+        for name, rod in richer.discrete.rods.items():
+            first = richer.discrete.unknowns.strain(name).start
+            for columns, count in zip(rod.columns.values(), rod.discretisation.modes, strict=True):
+                modes[first + columns.start : first + columns.stop] = count
+        return modes[~richer.known]
+
+    def hide_waves(self, x: FloatArray, missing: FloatArray) -> bool:
+        """Whether an element turns so far that waves along it do not show in missing modes, which are not empty.
+
+        Args:
+            x: unknowns of the answer, shape (n,).
+            missing: coordinates of the missing modes, shape (missing,).
+        """
+        tolerance = self.discrete.scene.accuracy.tolerance
+        for element, unloaded in enumerate(self.unloaded):
+            own = self.of_unknowns == element
+            # No turn is more than the unloaded one and the root mean square of what loads add.
+            turn = unloaded + float(np.linalg.norm(self.turns[own] * x[own]))
+            blind = (self.of_missing == element) & (self.modes_of_missing < turn / 2 + BEYOND)
+            if turn > WHOLE_TURN and np.linalg.norm(missing[blind]) > UNSEEN * tolerance:
+                return True
+        return False
+
+
+def _elements(discrete: DiscreteScene) -> Indices:
+    """Element of each strain coordinate, in a row over all rods, shape (n,); −1 of other unknowns."""
+    elements = np.full(discrete.size, -1)
+    before = 0
+    for name, rod in discrete.rods.items():
+        first = discrete.unknowns.strain(name).start
+        count = rod.discretisation.elements
+        for columns in rod.columns.values():
+            own = before + np.repeat(np.arange(count), (columns.stop - columns.start) // count)
+            elements[first + columns.start : first + columns.stop] = own
+        before += count
+    return elements
