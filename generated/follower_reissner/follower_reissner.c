@@ -89,7 +89,7 @@ static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 
 
 /* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
 static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 0, 0, 0, 0, 0, 0, -1, -1, -1, -1};
-static const real TURNS[N] = {
+static const real TURN_BY_UNKNOWN[N] = {
   (real)0.8192319205190404, (real)0.472983769840402, (real)0.3663716527236558, (real)0.30964056111131616,
   (real)0.8192319205190404, (real)0.472983769840402, (real)0.3663716527236558, (real)0.30964056111131616,
   (real)0.9999999999999999, (real)0.0, (real)0.0, (real)0.0, (real)0.0};

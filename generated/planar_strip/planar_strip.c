@@ -87,7 +87,7 @@ static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1};
 
 /* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
 static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 0};
-static const real TURNS[N] = {
+static const real TURN_BY_UNKNOWN[N] = {
   (real)0.9999999999999999, (real)0.5773502691896258, (real)0.4472135954999579, (real)0.37796447300922714};
 
 /* Angle through which sections turn along each unloaded element, rad. */

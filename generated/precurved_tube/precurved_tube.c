@@ -89,7 +89,7 @@ static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1};
 
 /* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
 static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-static const real TURNS[N] = {
+static const real TURN_BY_UNKNOWN[N] = {
   (real)0.86710996952412, (real)0.5006261743217587, (real)0.38778336716474043, (real)0.3277367626722309,
   (real)0.86710996952412, (real)0.5006261743217587, (real)0.38778336716474043, (real)0.3277367626722309, (real)1.0,
   (real)0.5773502691896257, (real)0.4472135954999578, (real)0.3779644730092271, (real)0.33333333333333315};

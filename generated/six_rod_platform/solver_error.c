@@ -74,7 +74,10 @@ static int contracts(real before, real step) {
 static int hides_waves(const real *x, const real *missing) {
   for (int element = 0; element < SOLVER_ELEMENTS; element++) {
     real square = 0;
-    for (int i = 0; i < N; i++) square += ELEMENT_OF_UNKNOWN[i] == element ? TURNS[i] * TURNS[i] * x[i] * x[i] : 0;
+    for (int i = 0; i < N; i++) {
+      const real turned = ELEMENT_OF_UNKNOWN[i] == element ? TURN_BY_UNKNOWN[i] * x[i] : 0;
+      square += turned * turned;
+    }
     const real turn = UNLOADED_TURNS[element] + SQUARE_ROOT(square);
     if (!(turn > ERROR_WHOLE_TURN)) continue;
     real unseen = 0;

@@ -104,7 +104,7 @@ static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 
 
 /* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
 static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1};
-static const real TURNS[N] = {
+static const real TURN_BY_UNKNOWN[N] = {
   (real)0.43355498476205984, (real)0.2503130871608793, (real)0.19389168358237022, (real)0.43355498476205984,
   (real)0.25031308716087936, (real)0.19389168358237016, (real)0.43355498476205984, (real)0.2503130871608793,
   (real)0.19389168358237022, (real)0.43355498476205984, (real)0.25031308716087936, (real)0.19389168358237016,
