@@ -123,7 +123,7 @@ def nodes_for(modes: int) -> int:
 def nodes_above_modes(scene: scenes.Scene, rod: str, *, touches: bool) -> int:
     """Intervals beyond the modes of a strain on which the error of a rod shows, which touches something or nothing."""
     of_cables = any(actuator.rod == rod and actuator.has_kinks for actuator in scene.actuators)
-    if of_cables or any(isinstance(load, scenes.Flow) for load in scene.loads):
+    if of_cables or any(load.has_kinks_on(rod) for load in scene.loads):
         return NODES_ABOVE_MODES_BESIDE_KINKS
     return NODES_ABOVE_MODES_IN_CONTACT if touches else NODES_ABOVE_MODES
 

@@ -59,6 +59,10 @@ gravity = [0, 0, -9.81]     # the finger floats by the weight of the water that 
     )
     rods: Names | None = Field(None, description="names of the rods in the fluid; all rods when left out")
 
+    def has_kinks_on(self, rod: str) -> bool:
+        """Drag has one where the rod lies along the stream."""
+        return self.acts_on_rod(rod)
+
     def acts_on_rod(self, rod: str) -> bool:
         """Whether the rod of this name is in the fluid."""
         return self.rods is None or rod in self.rods

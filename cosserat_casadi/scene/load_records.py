@@ -24,6 +24,10 @@ class LoadRecord(Entry):
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
+    def has_kinks_on(self, rod: str) -> bool:
+        """Whether the load on the rod of this name may have a kink in its slope anywhere along it."""
+        return False
+
 
 LOADS: Family[LoadRecord] = Family("loads")
 """Kinds of loads."""
