@@ -106,6 +106,24 @@ def test_a_rod_that_slides_on_another_one_is_stopped_by_friction() -> None:
     assert_allclose(motion.events[-1].time, end, rtol=0, atol=1.1e-3)
 
 
+def test_a_driven_rod_takes_another_one_along() -> None:
+    """Friction brings the upper rod to the speed of the lower one; the drive puts in what both get and what is lost."""
+    upper = straight("upper", {"free": True, "position": [0.05, 0, 2 * RADIUS], "tangent": [1, 0, 0]})
+    lower = straight("lower", {"position": [0, 0, 0], "tangent": [1, 0, 0]})
+    weight = {"kind": "gravity", "acceleration": [0, 0, -G], "name": "weight"}
+    speed, duration = 0.1, 0.06
+    values = [[0, 0, 0], [speed * duration, 0, 0]]
+    drive = {"input": "lower.base.position", "times": [0.0, duration], "values": values}
+    motion = moved(with_friction(scene([upper, lower], duration, loads=[weight], motions=[drive])))
+    end = speed / (FRICTION * G)
+    times = motion.times
+    expected = np.where(times < end, FRICTION * G * times**2 / 2, speed * (times - end / 2))
+    assert_allclose(way(motion), expected, rtol=0, atol=1e-6 * expected[-1])
+    gained = DENSITY * AREA * LENGTHS["upper"] * speed**2 / 2
+    assert_allclose(motion.energy.dissipated[-1], gained, rtol=1e-6, atol=0)
+    assert_allclose(motion.energy.work[-1], 2 * gained, rtol=1e-6, atol=0)
+
+
 def answer(name: str, X: float, side: float) -> FloatArray:
     """Velocity, at a point on the surface of a free rigid rod, that a unit impulse there makes, shape (3, 3), 1/kg.
 
