@@ -66,7 +66,12 @@ SOLVER_FILES = (
     *(LEAST_MISFIT, SECOND_VARIATION),
 )
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
-"""Files of the folder ``c`` that sources of a library include, as they are."""
+"""Files of the folder ``c`` that sources of a library include."""
+
+SIMULATED = re.compile(
+    r"#ifdef (?:RODS_FACE_RODS|STRETCHES_ARE_TOLD)\n(?:(?!#).*\n)*(?:#else\n((?:(?!#).*\n)*))?#endif\n"
+)
+"""Lines in C that are compiled in simulated motions alone, and in its group the lines in their place."""
 
 TEMPLATES = ("library.h.in", "library.c.in", "config.h.in", "demo.c.in")
 """Templates of header, source, configuration and demo."""
@@ -246,7 +251,7 @@ def rendered(
 
     Args:
         words: of the templates.
-        verbatim: files of the folder ``c`` that are written as they are.
+        verbatim: files of the folder ``c`` that are written without the lines of simulated motions.
         templates: of the first four.
         beside: names of the other files of the folder, for the README.
     """
@@ -258,7 +263,9 @@ def rendered(
         f"{name}_config.h": config,
         f"{name}_demo.c": demo,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        **{file: resource("c", file, on_device=bool(words.get("on_device"))) for file in verbatim},
+        **{
+            file: SIMULATED.sub(r"\1", resource("c", file, on_device=bool(words.get("on_device")))) for file in verbatim
+        },
     }
     files["README.md"] = render("README.md.in", {**words, "file_rows": _file_rows(name, {*files, *beside})})
     return files
