@@ -59,7 +59,7 @@ enum {
   HALVINGS = 8,     /* of a step of these */
   TURNS = SETS,     /* tries of a stretch after which the end at which something comes to rest is asked for */
   LOOKS_FOR_A_TURN = 6,
-  FAINTER = 8       /* halvings of the restitution of a blow that would give energy */
+  NARROWINGS = 20   /* of the span in which the largest restitution of a blow is that gives no energy */
 };
 
 static real inner_of_two(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1]; }
@@ -670,8 +670,32 @@ static real energy_given(const workspace *work) {
   return ABSOLUTE(sum) > LAW_HOLDS * terms ? sum : 0;
 }
 
-/* A blow with friction: Newton's law of impact along normals, Coulomb's along tangents, of velocities after it. With friction
-   restitution may give energy; it is so many times halved, and then none, as it takes that it does not. */
+/* Impulses of a blow that gives a share of what its restitution asks for. */
+static int give_back(real share, real still, workspace *work) {
+  for (int k = 0; k < work->touch_count; k++) {
+    work->wanted[k] = share * wanted_of(k, still, work) + (1 - share) * work->rates[k];
+  }
+  return settle_blow(work->wanted, still, work);
+}
+
+/* Impulses of a blow with the largest share of its restitution that gives no energy, which friction may make less than all. */
+static int give_most(real still, workspace *work) {
+  real least = 0, most = 1;
+  if (!give_back(most, still, work)) return 0;
+  if (!(energy_given(work) > 0)) return 1;
+  for (int narrowing = 0; narrowing < NARROWINGS; narrowing++) {
+    const real share = (least + most) / 2;
+    if (!give_back(share, still, work)) return 0;
+    if (energy_given(work) > 0) {
+      most = share;
+    } else {
+      least = share;
+    }
+  }
+  return give_back(least, still, work);
+}
+
+/* A blow with friction: Newton's law of impact along normals, Coulomb's along tangents, of velocities after it. */
 static int strike_with_friction(instant *at, real still, const stage_factors *factors, workspace *work) {
   const int count = work->touch_count;
   const int all = ROWS * count;
@@ -689,13 +713,7 @@ static int strike_with_friction(instant *at, real still, const stage_factors *fa
       work->complex_answers[0][j * all + i] = dot(row_of(i / ROWS, i % ROWS, work), response_of(j / ROWS, j % ROWS, work));
     }
   }
-  real share = 1;
-  for (int fainter = 0; fainter <= FAINTER + 1; fainter++) {
-    for (int k = 0; k < count; k++) work->wanted[k] = share * wanted_of(k, still, work) + (1 - share) * work->rates[k];
-    if (!settle_blow(work->wanted, still, work)) return 0;
-    if (!(energy_given(work) > 0) || share == 0) break;
-    share = fainter < FAINTER ? share / 2 : 0;
-  }
+  if (!give_most(still, work)) return 0;
 #ifdef STRETCHES_ARE_TOLD
   tell_blow(-energy_given(work), work);
 #endif
