@@ -44,10 +44,9 @@ class TurnedElements:
     @cached_property
     def unloaded(self) -> FloatArray:
         """Angle through which sections turn along each unloaded element, summed, shape (elements,), rad."""
-        scene = self.richer.coarse.nominal.scene
-        return np.concatenate(
-            [unloaded_turns(rod, self.richer.coarse.rods[rod.name].grid.breaks) for rod in scene.rods]
-        )
+        coarse = self.richer.coarse
+        rods = coarse.nominal.scene.rods
+        return np.concatenate([unloaded_turns(rod, coarse.rods[rod.name].grid.breaks) for rod in rods])
 
     @cached_property
     def of_unknowns(self) -> Indices:

@@ -68,8 +68,8 @@ def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
     same contacts neither solution tells of other contacts that should be there. Nothing is known where the modes of the
     finer one are blind to what loads roll up.
     """
-    richer = Richer(coarse.model.discrete, fine.model.discrete)
-    if TurnedElements(richer).hide_waves(coarse.x, fine.x[~richer.known]):
+    both = Richer(coarse.model.discrete, fine.model.discrete)
+    if TurnedElements(both).hide_waves(coarse.x, fine.x[~both.known]):
         return replace(coarse, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN)
     judged = with_estimate(coarse, fine)
     discrete = coarse.model.discrete
