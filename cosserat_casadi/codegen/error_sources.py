@@ -39,7 +39,7 @@ def error_words(model: Model, names: Names) -> Words:
     if not estimates_errors(names):
         return {"error_reals": 0}
     richer = model.discrete.richer
-    elements = blindness.TurnedElements(model.discrete)
+    elements = blindness.TurnedElements(richer)
     tolerance = model.scene.accuracy.tolerance
     watched_count = len(watched_owners(model.discrete))
     cable_count = len(watched_cables(model.discrete))

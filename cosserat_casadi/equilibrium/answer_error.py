@@ -257,7 +257,7 @@ def believed_correction(solution: Solution) -> tuple[bool, Correction]:
     settles, correction = _settled_correction(solution)
     if not settles:
         return False, correction
-    elements = TurnedElements(solution.model.discrete)
+    elements = TurnedElements(solution.model.discrete.richer)
     return not elements.hide_waves(solution.x, correction.missing), correction
 
 

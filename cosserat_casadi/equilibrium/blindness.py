@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.grid import gauss_legendre
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, Richer
 from cosserat_casadi.model.required_modes import unloaded_turns
 
 WHOLE_TURN = 2 * np.pi
@@ -36,28 +36,29 @@ class TurnedElements:
     """Elements of a scene, numbered rod after rod, with what tells their turns and what the richer model sees of them.
 
     Attributes:
-        discrete: the scene whose answers are judged.
+        richer: the scene with modes added, beside the scene whose answers are judged.
     """
 
-    discrete: DiscreteScene
+    richer: Richer
 
     @cached_property
     def unloaded(self) -> FloatArray:
         """Angle through which sections turn along each unloaded element, summed, shape (elements,), rad."""
-        scene = self.discrete.nominal.scene
-        return np.concatenate([unloaded_turns(rod, self.discrete.rods[rod.name].grid.breaks) for rod in scene.rods])
+        coarse = self.richer.coarse
+        rods = coarse.nominal.scene.rods
+        return np.concatenate([unloaded_turns(rod, coarse.rods[rod.name].grid.breaks) for rod in rods])
 
     @cached_property
     def of_unknowns(self) -> Indices:
         """Element that each unknown turns, shape (n,); −1 of unknowns that turn none."""
-        return np.where(self.turns > 0, _elements(self.discrete), -1)
+        return np.where(self.turns > 0, _elements(self.richer.coarse), -1)
 
     @cached_property
     def turns(self) -> FloatArray:
         """Root mean square of the turn of its element by a unit of each unknown, shape (n,), rad; or 0."""
-        turns = np.zeros(self.discrete.size)
-        for name, rod in self.discrete.nominal.rods.items():
-            first = self.discrete.unknowns.strain(name).start
+        turns = np.zeros(self.richer.coarse.size)
+        for name, rod in self.richer.coarse.nominal.rods.items():
+            first = self.richer.coarse.unknowns.strain(name).start
             points, weights = gauss_legendre(max(rod.discretisation.modes) + 1)
             breaks = np.asarray(rod.discretisation.breaks)
             widths = np.diff(breaks)
@@ -74,19 +75,18 @@ class TurnedElements:
     @cached_property
     def of_missing(self) -> Indices:
         """Element of each missing coordinate, shape (missing,)."""
-        richer = self.discrete.richer
-        return _elements(richer.discrete)[~richer.known]
+        return _elements(self.richer.discrete)[~self.richer.known]
 
     @cached_property
     def modes_of_missing(self) -> Indices:
         """Modes that the richer model has of the strain of each missing coordinate, shape (missing,)."""
-        richer = self.discrete.richer
-        modes = np.zeros(richer.discrete.size, dtype=np.int64)
-        for name, rod in richer.discrete.rods.items():
-            first = richer.discrete.unknowns.strain(name).start
+        discrete = self.richer.discrete
+        modes = np.zeros(discrete.size, dtype=np.int64)
+        for name, rod in discrete.rods.items():
+            first = discrete.unknowns.strain(name).start
             for columns, count in zip(rod.columns.values(), rod.discretisation.modes, strict=True):
                 modes[first + columns.start : first + columns.stop] = count
-        return modes[~richer.known]
+        return modes[~self.richer.known]
 
     def hide_waves(self, x: FloatArray, missing: FloatArray) -> bool:
         """Whether an element turns so far that waves along it do not show in missing modes, which are not empty.
@@ -95,7 +95,7 @@ class TurnedElements:
             x: unknowns of the answer, shape (n,).
             missing: coordinates of the missing modes, shape (missing,).
         """
-        tolerance = self.discrete.scene.accuracy.tolerance
+        tolerance = self.richer.coarse.scene.accuracy.tolerance
         for element, unloaded in enumerate(self.unloaded):
             own = self.of_unknowns == element
             # No turn is more than the unloaded one and the root mean square of what loads add.

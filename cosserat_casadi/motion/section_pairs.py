@@ -21,7 +21,7 @@ its velocity at the end, and is held by
 
     −μ N w / √(w² + a ε²),
 
-so a section that sticks creeps by less than √a ε, over the length, within a stage.
+so a section that is held by the share r of μ N creeps by √a ε r/√(1 − r²), over the length, within a stage.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ SECTIONS = 8
 """Stretches of a rod, at whose ends are the sections that may touch an obstacle."""
 
 STILL = 1e-12
-"""Way within a stage, over the length, beside which a section sticks without smoothing: friction has derivatives."""
+"""Way within a stage, over the length, that is added to √a ε: without smoothing friction has derivatives too."""
 
 
 @dataclass(frozen=True)
@@ -250,7 +250,7 @@ class TouchingPairs:
         """(pose, its rate, radius, m, force, N, creep, m/s) ↦ friction, for a unit of each entry of the pose, 12×1.
 
         A pose is the centre of a section, or of a body, and its rotation, column after column, in the axes of the
-        obstacle. Beside the creep the touching point sticks.
+        obstacle. The friction is μ N against a sliding that is fast beside the creep, and grows with a slower one.
         """
         pose, rate = ca.SX.sym("pose", 12), ca.SX.sym("rate", 12)
         radius, force, creep = ca.SX.sym("radius"), ca.SX.sym("force"), ca.SX.sym("creep")

@@ -16,6 +16,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.facings import facings
+from tests.codegen.libraries import C99, gcc
 from tests.codegen.test_steps_in_contact import BALL, LENGTH, Moving, compare_with_differences, floor, rod, scene
 from tests.reference.falling_rods import FallingRod
 
@@ -59,6 +60,7 @@ def test_a_block_sticks_below_the_angle_of_friction_slides_above_it_and_stops(tm
     made = Moving(block(friction), tmp_path)
     below, above = np.arctan(friction) * np.array([0.999, 1.5])
     dt, memory, start = 1e-3, made.compiled.step_memory(), made.compiled.contact_start()
+    gcc(*C99, "-Werror", "-fsyntax-only", made.folder / "robot" / "robot.c")
     stays = run(made, start, memory, dt, weights(below, 100))
     assert np.abs(way(made, stays)).max() < 1e-13
     contacts = made.compiled.step_contacts(memory)

@@ -240,6 +240,21 @@ def test_modes_that_are_blind_to_what_loads_roll_up_do_not_know_their_error() ->
     assert circle.error_estimate < 1e-10
 
 
+def test_levels_in_contact_are_blind_to_what_loads_roll_up_as_well() -> None:
+    """Of six turns the levels of five and seven modes see a fiftieth of their error; the obstacle is far off."""
+    far = {"name": "far", "kind": "sphere", "centre": [0.0, 0.0, 9.0], "radius": 0.1}
+    bending = {"youngs_modulus": 4e8 / np.pi, "poisson_ratio": 0.4}
+    round_one = {"material": bending, "section": {"shape": "circle", "radius": 1e-2}}
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", **round_one}
+    rolling = push(force=[3.0, 0.0, 0.0], moment=[0.0, 12 * np.pi, 0.0])
+    found, alone = (
+        solve(scene(rolling, rods=[straight], obstacles=obstacles, accuracy={"tolerance": tolerance}))
+        for obstacles, tolerance in (([far], 1e-3), ([], 1e-6))
+    )
+    assert found.error_estimate is not None
+    assert pose_distance(found, alone) < found.error_estimate <= 1e-3
+
+
 @pytest.mark.parametrize(
     ("modes", "nodes", "length", "velocity"),
     [((7, 7, 1), 10, 0.6, [0.285, -0.249, -0.123]), ((5, 5, 1), 12, 0.594, [0.296, -0.161, 0.136])],

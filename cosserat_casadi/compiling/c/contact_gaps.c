@@ -2,8 +2,8 @@
    between nodes are those of the polynomials through the nodes of an element.
 
    Exported steps and simulated motions both include it, and say what a surface is, surface_at and distance_at, where
-   polynomials and gaps are written to, fitted_of and gaps_of, and how many numbers move a section, MOVED. Gaps are counted in the length of the rod, or of the longest
-   rod that holds the body. */
+   polynomials and gaps are written to, fitted_of and gaps_of, and how many numbers of a section a change moves, MOVED. Gaps
+   are counted in the length of the rod, or of the longest rod that holds the body. */
 
 /* Gap up to which a section touches. */
 static const real TOUCHING = (real)1e-7;

@@ -13,11 +13,11 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
 static void move_by_inputs(const touch *own, const section_gap *gap, real *moved, workspace *work) {
   const facing *faces = FACING + own->facing;
   real *one = work->moved_row;
-  for (int row = 0; row < 4; row++) {
+  for (int row = 0; row < MOVED; row++) {
     memset(work->weights, 0, (size_t)(3 * point_count(faces)) * sizeof *work->weights);
     row_weights(faces, gap, row, work->weights);
     by_inputs_of(faces)(work->at.state, work->at.inputs, work->weights, one, work->mixed, work);
-    for (int j = 0; j < INPUTS; j++) moved[4 * j + row] = one[j];
+    for (int j = 0; j < INPUTS; j++) moved[MOVED * j + row] = one[j];
   }
   turn_slopes(faces, gap, INPUTS, moved);
 }
@@ -44,7 +44,7 @@ static void curve_stage(int stage, int by_inputs, workspace *work) {
                         work);
     for (int j = 0; j < INPUTS; j++) {
       for (int i = 0; i < N; i++) {
-        const real turned = turning(faces, &gap, own->slides, work->moved + 4 * i, work->moved_by_inputs + 4 * j);
+        const real turned = turning(faces, &gap, own->slides, work->moved + MOVED * i, work->moved_by_inputs + MOVED * j);
         work->input_matrices[stage][j * N + i] -= force * share_of(faces, i) * (work->mixed[j * N + i] + turned);
       }
     }

@@ -36,7 +36,7 @@ static void take_friction(int stage, int m, const real *derivatives, const real 
 static void shifts_of(const touch *own, const section_gap *gap, const real *moved, int columns, real *shift) {
   const int slides = own->slides && gap->place > 0 && gap->place < 1;
   for (int j = 0; j < columns; j++) {
-    shift[j] = slides ? -moved[4 * j + 3] / (gap->bend * FACING[own->facing].length) : 0;
+    shift[j] = slides ? -moved[MOVED * j + 3] / (gap->bend * FACING[own->facing].length) : 0;
   }
 }
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi.equilibrium.answer_error import UNKNOWN, with_notes
+from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
@@ -14,6 +15,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import given_inputs, with
 from cosserat_casadi.equilibrium.metrics import SAFETY, with_estimate
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discrete_scene import Richer
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings
 
@@ -63,8 +65,12 @@ def with_contact_error(coarse: Solution, fine: Solution) -> Solution:
 
     Forces count over EI/ℓ² or over the largest force, whichever is more. Of contacts that are not alike the whole
     force is compared, and where they begin and end. Depth of the finer one in obstacles, and pull, count too: in the
-    same contacts neither solution tells of other contacts that should be there.
+    same contacts neither solution tells of other contacts that should be there. Nothing is known where the modes of the
+    finer one are blind to what loads roll up.
     """
+    both = Richer(coarse.model.discrete, fine.model.discrete)
+    if TurnedElements(both).hide_waves(coarse.x, fine.x[~both.known]):
+        return replace(coarse, error_estimate=UNKNOWN, shape_error_estimate=UNKNOWN)
     judged = with_estimate(coarse, fine)
     discrete = coarse.model.discrete
     units = [discrete.contact_unit(contact.owner, of_body=contact.of_body) for contact in coarse.contacts]
