@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError, refuse
+from cosserat_casadi.errors import Problem, SceneError, collect_problems, refuse
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -92,17 +92,18 @@ class StackedLayout(Generic[EntryType]):
             shape (size,), SI units.
 
         Raises:
-            SceneError: a name is unknown, or a value has another shape or is not finite.
+            SceneError: a name is unknown, or a value has another shape, or is no finite number.
         """
         given = dict(values or {})
         problems = list(self._unknown_names(given))
         # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
         parts = [np.zeros(0)]
         for entry in self.entries:
-            value = np.asarray(given.get(entry.name, entry.default), dtype=float)
-            problems.extend(self._faults(entry, value))
-            # Legendre coefficients are stacked degree after degree: column-major order.
-            parts.append(value.ravel(order="F"))
+            with collect_problems(problems):
+                value = _as_numbers(entry.name, given.get(entry.name, entry.default))
+                problems.extend(self._faults(entry, value))
+                # Legendre coefficients are stacked degree after degree: column-major order.
+                parts.append(value.ravel(order="F"))
         refuse(problems)
         return np.concatenate(parts)
 
@@ -118,15 +119,15 @@ class StackedLayout(Generic[EntryType]):
         known = ", ".join(self.names) or "none"
         for name in given:
             if name not in self.names:
-                yield Problem(name, f"is not {self.what} of this model", f"its {self.several} are {known}")
+                yield Problem(str(name), f"is not {self.what} of this model", f"its {self.several} are {known}")
 
     def split(self, stacked: npt.ArrayLike) -> dict[str, FloatArray]:
         """Values by name from the stacked values, shape (size,).
 
         Raises:
-            SceneError: there are more or fewer.
+            SceneError: there are more or fewer, or they are no numbers.
         """
-        vector = np.asarray(stacked, dtype=float).ravel()
+        vector = _as_numbers(self.several, stacked).ravel()
         if vector.size != self.size:
             names = ", ".join(self.names) or "none"
             problem = f"must be {self.size} numbers, got {vector.size}"
@@ -154,3 +155,15 @@ class StackedLayout(Generic[EntryType]):
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
         """Values by name from the stacked vector, each shaped as its default."""
         return {entry.name: stacked[span].reshape(entry.default.shape, order="F") for entry, span in self}
+
+
+def _as_numbers(where: str, given: npt.ArrayLike) -> FloatArray:
+    """A value as an array of numbers.
+
+    Raises:
+        SceneError: it is no array of numbers.
+    """
+    try:
+        return np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise SceneError(Problem(where, f"must be numbers, got {given!r}")) from None
