@@ -106,7 +106,7 @@ def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discr
 
 def _is_count(number: object) -> bool:
     """Whether a number is whole, and at least one."""
-    return isinstance(number, (int, np.integer)) and number >= 1
+    return isinstance(number, int | np.integer) and bool(number >= 1)
 
 
 def moved_ends(
