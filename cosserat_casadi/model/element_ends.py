@@ -90,10 +90,11 @@ def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discr
             problems.append(Problem(where, "missing", remedy))
             continue
         own = discretisation[name]
-        if len(own.modes) != len(rod.admitted) or not all(map(_is_count, own.modes)):
+        *whole, whole_nodes = (isinstance(count, int | np.integer) and count >= 1 for count in (*own.modes, own.nodes))
+        if len(own.modes) != len(rod.admitted) or not all(whole):
             wanted = f"must be {len(rod.admitted)} numbers >= 1, whole ones, one for each strain, got {own.modes}"
             problems.append(Problem(f"{where}.modes", wanted, remedy))
-        if not _is_count(own.nodes):
+        if not whole_nodes:
             problems.append(Problem(f"{where}.nodes", f"must be >= 1 and whole, got {own.nodes}", remedy))
         ends = {0.0, 1.0, *map(float, places_on(scene, name))}
         ascend = all(before < after for before, after in pairwise(own.breaks))
@@ -102,11 +103,6 @@ def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discr
             problem = f"must ascend from 0 to 1, with element ends at {asked_for}, got {own.breaks}"
             problems.append(Problem(f"{where}.breaks", problem, remedy))
     refuse(problems)
-
-
-def _is_count(number: object) -> bool:
-    """Whether a number is whole, and at least one."""
-    return isinstance(number, int | np.integer) and bool(number >= 1)
 
 
 def moved_ends(

@@ -130,8 +130,9 @@ class StackedLayout(Generic[EntryType]):
         vector = _as_numbers(self.several, stacked).ravel()
         if vector.size != self.size:
             names = ", ".join(self.names) or "none"
-            problem = f"must be {self.size} numbers, got {vector.size}"
-            raise SceneError(Problem(self.several, problem, f"they are {names}"))
+            raise SceneError(
+                Problem(self.several, f"must be {self.size} numbers, got {vector.size}", f"they are {names}")
+            )
         return self.unpack(vector)
 
     @property
@@ -158,11 +159,7 @@ class StackedLayout(Generic[EntryType]):
 
 
 def _as_numbers(where: str, given: npt.ArrayLike) -> FloatArray:
-    """A value as an array of numbers.
-
-    Raises:
-        SceneError: it is no array of numbers.
-    """
+    """A value as an array of numbers; text and the like is refused."""
     try:
         return np.asarray(given, dtype=float)
     except (TypeError, ValueError):

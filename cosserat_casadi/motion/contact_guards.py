@@ -82,7 +82,7 @@ class ContactPhase:
 
 
 def start_inside(facings: Iterable[Facing], depth: float) -> Problem:
-    """The problem of a start at which rods or bodies are inside what they may touch, by a depth over the length."""
+    """The problem of a start with rods or bodies inside obstacles or other rods, by a depth over the length."""
     pairs = ", ".join(dict.fromkeys(f"{facing.owner!r} in {facing.touched!r}" for facing in facings))
     what = f"a rod is inside an obstacle by {depth:.2g} (over the length) where the motion starts: {pairs}"
     return Problem("simulation.start", what, "start from another shape, or move the obstacle")
