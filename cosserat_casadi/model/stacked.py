@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import Problem, SceneError, collect_problems, refuse
+from cosserat_casadi.errors import Problem, SceneError, refuse
 from cosserat_casadi.maths.typing import FloatArray
 
 
@@ -99,11 +99,14 @@ class StackedLayout(Generic[EntryType]):
         # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
         parts = [np.zeros(0)]
         for entry in self.entries:
-            with collect_problems(problems):
-                value = _as_numbers(entry.name, given.get(entry.name, entry.default))
-                problems.extend(self._faults(entry, value))
-                # Legendre coefficients are stacked degree after degree: column-major order.
-                parts.append(value.ravel(order="F"))
+            try:
+                value = np.asarray(given.get(entry.name, entry.default), dtype=float)
+            except (TypeError, ValueError):
+                problems.append(Problem(entry.name, f"must be numbers, got {given[entry.name]!r}"))
+                continue
+            problems.extend(self._faults(entry, value))
+            # Legendre coefficients are stacked degree after degree: column-major order.
+            parts.append(value.ravel(order="F"))
         refuse(problems)
         return np.concatenate(parts)
 
@@ -125,9 +128,9 @@ class StackedLayout(Generic[EntryType]):
         """Values by name from the stacked values, shape (size,).
 
         Raises:
-            SceneError: there are more or fewer, or they are no numbers.
+            SceneError: there are more or fewer.
         """
-        vector = _as_numbers(self.several, stacked).ravel()
+        vector = np.asarray(stacked, dtype=float).ravel()
         if vector.size != self.size:
             names = ", ".join(self.names) or "none"
             raise SceneError(
@@ -156,11 +159,3 @@ class StackedLayout(Generic[EntryType]):
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
         """Values by name from the stacked vector, each shaped as its default."""
         return {entry.name: stacked[span].reshape(entry.default.shape, order="F") for entry, span in self}
-
-
-def _as_numbers(where: str, given: npt.ArrayLike) -> FloatArray:
-    """A value as an array of numbers; text and the like is refused."""
-    try:
-        return np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
-        raise SceneError(Problem(where, f"must be numbers, got {given!r}")) from None
