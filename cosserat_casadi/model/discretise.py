@@ -68,9 +68,9 @@ def discretise(
     chosen = {}
     for rod in scene.rods:
         fixed = scene.accuracy.of_rod(rod.name)
-        wanted_modes = modes or fixed.modes or DEFAULT_MODES
+        wanted_modes = modes if modes is not None else fixed.modes or DEFAULT_MODES
         modes_of_rod = (wanted_modes,) * len(rod.admitted) if isinstance(wanted_modes, int) else tuple(wanted_modes)
-        intervals = nodes or fixed.nodes or nodes_for(max(modes_of_rod))
+        intervals = nodes if nodes is not None else fixed.nodes or nodes_for(max(modes_of_rod))
         breaks = element_ends(scene, rod.name)
         check_places(rod.name, breaks)
         integrator = transport or fixed.rotation or DEFAULT_TRANSPORT

@@ -90,11 +90,12 @@ def check_discretisation(scene: scenes.Scene, discretisation: Mapping[str, Discr
             problems.append(Problem(where, "missing", remedy))
             continue
         own = discretisation[name]
-        if len(own.modes) != len(rod.admitted) or min(own.modes) < 1:
-            wanted = f"must be {len(rod.admitted)} numbers >= 1, one for each strain, got {own.modes}"
+        *whole, whole_nodes = (isinstance(count, int | np.integer) and count >= 1 for count in (*own.modes, own.nodes))
+        if len(own.modes) != len(rod.admitted) or not all(whole):
+            wanted = f"must be {len(rod.admitted)} numbers >= 1, whole ones, one for each strain, got {own.modes}"
             problems.append(Problem(f"{where}.modes", wanted, remedy))
-        if own.nodes < 1:
-            problems.append(Problem(f"{where}.nodes", f"must be >= 1, got {own.nodes}", remedy))
+        if not whole_nodes:
+            problems.append(Problem(f"{where}.nodes", f"must be >= 1 and whole, got {own.nodes}", remedy))
         ends = {0.0, 1.0, *map(float, places_on(scene, name))}
         ascend = all(before < after for before, after in pairwise(own.breaks))
         if not ascend or not ends <= set(own.breaks) or (min(own.breaks), max(own.breaks)) != (0.0, 1.0):

@@ -92,14 +92,18 @@ class StackedLayout(Generic[EntryType]):
             shape (size,), SI units.
 
         Raises:
-            SceneError: a name is unknown, or a value has another shape or is not finite.
+            SceneError: a name is unknown, or a value has another shape, or is no finite number.
         """
         given = dict(values or {})
         problems = list(self._unknown_names(given))
         # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
         parts = [np.zeros(0)]
         for entry in self.entries:
-            value = np.asarray(given.get(entry.name, entry.default), dtype=float)
+            try:
+                value = np.asarray(given.get(entry.name, entry.default), dtype=float)
+            except (TypeError, ValueError):
+                problems.append(Problem(entry.name, f"must be numbers, got {given[entry.name]!r}"))
+                continue
             problems.extend(self._faults(entry, value))
             # Legendre coefficients are stacked degree after degree: column-major order.
             parts.append(value.ravel(order="F"))
@@ -118,7 +122,7 @@ class StackedLayout(Generic[EntryType]):
         known = ", ".join(self.names) or "none"
         for name in given:
             if name not in self.names:
-                yield Problem(name, f"is not {self.what} of this model", f"its {self.several} are {known}")
+                yield Problem(str(name), f"is not {self.what} of this model", f"its {self.several} are {known}")
 
     def split(self, stacked: npt.ArrayLike) -> dict[str, FloatArray]:
         """Values by name from the stacked values, shape (size,).
@@ -129,8 +133,9 @@ class StackedLayout(Generic[EntryType]):
         vector = np.asarray(stacked, dtype=float).ravel()
         if vector.size != self.size:
             names = ", ".join(self.names) or "none"
-            problem = f"must be {self.size} numbers, got {vector.size}"
-            raise SceneError(Problem(self.several, problem, f"they are {names}"))
+            raise SceneError(
+                Problem(self.several, f"must be {self.size} numbers, got {vector.size}", f"they are {names}")
+            )
         return self.unpack(vector)
 
     @property

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
 
+from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.coincident_ends import MeetingEnds
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
@@ -78,6 +79,13 @@ class ContactPhase:
     changes: int = 0
     closed: tuple[bool, ...] = ()
     slopes: tuple[float, ...] = ()
+
+
+def start_inside(facings: Iterable[Facing], depth: float) -> Problem:
+    """The problem of a start with rods or bodies inside obstacles or other rods, by a depth over the length."""
+    pairs = ", ".join(dict.fromkeys(f"{facing.owner!r} in {facing.touched!r}" for facing in facings))
+    what = f"a rod is inside an obstacle by {depth:.2g} (over the length) where the motion starts: {pairs}"
+    return Problem("simulation.start", what, "start from another shape, or move the obstacle")
 
 
 @dataclass(frozen=True)

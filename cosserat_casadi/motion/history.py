@@ -21,7 +21,7 @@ from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_b
 from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume
 from cosserat_casadi.motion.constraint_projection import Closing
 from cosserat_casadi.motion.contact_forces import Follower
-from cosserat_casadi.motion.contact_guards import ContactPhase
+from cosserat_casadi.motion.contact_guards import ContactPhase, start_inside
 from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
 from cosserat_casadi.motion.event_restart import ContactEvent, Phases, Restart, Settling, Switching
 from cosserat_casadi.motion.kernel_residual import KernelJacobians, KernelResidual
@@ -677,14 +677,12 @@ def check_start(
         SceneError: supports or joints are not closed, or would be torn open at once.
     """
     start = restart.start
-    touches = isinstance(restart.phases, ContactPhase) and len(restart.phases.touches) > 0
     moving = _inputs_that_move(model, piece, start.instant.time)
     grow = [name for name in _lengths_of_free_rods(model) if name in moving]
     problems = []
     short = {name: sag for name, sag in sags.items() if sag < -CONSISTENT}
-    if start.position_error > CONSISTENT and touches:
-        what = f"a rod is inside an obstacle by {start.position_error:.2g} (over the length) where the motion starts"
-        problems.append(Problem("simulation.start", what, "start from another shape, or move the obstacle"))
+    if isinstance(restart.phases, ContactPhase) and restart.phases.touches and start.position_error > CONSISTENT:
+        problems.append(start_inside(restart.phases.follower.facings, start.position_error))
     elif short:
         which = ", ".join(f"{name!r} by {-sag:.2g}" for name, sag in short.items())
         what = f"cables are too short where the motion starts: {which} (of the rod's length)"

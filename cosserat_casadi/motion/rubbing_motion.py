@@ -13,12 +13,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from cosserat_casadi.errors import Problem, refuse
+from cosserat_casadi.errors import refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.checkpoint import CarriedContacts, Resume, of_another_scene
 from cosserat_casadi.motion.contact_forces import Follower, MovingContact, Touches
-from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase
+from cosserat_casadi.motion.contact_guards import SAME_PLACE, ContactPhase, start_inside
 from cosserat_casadi.motion.event_restart import ContactEvent, Restart
 from cosserat_casadi.motion.history import (
     DIFFERENTIATED,
@@ -333,9 +333,9 @@ def _begin(
     inputs = piece.at(piece.start).value
     obstacles = [facing for facing in steps.facings if not isinstance(facing, PairFacing)]
     depths = [-facing.deepest(facing.nodes(x, inputs)).gap for facing in obstacles]
-    if max(depths) > model.scene.accuracy.tolerance:
-        what = f"a rod is inside an obstacle by {max(depths):.2g} (over the length) where the motion starts"
-        refuse([Problem("simulation.start", what, "start from another shape, or move the obstacle")])
+    inside = [facing for facing, depth in zip(obstacles, depths, strict=True) if depth > model.scene.accuracy.tolerance]
+    if inside:
+        refuse([start_inside(inside, max(depths))])
     found = consistent_start(plain, piece.start, x, v, DIFFERENTIATED * piece.smooth)
     check_start(model, piece, Restart(found, ContactPhase()), sags_by_cable(model, x, inputs), pieces[-1].end)
     return found

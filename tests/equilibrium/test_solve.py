@@ -69,6 +69,7 @@ def test_unknown_method_is_refused() -> None:
         ({"push.force": [0, 1]}, "must have 3 numbers"),
         ({"push.force": 1.0}, "must have 3 numbers"),
         ({"push.force": [0, np.nan, 1]}, "must be finite"),
+        ({"push.force": "a", 1: 2.0}, r"(?s)1: is not an input.*push.force: must be numbers, got 'a'"),
     ],
 )
 def test_bad_values_are_refused(values: dict[str, object], words: str) -> None:

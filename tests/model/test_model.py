@@ -354,7 +354,8 @@ def test_base_given_by_tangent_vs_by_quaternion() -> None:
             r"discretisation.rod.breaks: must ascend from 0 to 1, with element ends at 0, 0.5",
         ),
         ({"breaks": (0.0, 0.5, 0.2, 1.0)}, "must ascend from 0 to 1"),
-        ({"modes": (3,), "nodes": 0}, r"(?s)rod.modes: must be 3 numbers >= 1.*rod.nodes: must be >= 1, got 0"),
+        ({"modes": (3,), "nodes": 0}, r"(?s)modes: must be 3 numbers >= 1.*nodes: must be >= 1 and whole, got 0"),
+        ({"modes": (3, 2.5, 3), "nodes": 8.5}, r"(?s)3 numbers >= 1, whole.*nodes: must be >= 1 and whole, got 8.5"),
     ],
 )
 def test_a_discretisation_of_another_rod_is_refused(changes: dict[str, Any], words: str) -> None:

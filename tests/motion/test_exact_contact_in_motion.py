@@ -241,7 +241,7 @@ def test_what_exact_contact_in_motion_does_not_go_with_is_refused() -> None:
 
 def test_starts_inside_and_bars_too_thin_are_refused_by_what_they_are() -> None:
     inside = 'kind = "sphere", centre = [0.25, 0, -0.02], radius = 0.03'
-    with pytest.raises(SceneError, match=r"a rod is inside an obstacle by 0\.025"):
+    with pytest.raises(SceneError, match=r"a rod is inside an obstacle by 0\.025.*: 'rod' in 'bar'"):
         simulate(moving(rod(inside)))
     thin = 'kind = "capsule", from = [0.2, -0.1, -0.03], to = [0.2, 0.1, -0.03], radius = 1e-4'
     with pytest.raises(SceneError, match=r"obstacles\.bar: its radius.*below 0\.0004 m"):
