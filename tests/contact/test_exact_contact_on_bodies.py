@@ -17,10 +17,9 @@ from cosserat_casadi.equilibrium.contact.contact_judgement import _gap_curvature
 from cosserat_casadi.equilibrium.contact.contact_search import contact_equilibrium
 from cosserat_casadi.equilibrium.contact.contact_state import state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
-from cosserat_casadi.errors import ExportError, SceneError
+from cosserat_casadi.errors import ExportError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.figure import figure_class
@@ -412,8 +411,5 @@ def test_an_obstacle_is_drawn_where_its_body_is(touching: Solution) -> None:
 
 
 def test_what_is_refused(tmp_path: Path) -> None:
-    moving = parse_scene(FINGERS + "[simulation]\nduration = 0.1\n")
-    with pytest.raises(SceneError, match="not with those on bodies: disk"):
-        simulate(build(moving.with_motion_inputs(), moving=True))
     with pytest.raises(ExportError, match="exact contact with an obstacle on a body, or of a disk, is not found in C"):
         export(build(parse_scene(FINGERS)), tmp_path / "fingers", "fingers")

@@ -13,7 +13,9 @@ from cosserat_casadi import Model, build, scene_from_dict, simulate
 from cosserat_casadi.control import MotionStage, motion_stage
 from cosserat_casadi.equilibrium.contact.obstacle_surfaces import surface
 from cosserat_casadi.loads.disk_reach import disk_reach
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.pose_series import section_poses
 from cosserat_casadi.motion.section_pairs import TouchingSections
 from tests.control.test_motion_stage_in_contact import LENGTH, falling, pairs_of, rod
 
@@ -22,7 +24,7 @@ SMOOTHINGS = np.geomspace(1e-2, 1e-6, 9)
 
 COEFFICIENTS = {"along": 0.2, "back": 0.7, "across": 0.4}
 GRAVITY = 9.81
-TIP_RADIUS = 4e-3
+BASE_RADIUS, TIP_RADIUS = 5e-3, 4e-3
 
 
 def carried(friction: Any) -> Model:
@@ -67,11 +69,15 @@ def carried(friction: Any) -> Model:
     return build(scene_from_dict(tables), moving=True)
 
 
-def seen_pose(model: Model, touching: TouchingSections, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Centre and axes of the tip of a rod, or of a body, in the axes of the obstacle."""
+def seen_pose(model: Model, touching: TouchingSections, X: float, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Centre and axes of a section of a rod, or of a body, in the axes of the obstacle."""
     inputs = model.pack()
-    poses = model.body if touching.of_body else model.tip
-    centre, _, axes = (part.full() for part in poses[touching.owner](x, inputs))
+    if touching.of_body:
+        centre, _, axes = (part.full() for part in model.body[touching.owner](x, inputs))
+    else:
+        poses = section_poses(model, touching.owner, X, x[None], inputs[None])
+        centre = poses.position.T
+        axes = quaternion_to_matrix(ca.DM(poses.quaternion[0])).full()
     carrier = touching.obstacle.body
     if carrier is None:
         return centre[:, 0], axes
@@ -79,10 +85,10 @@ def seen_pose(model: Model, touching: TouchingSections, x: FloatArray) -> tuple[
     return turned.T @ (centre - origin)[:, 0], turned.T @ axes
 
 
-def arm_of(model: Model, touching: TouchingSections, normal: FloatArray, axes: FloatArray) -> FloatArray:
+def arm_of(model: Model, touching: TouchingSections, X: float, normal: FloatArray, axes: FloatArray) -> FloatArray:
     """Vector from the centre to the touching point, m."""
     if not touching.of_body:
-        return -TIP_RADIUS * normal
+        return -(BASE_RADIUS + X * (TIP_RADIUS - BASE_RADIUS)) * normal
     (body,) = [body for body in model.scene.bodies if body.name == touching.owner]
     if body.thickness is None:
         return -body.radius * normal
@@ -107,18 +113,21 @@ def test_virtual_work_of_friction_vs_differences(friction: Any) -> None:
     assert_allclose(residual[model.size :], 0.0, rtol=0, atol=1e-15)
     work = -(residual[: model.size] * model.discrete.unknowns.units) @ change
 
-    def slope(touching: TouchingSections, offset: FloatArray, along: FloatArray) -> FloatArray:
-        ends = [seen_pose(model, touching, x + sign * 1e-6 * along) for sign in (1, -1)]
+    def slope(touching: TouchingSections, X: float, offset: FloatArray, along: FloatArray) -> FloatArray:
+        ends = [seen_pose(model, touching, X, x + sign * 1e-6 * along) for sign in (1, -1)]
         points = [centre + axes @ offset for centre, axes in ends]
         return (points[0] - points[1]) / 2e-6
 
     expected = 0.0
-    assert [touching.owner for touching in pairs.touching] == ["c", "c", "head", "wheel"]
-    for touching, newtons in zip(pairs.touching, forces * pairs.force_units, strict=True):
-        centre, axes = seen_pose(model, touching, x)
+    touched = [(touching, X) for touching in pairs.touching for X in touching.places]
+    # The base that is held may be struck by the ball, which moves.
+    assert [(touching.owner, X) for touching, X in touched[:3]] == [("c", 0.0), ("c", 1.0), ("c", 1.0)]
+    assert [touching.owner for touching, _ in touched[3:]] == ["head", "wheel"]
+    for (touching, X), newtons in zip(touched, forces * pairs.force_units, strict=True):
+        centre, axes = seen_pose(model, touching, X, x)
         normal = surface(touching.obstacle)(centre)[1].full()[:, 0]
-        offset = axes.T @ arm_of(model, touching, normal, axes)
-        velocity = slope(touching, offset, v)
+        offset = axes.T @ arm_of(model, touching, X, normal, axes)
+        velocity = slope(touching, X, offset, v)
         sliding = velocity - (normal @ velocity) * normal
         weighted = 0.4 * sliding
         if friction != 0.4:
@@ -128,7 +137,7 @@ def test_virtual_work_of_friction_vs_differences(friction: Any) -> None:
             coefficient = COEFFICIENTS["along" if forward > 0 else "back"]
             weighted += (coefficient - 0.4) * forward * tangent
         held = -newtons * weighted / np.linalg.norm(sliding)
-        expected += held @ slope(touching, offset, change)
+        expected += held @ slope(touching, X, offset, change)
     assert_allclose(work, expected, rtol=1e-6, atol=0)
 
 
