@@ -27,7 +27,7 @@ LINES = {
     "loads": 2_275,
     "maths": 2_610,
     "mjcf": 1_055,
-    "model": 11_735,
+    "model": 11_740,
     "motion": 15_135,
     "numerics": 5_385,
     "obstacles": 415,

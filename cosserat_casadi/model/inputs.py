@@ -33,6 +33,9 @@ HISTORY = "history"
 SHORTEST = 1e-3
 """Least value of a length as an input, relative to the scene's."""
 
+PASSED = 1e-7
+"""Units by which a value may pass a bound of its physics: ipopt relaxes bounds by 1e-8."""
+
 
 @dataclass(frozen=True)
 class Input:
@@ -107,9 +110,9 @@ class InputLayout(StackedLayout[Input]):
             yield Problem(entry.name, f"must be > 0, got {value.item()}")
         elif declared.nonzero and not np.any(value):
             yield Problem(entry.name, "must not be zero", "w, x, y, z; its norm does not matter")
-        elif declared.lower is not None and np.any(value < declared.lower):
+        elif declared.lower is not None and np.any(value < declared.lower - PASSED):
             yield Problem(entry.name, f"must be >= {declared.lower:g}, got {value.min():g}")
-        elif np.any(value > entry.upper):
+        elif np.any(value > entry.upper + PASSED):
             yield Problem(entry.name, f"must be <= {entry.upper:g}, got {value.max():g}")
 
     def of_load(self, name: str, field: str) -> slice | None:
