@@ -121,7 +121,7 @@ def told_passage(history: History, duration: float, model: Model | None = None) 
     barriers = SmoothBarriers(model or history.model)
     if not barriers.any:
         return ""
-    ends = [time for rows in history.rows for time in rows.facts[:, 1].tolist()]
+    ends = history.end_times
     times = np.union1d(watched_states(history, duration).times, ends[:: 1 + len(ends) // MOST_ENDS])
     for row in barriers.passages(*history.rough_positions(times)):
         closer = np.linspace(times[row], times[row + 1], CLOSER)

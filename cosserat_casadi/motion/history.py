@@ -277,7 +277,7 @@ class History:
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
-        if not self._ends:
+        if not self.end_times:
             leg = self.legs[0]
             return leg, self.of_model(leg.start.instant)
         leg, step = self.steps[self.number_at(time)]
@@ -285,7 +285,7 @@ class History:
 
     def touching(self, time: float) -> tuple[MotionContact, ...]:
         """The contacts at a time that was reached; none in a scene without exact contact."""
-        if self.contacts is None or not self._ends:
+        if self.contacts is None or not self.end_times:
             return ()
         number = self.number_at(time)
         _, step = self.steps[number]
@@ -313,7 +313,7 @@ class History:
 
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
-        return min(bisect_left(self._ends, time), len(self._ends) - 1)
+        return min(bisect_left(self.end_times, time), len(self.end_times) - 1)
 
     def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Unknowns and inputs at T times as the steps have them, shapes (T, size) and (T, inputs).
@@ -334,10 +334,10 @@ class History:
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
         """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
-        if not self._ends:
+        if not self.end_times:
             yield self.legs[0], np.ones(len(times), dtype=bool), None
             return
-        numbers = np.minimum(np.searchsorted(self._ends, times), len(self._ends) - 1)
+        numbers = np.minimum(np.searchsorted(self.end_times, times), len(self.end_times) - 1)
         first = 0
         for leg in self.legs:
             steps = leg.integration.steps
@@ -377,8 +377,9 @@ class History:
         return Closing(self.model, library)
 
     @cached_property
-    def _ends(self) -> list[float]:
-        return [time for rows in self.rows for time in rows.facts[:, 1].tolist()]
+    def end_times(self) -> list[float]:
+        """Times at the ends of all steps, s."""
+        return [time for rows in self.rows for time in rows.end_times.tolist()]
 
 
 @dataclass(frozen=True)

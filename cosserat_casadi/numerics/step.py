@@ -8,6 +8,7 @@ Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.7.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -165,11 +166,16 @@ class StepRows(Sequence[TimeStep]):
         parts = zip(*((block.begins, block.ends, block.unknowns, block.facts) for block in blocks), strict=True)
         return cls(blocks[0].method, blocks[0].differential, *map(np.concatenate, parts))
 
+    @property
+    def end_times(self) -> FloatArray:
+        """Times at the end of each step, shape (k,), s."""
+        return self.facts[:, 1]
+
     def __len__(self) -> int:
         return len(self.facts)
 
     def __getitem__(self, number: Any) -> Any:
-        begun, ended, size, error, iterations, *last = self.facts[number].tolist()
+        begun, ended, size, error, iterations, *last = self.facts[operator.index(number)].tolist()
         start, end = Instant(begun, *self.begins[number]), Instant(ended, *self.ends[number])
         unknowns = self.unknowns[number]
         return TimeStep(self.method, self.differential, start, size, unknowns, end, error, int(iterations), *last)
