@@ -33,7 +33,7 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class TurnedElements:
-    """Elements of a scene, numbered rod after rod, with what tells their turns and what the richer model sees of them.
+    """Elements of a scene, rod after rod: how far unknowns turn each, and how many modes the richer model has there.
 
     Attributes:
         richer: the scene with modes added, beside the scene whose answers are judged.
@@ -98,7 +98,7 @@ class TurnedElements:
         tolerance = self.richer.coarse.scene.accuracy.tolerance
         for element, unloaded in enumerate(self.unloaded):
             own = self.of_unknowns == element
-            # No turn is more than the unloaded one and the root mean square of what loads add.
+            # No turn is more than the unloaded turn and the root mean square of the turn that loads add.
             turn = unloaded + float(np.linalg.norm(self.turns[own] * x[own]))
             blind = (self.of_missing == element) & (self.modes_of_missing < turn / 2 + BEYOND)
             if turn > WHOLE_TURN and np.linalg.norm(missing[blind]) > UNSEEN * tolerance:

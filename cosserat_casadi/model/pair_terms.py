@@ -127,11 +127,8 @@ class ContactSide:
     @property
     def poses(self) -> Matrix:
         """Positions and rotation matrices of the nodes, world axes, POSE×M."""
-        shape = self.system.shapes[self.rod]
-        origin = ca.repmat(ca.MX(self.system.base(self.rod).position), 1, self.discrete.grid.size)
-        return ca.vertcat(
-            origin + self._rotation @ shape.position, *[self._rotation @ director for director in shape.directors]
-        )
+        directors = [self._rotation @ director for director in self.system.shapes[self.rod].directors]
+        return ca.vertcat(self.system.nodes(self.rod), *directors)
 
     def wrench(self, force: Matrix, moment: Matrix | None = None) -> LineWrench:
         """Load on the nodes that does the work of forces and moments on the sections, per length, base axes.

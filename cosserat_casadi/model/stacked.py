@@ -133,9 +133,8 @@ class StackedLayout(Generic[EntryType]):
         vector = np.asarray(stacked, dtype=float).ravel()
         if vector.size != self.size:
             names = ", ".join(self.names) or "none"
-            raise SceneError(
-                Problem(self.several, f"must be {self.size} numbers, got {vector.size}", f"they are {names}")
-            )
+            problem = f"must be {self.size} numbers, got {vector.size}"
+            raise SceneError(Problem(self.several, problem, f"they are {names}"))
         return self.unpack(vector)
 
     @property

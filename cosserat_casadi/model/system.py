@@ -299,6 +299,13 @@ class System:
         base, shape = self.base(rod), self.shapes[rod]
         return ca.repmat(base.position, 1, shape.rod.grid.size) + base.rotation @ shape.position
 
+    def sections(self, rod: str, weights: Matrix) -> list[Matrix]:
+        """World positions, 3×k, m, and three directors, 3×k each, of sections that weights of nodes make, M×k."""
+        base, shape = self.base(rod), self.shapes[rod]
+        start = ca.repmat(ca.MX(base.position), 1, weights.shape[1])
+        directors = [base.rotation @ (director @ weights) for director in shape.directors]
+        return [start + base.rotation @ (shape.position @ weights), *directors]
+
     def nodal_quaternions(self, rod: str) -> Matrix:
         """World quaternions of the nodes of a rod, 4×M."""
         shape = self.shapes[rod]

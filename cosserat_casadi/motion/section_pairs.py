@@ -270,14 +270,9 @@ class TouchingPairs:
     def _poses(self, system: System, touching: TouchingSections) -> Matrix:
         """Positions of sections, or of a body, and their rotations, in the axes of the obstacle, 12×k."""
         carrier = touching.obstacle.body
-        positions = system.seen_from(carrier, self._positions(system, touching))
-        if touching.of_body:
-            directors = ca.horzsplit(ca.MX(system.body(touching.owner).rotation))
-        else:
-            weights = section_weights(self.model.discrete, touching.owner, touching.places)
-            world = system.base(touching.owner).rotation
-            directors = [world @ (director @ weights) for director in system.shapes[touching.owner].directors]
-        return ca.vertcat(positions, *[system.turned_to(carrier, director) for director in directors])
+        positions, *directors = self._in_world(system, touching)
+        seen = system.seen_from(carrier, positions)
+        return ca.vertcat(seen, *[system.turned_to(carrier, director) for director in directors])
 
     def _radii(self, touching: TouchingSections) -> Matrix:
         """Radii of sections, or the radius of a body, k×1, m."""
@@ -314,12 +309,15 @@ class TouchingPairs:
 
     def _positions(self, system: System, touching: TouchingSections) -> Matrix:
         """World positions of sections, or of a body, 3×k, m."""
+        return self._in_world(system, touching)[0]
+
+    def _in_world(self, system: System, touching: TouchingSections) -> list[Matrix]:
+        """World positions of sections, or of a body, m, and their three directors, 3×k each."""
         if touching.of_body:
-            return system.body(touching.owner).position
+            pose = system.body(touching.owner)
+            return [pose.position, *ca.horzsplit(ca.MX(pose.rotation))]
         weights = section_weights(self.model.discrete, touching.owner, touching.places)
-        base = system.base(touching.owner)
-        turned = base.rotation @ (system.shapes[touching.owner].position @ weights)
-        return ca.repmat(ca.MX(base.position), 1, len(touching.places)) + turned
+        return system.sections(touching.owner, weights)
 
     def _body(self, name: str) -> scenes.Body:
         (body,) = [body for body in self._nominal.scene.bodies if body.name == name]

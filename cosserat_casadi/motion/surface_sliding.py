@@ -158,9 +158,7 @@ def _pose(facing: Facing, system: System, weights: Matrix) -> list[Matrix]:
     if facing.of_body:
         pose = system.body(facing.owner)
         return [ca.MX(pose.position), ca.MX(pose.rotation)]
-    base, shape = system.base(facing.owner), system.shapes[facing.owner]
-    directors = [base.rotation @ (director @ weights) for director in shape.directors]
-    position = base.position + base.rotation @ (shape.position @ weights)
+    position, *directors = system.sections(facing.owner, weights)
     seen = system.seen_from(facing.carrier, position)
     return [seen, system.turned_to(facing.carrier, ca.horzcat(*directors))]
 
