@@ -310,10 +310,12 @@ def told_error(error: float | None, within: bool | None, tolerance: float | None
     """
     if error is None or np.isnan(error):
         return "not estimated"
-    words = "not known" if error == UNKNOWN else f"{error:.1e} of the length"
+    known = error != UNKNOWN
+    words = f"{error:.1e} of the length" if known else "not known"
     if within is None:
         return words
-    side = "within" if within else "above"
+    above = "above" if known else "perhaps above"
+    side = "within" if within else above
     return f"{words}, {side} the tolerance of {tolerance:g}"
 
 

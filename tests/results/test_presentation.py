@@ -38,12 +38,13 @@ from cosserat_casadi import (
     read_scene,
     solve,
 )
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.estimation import Estimate
 from cosserat_casadi.estimation.consistency import Consistency
 from cosserat_casadi.paths.tube_path import TubePath
 from cosserat_casadi.result import Result
-from cosserat_casadi.results.facts import digits
+from cosserat_casadi.results.facts import digits, told_error
 from cosserat_casadi.results.presentation import MOST_LINES, PRESENTATIONS, FramesUnavailableError, presentation_of
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.sweeps.outcome_file import read_sweep
@@ -442,3 +443,10 @@ def test_what_a_cancellation_leaves_of_a_position_is_zero() -> None:
     assert digits(np.array([6e-144, -3e-13, 2e-12]), 1.0) == ["0", "0", "2e-12"]
     straight = solve(build(scene(push(force=[0.0, 0.0, 1.0]), strain="planar")))
     assert "(0, 0, 0.8) m" in repr(replace(straight, x=straight.x + 1e-30))
+
+
+def test_an_error_that_is_not_known_is_perhaps_above_the_tolerance() -> None:
+    assert told_error(UNKNOWN, False, 1e-3) == "not known, perhaps above the tolerance of 0.001"
+    assert told_error(2e-3, False, 1e-3) == "2.0e-03 of the length, above the tolerance of 0.001"
+    assert told_error(5e-4, True, 1e-3) == "5.0e-04 of the length, within the tolerance of 0.001"
+    assert told_error(None, None, 1e-3) == "not estimated"
