@@ -19,7 +19,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.listing import LANES, Constant, Listing, Read, UnknownOperationError
-from cosserat_casadi.compiling.numbered import SMALL, Numbers, Program, Step
+from cosserat_casadi.compiling.numbered import SMALL, Numbers, Program, Step, Value
 from cosserat_casadi.compiling.printed_kernels import Callee, ConstantTable, PrintedKernel
 from cosserat_casadi.compiling.products import Product, column_groups
 from cosserat_casadi.compiling.scalars_in_c import callee, scalars_in_c
@@ -548,9 +548,18 @@ class _Writing:
 
 def _units(program: Program) -> list[Unit]:
     """Units in an order in which each comes behind the units that it waits for."""
+    units: dict[tuple[int, _Key], Unit] = {}
+    for step, (depth, key) in zip(program.steps, _with_late_calls(program, _first_places(program)), strict=True):
+        units.setdefault((depth, key), Unit(key[0], [])).steps.append(step)
+    in_order = [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
+    return [part for unit in in_order for part in _in_bundles(unit)]
+
+
+def _first_places(program: Program) -> list[tuple[int, _Key]]:
+    """Of each step the number of units that it waits for, and which unit may hold it."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
     made_by: dict[int, tuple[int, _Key]] = {}
-    units: dict[tuple[int, _Key], Unit] = {}
+    places = []
     for number, step in enumerate(program.steps):
         key = _key(step, number, calls)
         depth = 0
@@ -560,11 +569,33 @@ def _units(program: Program) -> list[Unit]:
                     before, other = made_by[owner]
                     joins = key == other and _joins(key, operand.numbers, program.origins.numbers(owner))
                     depth = max(depth, before if joins else before + 1)
-        units.setdefault((depth, key), Unit(key[0], [])).steps.append(step)
-        for owner in program.origins.holders(_joined([result.numbers for result in step.results])):
-            made_by[owner] = (depth, key)
-    in_order = [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
-    return [part for unit in in_order for part in _in_bundles(unit)]
+        places.append((depth, key))
+        made_by |= dict.fromkeys(_owners(program, step.results), (depth, key))
+    return places
+
+
+def _with_late_calls(program: Program, places: list[tuple[int, _Key]]) -> list[tuple[int, _Key]]:
+    """Places of steps, calls with the last other calls of their function that come before their results are read."""
+    depths: dict[_Key, set[int]] = defaultdict(set)
+    for depth, key in places:
+        depths[key].add(depth)
+    last: dict[int, int] = {}
+    late = list(places)
+    for number in reversed(range(len(places))):
+        step = program.steps[number]
+        depth, key = places[number]
+        if key[0] is UnitKind.CALLS:
+            latest = min((last[owner] for owner in _owners(program, step.results) if owner in last), default=depth)
+            depth = max(other for other in depths[key] if other <= max(latest, depth))
+            late[number] = depth, key
+        for owner in _owners(program, step.operands):
+            last[owner] = min(last.get(owner, depth - 1), depth - 1)
+    return late
+
+
+def _owners(program: Program, values: Sequence[Value]) -> list[int]:
+    """The things that hold the entries of values."""
+    return program.origins.holders(_joined([value.numbers for value in values]))
 
 
 _Key = tuple[UnitKind, int]

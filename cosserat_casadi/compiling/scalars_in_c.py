@@ -320,11 +320,15 @@ class _Writing:
         return batches
 
     def _depths(self) -> list[int]:
-        """Depth of each value: most calls on a way to it, its own call included."""
+        """Depth of each value: most calls on a way to it, its own call included.
+
+        Kernels that are shared do not count: a call that waits for more of them is made together with the others.
+        """
         depths: list[int] = []
         for number, value in enumerate(self.listing.values):
             depth = max((depths[operand] for operand in self.listing.operands(number)), default=0)
-            depths.append(depth + 1 if isinstance(value, Called) else depth)
+            counts = isinstance(value, Called) and self.kernels[hash(self.listing.calls[value.call].function)] is None
+            depths.append(depth + counts)
         return depths
 
     def _place_results(self, batch: _Batch) -> None:
