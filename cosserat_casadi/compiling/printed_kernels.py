@@ -148,6 +148,24 @@ class Callee:
 
 
 @dataclass(frozen=True)
+class ColumnCallee:
+    """A function that the code of four columns calls for an interval.
+
+    Attributes:
+        body: in C.
+        arguments: how many pointers it takes besides one to its results.
+    """
+
+    body: str
+    arguments: int
+
+    def text(self, name: str) -> str:
+        """The function in C, under a name."""
+        given = ", ".join(f"const casadi_real *a{i}" for i in range(self.arguments))
+        return f"static void MADE({name})({given}, casadi_real *made){self.body}"
+
+
+@dataclass(frozen=True)
 class ConstantTable:
     """A constant array.
 
@@ -186,7 +204,7 @@ class PrintedKernel:
     signature: ca.Function
     tables: Mapping[str, ConstantTable]
     body: str
-    callees: Mapping[str, Callee]
+    callees: Mapping[str, Callee | ColumnCallee]
     reals: int
     statements: int
     loops: Mapping[str, str] = field(default_factory=dict)
@@ -243,9 +261,9 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
     routines = product_routines(product for kernel in kernels for product in kernel.products)
     tables = _tables(kernels, stem)
     bodies = {kernel.name(): _with_names(kernel, kernel.body, callees, tables) for kernel in kernels}
-    called = [callees[callee] for kernel in kernels for callee in kernel.callees.values()]
+    called = [name for callee, name in callees.items() if isinstance(callee, Callee)]
     functions = [callee.text(name) for callee, name in callees.items()]
-    choices = [_choice(name, PARAMETERS_OF_CALLEE) for name in dict.fromkeys(called)]
+    choices = [_choice(name, PARAMETERS_OF_CALLEE) for name in called]
     for kernel in kernels:
         for in_fours, parameters in ((kernel.columns, PARAMETERS_OF_COLUMNS), (kernel.loops, PARAMETERS_OF_LOOP)):
             functions += [_with_names(kernel, text, callees, tables) for text in in_fours.values()]
@@ -310,9 +328,9 @@ def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:
     return list(every.values())
 
 
-def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
+def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee | ColumnCallee, str]:
     """Names of the functions that kernels call: one name for each function, by whichever kernels it is called."""
-    name_of: dict[Callee, str] = {}
+    name_of: dict[Callee | ColumnCallee, str] = {}
     for kernel in kernels:
         for word, callee in kernel.callees.items():
             if callee not in name_of:
@@ -368,7 +386,7 @@ def _array(kind: str, name: str, numbers: Sequence[str]) -> str:
 
 
 def _with_names(
-    kernel: PrintedKernel, text: str, callees: Mapping[Callee, str], tables: Mapping[ConstantTable, str]
+    kernel: PrintedKernel, text: str, callees: Mapping[Callee | ColumnCallee, str], tables: Mapping[ConstantTable, str]
 ) -> str:
     """Text of a kernel, with the names that functions and constant arrays have for all kernels."""
     for word, callee in kernel.callees.items():

@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import pairwise
 
 import casadi as ca
 
@@ -28,6 +29,7 @@ from cosserat_casadi.compiling.printed_kernels import (
     COLUMNS,
     PART_OF_COLUMNS,
     Callee,
+    ColumnCallee,
     ColumnForm,
     ConstantTable,
     Kernel,
@@ -201,12 +203,13 @@ class _Writing:
         self.given_to_columns = self._given_to_columns()
         for value in self.given_to_columns:
             self.place.setdefault(value, self._room(1))
+        self.passed = _Passed()
         self.columns = 0 if form is None else self._room(form.rows * form.stride)
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
         self.column_functions: dict[str, str] = {}
-        self.callees: dict[str, Callee] = {}
+        self.callees: dict[str, Callee | ColumnCallee] = {}
         self.statements = 0
 
     def inherit(self, argument: int, kernels: Sequence[PrintedKernel]) -> None:
@@ -303,7 +306,8 @@ class _Writing:
         depth = self._depths()
         groups: dict[tuple[int, int], list[int]] = defaultdict(list)
         for number, call in enumerate(self.listing.calls):
-            groups[hash(call.function), depth[call.results[0]]].append(number)
+            if not self.in_column[call.results[0]]:
+                groups[hash(call.function), depth[call.results[0]]].append(number)
         batches: dict[int, _Batch] = {}
         for calls in groups.values():
             call = self.listing.calls[calls[0]]
@@ -482,14 +486,19 @@ class _Writing:
     def _write_columns(self, form: ColumnForm) -> None:
         """Write what computes four columns, in parts that pass values on, and append its calls."""
         statements = self._statements_of_columns(form)
-        parts, passed = in_parts(statements, LONGEST, lambda place: f"STORE(passed + {LANES * place}, {{0}});")
-        room = self._room(LANES * passed)
+        # Behind the values that calls take and give.
+        first = self.passed.count
+        parts, passed = in_parts(statements, LONGEST, lambda place: _passed_on(first + place), self.passed.places)
+        room = self._room(LANES * (first + passed))
         name = f"{self.name}_columns"
         calls = []
         functions = []
         for k, part in enumerate(parts):
             block = Block("FOUR", "b", part.statements)
-            body = _body(block.lines(partial(self._text_in_columns, part.passed)))
+            made = {statement.made for statement in part.statements}
+            elsewhere = {value: first + place for value, place in part.passed.items()}
+            elsewhere |= {value: place for value, place in self.passed.places.items() if value not in made}
+            body = _body(block.lines(partial(self._text_in_columns, elsewhere)))
             functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
             calls.append(CALL_OF_COLUMNS.format(name=name, part=k))
             self.statements += len(block.statements)
@@ -506,11 +515,16 @@ class _Writing:
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
         statements = []
+        called = self._calls_in_columns()
         for number, value in enumerate(self.listing.values):
-            if self.in_column[number] and not isinstance(value, Read):
-                if not isinstance(value, Computed):
-                    raise UnknownOperationError("a call in a column")
+            if not self.in_column[number] or isinstance(value, Read):
+                continue
+            if isinstance(value, Computed):
                 statements.append(FOURS.operation(value.operation, value.operands, number))
+                if number in self.passed.places:
+                    statements.append(Statement(_passed_on(self.passed.places[number]), [number]))
+            elif isinstance(value, Called) and value.result == 0:
+                statements += called[value.call]
         entries = self.listing.outputs[-1]
         for row in range(form.rows):
             place = row * form.stride
@@ -522,6 +536,80 @@ class _Writing:
             else:
                 raise UnknownOperationError("a row that all columns share")
         return statements
+
+    def _calls_in_columns(self) -> dict[int, list[Statement]]:
+        """Statements of each call that columns make, by its number."""
+        listing = self.listing
+        of_columns = [number for number, call in enumerate(listing.calls) if self.in_column[call.results[0]]]
+        for number in of_columns:
+            for result in listing.calls[number].results:
+                self.passed.place(result)
+        statements: dict[int, list[Statement]] = {number: [] for number in of_columns}
+        by_function: dict[int, list[int]] = defaultdict(list)
+        for number in of_columns:
+            by_function[hash(listing.calls[number].function)].append(number)
+        for key, numbers in by_function.items():
+            function = listing.calls[numbers[0]].function
+            ends = _starts([*(function.nnz_in(i) for i in range(function.n_in())), 0])
+            pointers: list[list[str]] = [[] for _ in numbers]
+            forms = []
+            for first, end in pairwise(ends):
+                operands = [listing.calls[number].operands[first:end] for number in numbers]
+                runs = self._runs(operands)
+                if runs is None:
+                    runs = [self._copied(one, statements[number]) for number, one in zip(numbers, operands, strict=True)]
+                for pointer, run in zip(pointers, runs, strict=True):
+                    pointer.append(run.pointer)
+                forms.append((runs[0].in_column, runs[0].step))
+            name = f"{self.callee_names[key]}_of_column"
+            self.callees[name], count = callee_of_column(Listing(function), forms)
+            self.statements += count
+            for number, pointer in zip(numbers, pointers, strict=True):
+                made = f"passed + {LANES * self.passed.places[listing.calls[number].results[0]]}"
+                call = f"MADE({self.name}_{name})({', '.join([*pointer, made])});"
+                statements[number].append(Statement(call, []))
+        return statements
+
+    def _runs(self, operands: Sequence[Sequence[int]]) -> list[_Run] | None:
+        """How an argument of several calls lies; None where it does not lie alike in all of them."""
+        runs = [self._run(one) for one in operands]
+        found = [run for run in runs if run is not None]
+        alike = len({(run.in_column, run.step) for run in found}) == 1
+        return found if alike and len(found) == len(runs) else None
+
+    def _run(self, operands: Sequence[int]) -> _Run | None:
+        """How numbers lie by equal steps in one array; None where they do not, or some have no place yet."""
+        values = [self.listing.values[operand] for operand in operands]
+        if not any(self.in_column[operand] for operand in operands):
+            array, in_column = "w", False
+            places = [self.place.get(operand) for operand in operands]
+        elif all(isinstance(value, Read) for value in values):
+            array, in_column = "turns", True
+            places = [value.entry for value in values if isinstance(value, Read)]
+        else:
+            array, in_column = "passed", True
+            new = [operand not in self.passed.places for operand in operands]
+            if all(new) and all(isinstance(value, Computed) for value in values) and len({*operands}) == len(operands):
+                for operand in operands:
+                    if not self.in_column[operand]:
+                        return None
+                places = [self.passed.place(operand) for operand in operands]
+            else:
+                places = [self.passed.places.get(operand) for operand in operands]
+        known = [place for place in places if place is not None]
+        steps = {later - earlier for earlier, later in pairwise(known)}
+        if len(known) < len(places) or len(steps) > 1:
+            return None
+        lanes = LANES if in_column else 1
+        return _Run(f"{array} + {lanes * known[0]}", in_column, lanes * (steps.pop() if steps else 1))
+
+    def _copied(self, operands: Sequence[int], statements: list[Statement]) -> _Run:
+        """A copy of numbers, as the statements are extended by: one behind the other."""
+        first = self.passed.more(len(operands))
+        for place, operand in enumerate(operands, first):
+            text = "FILL(passed + {}, {{0}});" if not self.in_column[operand] else "STORE(passed + {}, {{0}});"
+            statements.append(Statement(text.replace("{}", str(LANES * place)), [operand]))
+        return _Run(f"passed + {LANES * first}", True, LANES)
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
         """Text of a value that is in no variable of the code of columns."""
@@ -535,6 +623,77 @@ class _Writing:
         if isinstance(value, Read):
             return f"TURN({LANES * value.entry})"
         return None
+
+
+@dataclass(frozen=True)
+class _Run:
+    """How an argument of a call lies.
+
+    Attributes:
+        pointer: to its first number in C.
+        in_column: whether it differs from column to column.
+        step: numbers from one entry to the next.
+    """
+
+    pointer: str
+    in_column: bool
+    step: int
+
+
+class _Passed:
+    """Fours that calls in columns take and give.
+
+    Attributes:
+        places: of values, by their number.
+        count: how many there are.
+    """
+
+    def __init__(self) -> None:
+        self.places: dict[int, int] = {}
+        self.count = 0
+
+    def more(self, count: int) -> int:
+        """Where so many new ones begin."""
+        self.count += count
+        return self.count - count
+
+    def place(self, value: int) -> int:
+        """The new place of a value."""
+        self.places[value] = self.more(1)
+        return self.places[value]
+
+
+def _passed_on(place: int) -> str:
+    """Text of the statement that passes four numbers on."""
+    return f"STORE(passed + {LANES * place}, {{0}});"
+
+
+def callee_of_column(listing: Listing, forms: Sequence[tuple[bool, int]]) -> tuple[ColumnCallee, int]:
+    """A function that the code of columns calls, and its number of statements.
+
+    Args:
+        listing: the values of the function.
+        forms: of each argument, whether it differs from column to column, and the step between its entries.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form here.
+    """
+    block = Block("FOUR", "b", computations(listing, FOURS))
+    (entries,) = listing.outputs
+    for entry, number in entries.items():
+        block.statements.append(Statement(f"STORE(made + {LANES * entry}, {{0}});", [number]))
+
+    def text(number: int) -> str | None:
+        value = listing.values[number]
+        if isinstance(value, Constant):
+            return FOURS.number(value.value)
+        if isinstance(value, Read):
+            in_column, step = forms[value.argument]
+            place = step * value.entry
+            return f"LOAD(a{value.argument} + {place})" if in_column else f"a{value.argument}[{place}]"
+        return None
+
+    return ColumnCallee(_body(block.lines(text)), len(forms)), len(block.statements)
 
 
 def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:

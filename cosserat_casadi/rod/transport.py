@@ -131,6 +131,25 @@ class IntervalKernels:
         turning = ca.sparsify(ca.cse(self._turning))
         return ca.Function("turning", self.symbols.listed[:-1], [turning], ARGUMENTS[:-1], ["A"], KEPT)
 
+    @cached_property
+    def turned(self) -> ca.Function:
+        """The map (A, turn) ↦ A turn: δθ of an interval, 3×1, for one variation of its turn; A as in :attr:`turning`."""
+        turning = ca.SX.sym("A", self.turning.sparsity_out(0))
+        return ca.Function("turned", [turning, self.turn], [turning @ self.turn], ["A", "turn"], ["turned"], KEPT)
+
+    @cached_property
+    def pulled(self) -> ca.Function:
+        """The map (A, V, H, turn, turned, moment) ↦ Aᵀ (moment + V turned) + H turn: variation of :attr:`pull`, size×1.
+
+        It varies with the turn, with the δθ that follows from it, and with the moment; A, V, H as in :attr:`variation`.
+        """
+        names = ["A", "V", "H"]
+        a, v, h = (ca.SX.sym(name, self.variation.sparsity_out(i)) for i, name in enumerate(names))
+        turned, moment = ca.SX.sym("turned", 3), ca.SX.sym("moment", 3)
+        force = a.T @ (moment + v @ turned) + h @ self.turn
+        arguments = [a, v, h, self.turn, turned, moment]
+        return ca.Function("pulled", arguments, [force], [*names, "turn", "turned", "moment"], ["force"], KEPT)
+
     @property
     def _turning(self) -> ca.SX:
         """R T ∂Ω/∂turn."""
