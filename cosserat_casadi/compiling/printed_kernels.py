@@ -257,7 +257,7 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
     public = kernels
     kernels = _with_called(kernels)
     callees = _callees(kernels, stem)
-    any_program = any(kernel.is_program for kernel in kernels)
+    any_program = any(kernel.is_program or "program_" in kernel.body for kernel in kernels)
     routines = product_routines(product for kernel in kernels for product in kernel.products)
     tables = _tables(kernels, stem)
     bodies = {kernel.name(): _with_names(kernel, kernel.body, callees, tables) for kernel in kernels}

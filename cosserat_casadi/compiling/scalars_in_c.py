@@ -14,6 +14,7 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.compiling.listing import (
     LANES,
@@ -24,6 +25,7 @@ from cosserat_casadi.compiling.listing import (
     Read,
     UnknownOperationError,
 )
+from cosserat_casadi.compiling.place_tables import ConstantTables
 from cosserat_casadi.compiling.printed_kernels import (
     CALL_OF_COLUMNS,
     COLUMNS,
@@ -31,7 +33,6 @@ from cosserat_casadi.compiling.printed_kernels import (
     Callee,
     ColumnCallee,
     ColumnForm,
-    ConstantTable,
     Kernel,
     PrintedKernel,
     in_groups,
@@ -49,6 +50,12 @@ from cosserat_casadi.compiling.statements import (
     in_parts,
     number_in_c,
 )
+
+FEWEST_GATHERED = 16
+"""Numbers from which on a table brings numbers together that lie apart."""
+
+ZERO = 0
+"""Place of a zero in the array that a kernel works in, once a table reads it; a one is beside it."""
 
 
 def scalars_in_c(
@@ -192,7 +199,8 @@ class _Writing:
         self.kernels = {hash(call.function): kernels.get(hash(call.function)) for call in listing.calls}
         self.is_shared = first_of_shared is not None
         called = [kernel.reals for kernel in self.kernels.values() if kernel is not None]
-        self.reals = max(called, default=first_of_shared or 0)
+        self.reals = max(called, default=first_of_shared or ZERO + 2)
+        self.tables = ConstantTables()
         self.place: dict[int, int] = {}
         self.in_column = self._in_column()
         self.batch_of = self._batches()
@@ -204,6 +212,7 @@ class _Writing:
         for value in self.given_to_columns:
             self.place.setdefault(value, self._room(1))
         self.passed = _Passed()
+        self.turns = ""
         self.columns = 0 if form is None else self._room(form.rows * form.stride)
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
@@ -221,14 +230,12 @@ class _Writing:
 
     def result(self) -> PrintedKernel:
         """The kernel."""
-        tables = {}
         self._write_callees()
         for value in self.given_to_columns:
             self._compute(value)
         if self.form is not None:
             if self.form.turns_behind is None:
-                numbers = tuple(f"{value:.17g}" for value in in_groups(self.form.turns))
-                tables["turns"] = ConstantTable("casadi_real", numbers)
+                self.turns = self.tables.of_numbers(in_groups(self.form.turns).tolist())
             self._write_columns(self.form)
         if self.is_shared:
             self._keep_results()
@@ -238,7 +245,7 @@ class _Writing:
         body = "\n".join(self.functions)
         return PrintedKernel(
             self.signature,
-            tables,
+            self.tables.by_name,
             body,
             self.callees,
             self.reals,
@@ -407,13 +414,22 @@ class _Writing:
             # It works in the same array, in which kernels before have left what it reads.
             self.main.statements.append(Statement(f"MADE({kernel.name()})(arg, res, w);", []))
             return
+        operands = [0] * (batch.width * batch.turns * batch.operands)
         for k in range(batch.width * batch.turns):
             turn, lane = divmod(k, batch.width)
             # Lanes that are left over compute what the last call does.
             call = self.listing.calls[batch.calls[min(k, len(batch.calls) - 1)]]
             for i, operand in enumerate(call.operands):
-                place = self.given + batch.operand_place(turn, lane, i)
-                self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
+                operands[batch.operand_place(turn, lane, i)] = operand
+        places = [self._place_of(operand) for operand in operands]
+        gathered = self._is_worth_gathering(places)
+        for place, operand in enumerate(operands):
+            if places[place] is None or not gathered:
+                self.main.statements.append(Statement(f"w[{self.given + place}] = {{0}};", [operand]))
+        if gathered:
+            # Numbers that have no place but this one stay in it.
+            sources = [self.given + i if place is None else place for i, place in enumerate(places)]
+            self._append_gathering(f"w + {self.given}", sources)
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
         call = f"MADE({self.name}_{name})(w + {self.given}, w + {batch.made}, {batch.turns});"
         self.main.statements.append(Statement(call, []))
@@ -425,14 +441,46 @@ class _Writing:
             entries = self.listing.outputs[result]
             may_be_absent = count > 1
             asked = f"if (res[{result}]) " if may_be_absent else ""
-            for entry in range(self.listing.function.nnz_out(result)):
-                place = f"res[{result}][{entry}]"
-                if entry in entries:
-                    self._compute(entries[entry])
-                    stored = Statement(f"{asked}{place} = {{0}};", [entries[entry]], asked=may_be_absent)
-                    self.main.statements.append(stored)
-                else:
-                    self.main.statements.append(Statement(f"{asked}{place} = {self.arithmetic.number(0.0)};", []))
+            count_of_entries = self.listing.function.nnz_out(result)
+            places = [self._place_of(entries[i]) if i in entries else ZERO for i in range(count_of_entries)]
+            gathered = self._is_worth_gathering(places)
+            if gathered:
+                for entry, number in entries.items():
+                    if places[entry] is not None:
+                        self._compute(number)
+                # What has no place is written behind.
+                sources = [ZERO if place is None else place for place in places]
+                self._append_gathering(f"res[{result}]", sources, asked)
+            for entry, place in enumerate(places):
+                if gathered and place is not None:
+                    continue
+                text = f"{asked}res[{result}][{entry}] = "
+                if entry not in entries:
+                    self.main.statements.append(Statement(f"{text}{self.arithmetic.number(0.0)};", []))
+                    continue
+                self._compute(entries[entry])
+                self.main.statements.append(Statement(f"{text}{{0}};", [entries[entry]], asked=may_be_absent))
+
+    def _place_of(self, number: int) -> int | None:
+        """Where a value is in the array, if it has a place there: zero and one have the first two."""
+        value = self.listing.values[number]
+        if isinstance(value, Constant) and value.value in (0.0, 1.0):
+            return ZERO + int(value.value)
+        if isinstance(value, Read) and self._is_of_all_columns(number):
+            return self.columns + value.entry
+        return self.place.get(number)
+
+    def _is_worth_gathering(self, places: Sequence[int | None]) -> bool:
+        """Whether numbers are brought together by a table of their places."""
+        known = len(places) - places.count(None)
+        return self.arithmetic is SINGLE and known >= max(FEWEST_GATHERED, len(places) // 2)
+
+    def _append_gathering(self, to: str, places: Sequence[int], asked: str = "") -> None:
+        """Append a statement that brings the numbers at these places together."""
+        for constant in {ZERO, ZERO + 1} & {*places}:
+            self.main.statements.append(Statement(f"w[{constant}] = {constant - ZERO};", []))
+        table = self.tables.of_places(np.array(places, dtype=np.int64)[:, None])
+        self.main.statements.append(Statement(f"{asked}program_gather({to}, w, {table});", []))
 
     def _keep_results(self) -> None:
         """Append the entries of the one result, each in another place."""
@@ -505,12 +553,10 @@ class _Writing:
         listed = "\n".join(calls)
         functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
         self.column_functions[name] = "\n".join(functions)
-        turns = "TABLE(turns)"
-        start = 0
+        turns = self.turns
         if form.turns_behind is not None:
-            turns = f"arg[{form.columns_argument - 1}]"
-            start = form.turns_behind
-        given = f"w, {turns} + {start}, w + {self.columns}, w + {room}, {form.stride // LANES}"
+            turns = f"arg[{form.columns_argument - 1}] + {form.turns_behind}"
+        given = f"w, {turns}, w + {self.columns}, w + {room}, {form.stride // LANES}"
         self.main.statements.append(Statement(f"MADE({name})({given});", []))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
@@ -557,7 +603,7 @@ class _Writing:
                 operands = [listing.calls[number].operands[first:end] for number in numbers]
                 runs = self._runs(operands)
                 if runs is None:
-                    runs = [self._copied(one, statements[number]) for number, one in zip(numbers, operands, strict=True)]
+                    runs = [self._copied(one, statements[k]) for k, one in zip(numbers, operands, strict=True)]
                 for pointer, run in zip(pointers, runs, strict=True):
                     pointer.append(run.pointer)
                 forms.append((runs[0].in_column, runs[0].step))
