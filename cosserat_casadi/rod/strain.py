@@ -49,6 +49,9 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
 from cosserat_casadi.rod.properties import Field, RodProperties
 
+NOISE = 1e-14
+"""Share of the largest entry of a section matrix below which an entry is zero: sums over Gauss points leave so much."""
+
 _POLYNOMIALS: dict[str, Callable[[int, FloatArray], FloatArray]] = {
     "legendre": chebyshev.legendre_polynomials,
     "chebyshev": chebyshev.chebyshev_polynomials,
@@ -445,7 +448,7 @@ def section_matrix(rod: DiscreteRod, diagonal: Field) -> Numbers:
         for c, columns in rod.columns.items():
             phi = rod.shape_functions(c, X, element)
             result[columns, columns] += phi.T @ (weighted[:, [c]] * phi)
-    return without_rounding(result)
+    return without_rounding(result, NOISE)
 
 
 def _gauss_points(rod: DiscreteRod, element: int) -> tuple[FloatArray, FloatArray]:
