@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
-from cosserat_casadi.compiling.listing import UnknownOperationError
+from cosserat_casadi.compiling.listing import UnknownOperationError, with_shorter_calls
 from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.maths.calls import chooses, with_dense_results
@@ -225,7 +225,7 @@ def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
     if ca.Function(name, symbols, expressions).n_instructions() > SHARED_AT_MOST * most:
         return None
     shared = [ca.densify(expression) for expression in ca.cse(expressions)]
-    straight = ca.Function(name, symbols, shared, function.name_in(), function.name_out())
+    straight = with_shorter_calls(ca.Function(name, symbols, shared, function.name_in(), function.name_out()))
     return straight if straight.n_instructions() <= most else None
 
 

@@ -606,7 +606,7 @@ class _Writing:
                     runs = [self._copied(one, statements[k]) for k, one in zip(numbers, operands, strict=True)]
                 for pointer, run in zip(pointers, runs, strict=True):
                     pointer.append(run.pointer)
-                forms.append((runs[0].in_column, runs[0].step))
+                forms.append((runs[0].in_column, runs[0].places))
             name = f"{self.callee_names[key]}_of_column"
             self.callees[name], count = callee_of_column(Listing(function), forms)
             self.statements += count
@@ -620,11 +620,11 @@ class _Writing:
         """How an argument of several calls lies; None where it does not lie alike in all of them."""
         runs = [self._run(one) for one in operands]
         found = [run for run in runs if run is not None]
-        alike = len({(run.in_column, run.step) for run in found}) == 1
+        alike = len({(run.in_column, run.places) for run in found}) == 1
         return found if alike and len(found) == len(runs) else None
 
     def _run(self, operands: Sequence[int]) -> _Run | None:
-        """How numbers lie by equal steps in one array; None where they do not, or some have no place yet."""
+        """How numbers lie in one array; None where they do not, or some have no place yet."""
         values = [self.listing.values[operand] for operand in operands]
         if not any(self.in_column[operand] for operand in operands):
             array, in_column = "w", False
@@ -643,11 +643,9 @@ class _Writing:
             else:
                 places = [self.passed.places.get(operand) for operand in operands]
         known = [place for place in places if place is not None]
-        steps = {later - earlier for earlier, later in pairwise(known)}
-        if len(known) < len(places) or len(steps) > 1:
+        if len(known) < len(places):
             return None
-        lanes = LANES if in_column else 1
-        return _Run(f"{array} + {lanes * known[0]}", in_column, lanes * (steps.pop() if steps else 1))
+        return _run_of(array, known, LANES if in_column else 1)
 
     def _copied(self, operands: Sequence[int], statements: list[Statement]) -> _Run:
         """A copy of numbers, as the statements are extended by: one behind the other."""
@@ -655,7 +653,7 @@ class _Writing:
         for place, operand in enumerate(operands, first):
             text = "FILL(passed + {}, {{0}});" if not self.in_column[operand] else "STORE(passed + {}, {{0}});"
             statements.append(Statement(text.replace("{}", str(LANES * place)), [operand]))
-        return _Run(f"passed + {LANES * first}", True, LANES)
+        return _run_of("passed", range(first, first + len(operands)), LANES)
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
         """Text of a value that is in no variable of the code of columns."""
@@ -678,12 +676,18 @@ class _Run:
     Attributes:
         pointer: to its first number in C.
         in_column: whether it differs from column to column.
-        step: numbers from one entry to the next.
+        places: of its numbers behind the first.
     """
 
     pointer: str
     in_column: bool
-    step: int
+    places: tuple[int, ...]
+
+
+def _run_of(array: str, places: Sequence[int], lanes: int) -> _Run:
+    """How numbers at these places lie, so many lanes of each beside each other."""
+    behind = tuple(lanes * (place - places[0]) for place in places)
+    return _Run(f"{array} + {lanes * places[0]}", array != "w", behind)
 
 
 class _Passed:
@@ -714,12 +718,14 @@ def _passed_on(place: int) -> str:
     return f"STORE(passed + {LANES * place}, {{0}});"
 
 
-def callee_of_column(listing: Listing, forms: Sequence[tuple[bool, int]]) -> tuple[ColumnCallee, int]:
+def callee_of_column(
+    listing: Listing, forms: Sequence[tuple[bool, tuple[int, ...]]]
+) -> tuple[ColumnCallee, int]:
     """A function that the code of columns calls, and its number of statements.
 
     Args:
         listing: the values of the function.
-        forms: of each argument, whether it differs from column to column, and the step between its entries.
+        forms: of each argument, whether it differs from column to column, and the places of its entries.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
@@ -734,8 +740,8 @@ def callee_of_column(listing: Listing, forms: Sequence[tuple[bool, int]]) -> tup
         if isinstance(value, Constant):
             return FOURS.number(value.value)
         if isinstance(value, Read):
-            in_column, step = forms[value.argument]
-            place = step * value.entry
+            in_column, places = forms[value.argument]
+            place = places[value.entry]
             return f"LOAD(a{value.argument} + {place})" if in_column else f"a{value.argument}[{place}]"
         return None
 
