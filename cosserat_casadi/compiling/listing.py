@@ -9,6 +9,8 @@ from itertools import accumulate, pairwise
 
 import casadi as ca
 
+from cosserat_casadi.compiling.numbered import function_of
+from cosserat_casadi.compiling.steps import program_of
 from cosserat_casadi.maths.calls import called_functions
 
 LANES = 4
@@ -133,7 +135,8 @@ class Listing:
         self._apart = apart
         self._known: dict[Value, int] = {}
         codes = [function.instruction_id(k) for k in range(function.n_instructions())]
-        self._called = called_functions(function, codes)
+        called = called_functions(function, codes)
+        self._called = {k: _in_scalars(_Known(hash(one), one)) for k, one in called.items()}
         # CasADi's variables are used again and again. A constant is a value where it is read.
         self._variables: dict[int, int | Constant] = {}
         for k, code in enumerate(codes):
@@ -263,7 +266,7 @@ class Listing:
 
 
 def with_shorter_calls(function: ca.Function) -> ca.Function:
-    """A function of scalars that hands over no operand that is zero in all calls of one function.
+    """A function of scalars that hands over no operand that is zero in all calls of one function, or that is not read.
 
     Derivatives of a kernel are called for variations of few of its arguments, and a strain may have no such Taylor
     coefficients: without the zeros the called functions are shorter.
@@ -271,17 +274,17 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
     if not function.find_functions(0):
         return function
     listing = Listing(function)
-    operands_of: dict[int, list[list[int]]] = {}
-    function_of: dict[int, ca.Function] = {}
+    operands_of: dict[_Known, list[list[int]]] = {}
     for call in listing.calls:
-        operands_of.setdefault(hash(call.function), []).append(call.operands)
-        function_of[hash(call.function)] = call.function
+        operands_of.setdefault(_Known(hash(call.function), call.function), []).append(call.operands)
     zero = {number for number, value in enumerate(listing.values) if value == Constant(0.0)}
     shorter = {}
-    for key, operands in operands_of.items():
-        places = [place for place, numbers in enumerate(zip(*operands, strict=True)) if zero.issuperset(numbers)]
-        if places and function_of[key].is_a("SXFunction"):
-            shorter[key] = _without(_Zeros(key, tuple(places), function_of[key]))
+    for known, operands in operands_of.items():
+        if known.function.is_a("SXFunction"):
+            places = [place for place, numbers in enumerate(zip(*operands, strict=True)) if zero.issuperset(numbers)]
+            short = _without(known, tuple(places))
+            if len(short.places) < len(operands[0]):
+                shorter[known.key] = short
     if not shorter:
         return function
     symbols = function.sx_in()
@@ -292,27 +295,28 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
 
 
 @dataclass(frozen=True)
-class _Zeros:
-    """Operands of a function that are zero.
-
-    Attributes:
-        key: hash of the function.
-        places: of the operands.
-        function: the function, which the key stands for.
-    """
+class _Known:
+    """A function by its hash, which it keeps."""
 
     key: int
-    places: tuple[int, ...]
     function: ca.Function = field(compare=False)
 
 
 @cache
-def _without(zeros: _Zeros) -> ShorterCall:
+def _in_scalars(known: _Known) -> ca.Function:
+    """A function of scalars: one function for all calls of a function of matrices."""
+    function = known.function
+    # CasADi would write one that is kept as a call of itself.
+    return function_of(program_of(function)).expand() if function.is_a("MXFunction") else function
+
+
+@cache
+def _without(known: _Known, places: tuple[int, ...]) -> ShorterCall:
     """A function without operands that are zero: one function, so that the functions that call it share its calls."""
-    function = zeros.function
+    function = known.function
     symbols = function.sx_in()
     entries = [entry for symbol in symbols for entry in symbol.nonzeros()]
-    left = [ca.SX(0.0) if place in zeros.places else entry for place, entry in enumerate(entries)]
+    left = [ca.SX(0.0) if place in places else entry for place, entry in enumerate(entries)]
     # The function is kept as a call where it is called.
     inside = Listing(function)
     known = inside.known_arguments(_shaped(function, left))

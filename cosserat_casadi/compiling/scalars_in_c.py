@@ -8,16 +8,17 @@ order, and equals CasADi's to the last digit.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.compiling.listing import (
     LANES,
+    Call,
     Called,
     Computed,
     Constant,
@@ -31,9 +32,9 @@ from cosserat_casadi.compiling.printed_kernels import (
     COLUMNS,
     PART_OF_COLUMNS,
     Callee,
-    ColumnCallee,
     ColumnForm,
     Kernel,
+    PlacedCallee,
     PrintedKernel,
     in_groups,
 )
@@ -218,7 +219,7 @@ class _Writing:
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
         self.column_functions: dict[str, str] = {}
-        self.callees: dict[str, Callee | ColumnCallee] = {}
+        self.callees: dict[str, Callee | PlacedCallee] = {}
         self.statements = 0
 
     def inherit(self, argument: int, kernels: Sequence[PrintedKernel]) -> None:
@@ -414,6 +415,9 @@ class _Writing:
             # It works in the same array, in which kernels before have left what it reads.
             self.main.statements.append(Statement(f"MADE({kernel.name()})(arg, res, w);", []))
             return
+        if self._reads_places(batch):
+            self._append_calls_at_places(batch)
+            return
         operands = [0] * (batch.width * batch.turns * batch.operands)
         for k in range(batch.width * batch.turns):
             turn, lane = divmod(k, batch.width)
@@ -433,6 +437,63 @@ class _Writing:
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
         call = f"MADE({self.name}_{name})(w + {self.given}, w + {batch.made}, {batch.turns});"
         self.main.statements.append(Statement(call, []))
+
+    def _reads_places(self, batch: _Batch) -> bool:
+        """Whether calls, each of which is made alone, read numbers where they lie."""
+        return batch.width == 1 and self.arithmetic is SINGLE
+
+    def _append_calls_at_places(self, batch: _Batch) -> None:
+        """Append calls, one after the other, that read their operands where they lie."""
+        calls = [self.listing.calls[number] for number in batch.calls]
+
+        def copied(operands: Sequence[int]) -> _Run:
+            first = self._room(len(operands))
+            for place, operand in enumerate(operands, first):
+                self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
+            return _run_of("w", range(first, first + len(operands)), 1)
+
+        pointers, forms = self._arguments_at_places(calls, self._run_of_numbers, [copied] * len(calls))
+        name = self._callee_name(calls[0].function, 1)
+        self.callees[name], _ = callee_at_places(Listing(calls[0].function), forms, SINGLE)
+        for k, given in enumerate(pointers):
+            made = f"w + {batch.made + k * batch.results}"
+            self.main.statements.append(Statement(f"MADE({self.name}_{name})({', '.join([*given, made])});", []))
+
+    def _arguments_at_places(
+        self, calls: Sequence[Call], run: Callable[[Sequence[int]], _Run | None], copied: Sequence[Callable[..., _Run]]
+    ) -> tuple[list[list[str]], list[tuple[bool, tuple[int, ...]]]]:
+        """Pointers to the arguments of calls of one function, and how each of these arguments lies.
+
+        Args:
+            calls: the calls.
+            run: how operands lie, None where they are not together.
+            copied: for each call the copy of operands, where an argument does not lie alike in all calls.
+        """
+        function = calls[0].function
+        ends = list(accumulate((function.nnz_in(i) for i in range(function.n_in())), initial=0))
+        pointers: list[list[str]] = [[] for _ in calls]
+        forms = []
+        for first, end in pairwise(ends):
+            operands = [call.operands[first:end] for call in calls]
+            runs = [run(one) for one in operands]
+            forms_of_calls = {None if one is None else one.form for one in runs}
+            if None in forms_of_calls or len(forms_of_calls) > 1:
+                runs = [copy(one) for copy, one in zip(copied, operands, strict=True)]
+            found = [one for one in runs if one is not None]
+            forms.append(found[0].form)
+            for pointer, one in zip(pointers, found, strict=True):
+                pointer.append(one.pointer)
+        return pointers, forms
+
+    def _run_of_numbers(self, operands: Sequence[int]) -> _Run | None:
+        """How numbers lie in a table, or in the array that the kernel works in; None where some have no place there."""
+        values = [self.listing.values[operand] for operand in operands]
+        constants = [value.value for value in values if isinstance(value, Constant)]
+        if len(constants) == len(values):
+            return _Run(self.tables.of_numbers(constants), False, tuple(range(len(values))))
+        places = [self.place.get(operand) for operand in operands]
+        known = [place for place in places if place is not None]
+        return _run_of("w", known, 1) if len(known) == len(places) else None
 
     def _write_results(self) -> None:
         """Append the entries of all results; one of several may be asked for by no pointer."""
@@ -520,7 +581,7 @@ class _Writing:
     def _write_callees(self) -> None:
         wanted = {}
         for batch in self.batch_of.values():
-            if self._kernel(batch.calls) is not None:
+            if self._kernel(batch.calls) is not None or self._reads_places(batch):
                 continue
             function = self.listing.calls[batch.calls[0]].function
             wanted[self._callee_name(function, batch.width)] = (function, batch.width)
@@ -595,64 +656,40 @@ class _Writing:
         for number in of_columns:
             by_function[hash(listing.calls[number].function)].append(number)
         for key, numbers in by_function.items():
-            function = listing.calls[numbers[0]].function
-            ends = _starts([*(function.nnz_in(i) for i in range(function.n_in())), 0])
-            pointers: list[list[str]] = [[] for _ in numbers]
-            forms = []
-            for first, end in pairwise(ends):
-                operands = [listing.calls[number].operands[first:end] for number in numbers]
-                runs = self._runs(operands)
-                if runs is None:
-                    runs = [self._copied(one, statements[k]) for k, one in zip(numbers, operands, strict=True)]
-                for pointer, run in zip(pointers, runs, strict=True):
-                    pointer.append(run.pointer)
-                forms.append((runs[0].in_column, runs[0].places))
+            calls = [listing.calls[number] for number in numbers]
+            copied = [partial(self._passed_copy, statements[number]) for number in numbers]
+            pointers, forms = self._arguments_at_places(calls, self._run_in_columns, copied)
             name = f"{self.callee_names[key]}_of_column"
-            self.callees[name], count = callee_of_column(Listing(function), forms)
+            self.callees[name], count = callee_at_places(Listing(calls[0].function), forms, FOURS)
             self.statements += count
-            for number, pointer in zip(numbers, pointers, strict=True):
+            for number, given in zip(numbers, pointers, strict=True):
                 made = f"passed + {LANES * self.passed.places[listing.calls[number].results[0]]}"
-                call = f"MADE({self.name}_{name})({', '.join([*pointer, made])});"
+                call = f"MADE({self.name}_{name})({', '.join([*given, made])});"
                 statements[number].append(Statement(call, []))
         return statements
 
-    def _runs(self, operands: Sequence[Sequence[int]]) -> list[_Run] | None:
-        """How an argument of several calls lies; None where it does not lie alike in all of them."""
-        runs = [self._run(one) for one in operands]
-        found = [run for run in runs if run is not None]
-        alike = len({(run.in_column, run.places) for run in found}) == 1
-        return found if alike and len(found) == len(runs) else None
-
-    def _run(self, operands: Sequence[int]) -> _Run | None:
-        """How numbers lie in one array; None where they do not, or some have no place yet."""
-        values = [self.listing.values[operand] for operand in operands]
+    def _run_in_columns(self, operands: Sequence[int]) -> _Run | None:
+        """How numbers that the code of columns reads lie in one array; None where they do not."""
         if not any(self.in_column[operand] for operand in operands):
-            array, in_column = "w", False
-            places = [self.place.get(operand) for operand in operands]
-        elif all(isinstance(value, Read) for value in values):
-            array, in_column = "turns", True
-            places = [value.entry for value in values if isinstance(value, Read)]
-        else:
-            array, in_column = "passed", True
-            new = [operand not in self.passed.places for operand in operands]
-            if all(new) and all(isinstance(value, Computed) for value in values) and len({*operands}) == len(operands):
-                for operand in operands:
-                    if not self.in_column[operand]:
-                        return None
-                places = [self.passed.place(operand) for operand in operands]
-            else:
-                places = [self.passed.places.get(operand) for operand in operands]
-        known = [place for place in places if place is not None]
-        if len(known) < len(places):
-            return None
-        return _run_of(array, known, LANES if in_column else 1)
+            return self._run_of_numbers(operands)
+        values = [self.listing.values[operand] for operand in operands]
+        entries = [value.entry for value in values if isinstance(value, Read)]
+        if len(entries) == len(values):
+            return _run_of("turns", entries, LANES)
+        places = self.passed.places
+        new = all(isinstance(value, Computed) for value in values) and all(self.in_column[one] for one in operands)
+        if new and places.keys().isdisjoint(operands) and len({*operands}) == len(operands):
+            for operand in operands:
+                self.passed.place(operand)
+        known = [places[operand] for operand in operands if operand in places]
+        return _run_of("passed", known, LANES) if len(known) == len(operands) else None
 
-    def _copied(self, operands: Sequence[int], statements: list[Statement]) -> _Run:
+    def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> _Run:
         """A copy of numbers, as the statements are extended by: one behind the other."""
         first = self.passed.more(len(operands))
         for place, operand in enumerate(operands, first):
-            text = "FILL(passed + {}, {{0}});" if not self.in_column[operand] else "STORE(passed + {}, {{0}});"
-            statements.append(Statement(text.replace("{}", str(LANES * place)), [operand]))
+            store = "STORE" if self.in_column[operand] else "FILL"
+            statements.append(Statement(f"{store}(passed + {LANES * place}, {{0}});", [operand]))
         return _run_of("passed", range(first, first + len(operands)), LANES)
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
@@ -682,6 +719,11 @@ class _Run:
     pointer: str
     in_column: bool
     places: tuple[int, ...]
+
+    @property
+    def form(self) -> tuple[bool, tuple[int, ...]]:
+        """What runs have in common that one function can read."""
+        return self.in_column, self.places
 
 
 def _run_of(array: str, places: Sequence[int], lanes: int) -> _Run:
@@ -718,34 +760,41 @@ def _passed_on(place: int) -> str:
     return f"STORE(passed + {LANES * place}, {{0}});"
 
 
-def callee_of_column(
-    listing: Listing, forms: Sequence[tuple[bool, tuple[int, ...]]]
-) -> tuple[ColumnCallee, int]:
-    """A function that the code of columns calls, and its number of statements.
+def callee_at_places(
+    listing: Listing, forms: Sequence[tuple[bool, tuple[int, ...]]], arithmetic: Arithmetic
+) -> tuple[PlacedCallee, int]:
+    """A function that reads its arguments where they lie, and its number of statements.
 
     Args:
         listing: the values of the function.
         forms: of each argument, whether it differs from column to column, and the places of its entries.
+        arithmetic: FOURS for four columns at once, or SINGLE.
 
     Raises:
         UnknownOperationError: there is an operation that has no form here.
     """
-    block = Block("FOUR", "b", computations(listing, FOURS))
-    (entries,) = listing.outputs
-    for entry, number in entries.items():
-        block.statements.append(Statement(f"STORE(made + {LANES * entry}, {{0}});", [number]))
+    if listing.calls:
+        raise UnknownOperationError(f"a call in {listing.function.name()}, which is called itself")
+    in_fours = arithmetic is FOURS
+    block = Block(*(("FOUR", "b") if in_fours else ("casadi_real", "a")), computations(listing, arithmetic))
+    results = _starts(listing.function.nnz_out(i) for i in range(listing.function.n_out()))
+    for start, entries in zip(results, listing.outputs, strict=True):
+        for entry, number in entries.items():
+            place = start + entry
+            store = f"STORE(made + {LANES * place}, {{0}});" if in_fours else f"made[{place}] = {{0}};"
+            block.statements.append(Statement(store, [number]))
 
     def text(number: int) -> str | None:
         value = listing.values[number]
         if isinstance(value, Constant):
-            return FOURS.number(value.value)
+            return arithmetic.number(value.value)
         if isinstance(value, Read):
             in_column, places = forms[value.argument]
             place = places[value.entry]
-            return f"LOAD(a{value.argument} + {place})" if in_column else f"a{value.argument}[{place}]"
+            return f"LOAD(p{value.argument} + {place})" if in_column else f"p{value.argument}[{place}]"
         return None
 
-    return ColumnCallee(_body(block.lines(text)), len(forms)), len(block.statements)
+    return PlacedCallee(_body(block.lines(text)), len(forms), in_fours), len(block.statements)
 
 
 def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:

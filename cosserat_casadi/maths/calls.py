@@ -17,6 +17,9 @@ MOST_MAPPED = 64
 Pattern = tuple[tuple[int, int], list[int], list[int]]
 """Shape of a matrix, and rows and columns of its entries, column after column."""
 
+KEPT = {"never_inline": True}
+"""Options of functions that stay functions when a model is expanded to scalars: generated code calls them."""
+
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
 

@@ -169,7 +169,8 @@ class Tangent:
         """A of every interval, side by side."""
         if self.igm.pulled.interval_moment is not None:
             return self._variations[0]
-        return self.kernels.turning.map(self.intervals)(*self.shape.interval_arguments)
+        turnings: Matrix = self.kernels.turning.map(self.intervals)(*self.shape.interval_arguments)
+        return turnings
 
     @cached_property
     def interval_variation(self) -> Matrix:
@@ -182,7 +183,8 @@ class Tangent:
 
     def _in_intervals(self, stacked: Matrix) -> Matrix:
         """A stacked column as a field on the intervals."""
-        return unstack(stacked, stacked.shape[0] // self.intervals)
+        field: Matrix = unstack(stacked, stacked.shape[0] // self.intervals)
+        return field
 
     @cached_property
     def section_rotation(self) -> Matrix:
@@ -411,10 +413,10 @@ class Tangent:
         if self.turns is not None:
             fields = map(self._in_intervals, (self.turns, self.interval_variation, moment))
             pulled = stack(self.kernels.pulled.map(self.intervals)(*self._variations, *fields))
-        else:
-            turning, stiffness, second = self.interval_operators
-            passing = with_product(moment, stiffness, self.interval_variation)
-            pulled = with_product(turning.T @ passing, second, self._turns)
+            return self.rod.turn_axes.transposed_times(pulled) / -self.rod.energy_unit
+        turning, stiffness, second = self.interval_operators
+        passing = with_product(moment, stiffness, self.interval_variation)
+        pulled = with_product(turning.T @ passing, second, self._turns)
         unit = self.rod.energy_unit
         if self.in_loops:
             # The constants are those of rods of any stiffness, that may share code.

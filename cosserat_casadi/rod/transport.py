@@ -15,6 +15,7 @@ import casadi as ca
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.block_operators import unstack
+from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
@@ -26,9 +27,6 @@ ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
 
 IDENTITY = ca.DM([1, 0, 0, 0])
 """Quaternion of the base section."""
-
-KEPT = {"never_inline": True}
-"""Kernels stay functions when a model is expanded to scalars: generated code calls them in place of repeating them."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +131,7 @@ class IntervalKernels:
 
     @cached_property
     def turned(self) -> ca.Function:
-        """The map (A, turn) ↦ A turn: δθ of an interval, 3×1, for one variation of its turn; A as in :attr:`turning`."""
+        """The map (A, turn) ↦ A turn: δθ of an interval for one variation of its turn, 3×1; A of :attr:`turning`."""
         turning = ca.SX.sym("A", self.turning.sparsity_out(0))
         return ca.Function("turned", [turning, self.turn], [turning @ self.turn], ["A", "turn"], ["turned"], KEPT)
 
@@ -214,7 +212,7 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
 def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
     intrinsic = as_matrix(rod.intrinsic_turn)
-    varying = unstack(rod.turn_matrix @ q, intrinsic.shape[0])
+    varying = unstack(rod.turn_axes.times(q), intrinsic.shape[0])
     return per_reference_length(intrinsic, ratio) + varying
 
 
