@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -15,6 +16,9 @@ from cosserat_casadi.maths.calls import called_functions
 
 LANES = 4
 """Numbers that are computed together: columns, intervals, states."""
+
+FEWEST = 3
+"""Calls of one function from which on they are made together, four at a time."""
 
 BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 """Operations that four lanes have, as C writes them."""
@@ -265,6 +269,14 @@ class Listing:
         return number
 
 
+def length(function: ca.Function) -> int:
+    """Instructions of a function of scalars; calls of a few are as long as what they call, of intervals each is one."""
+    count: int = function.n_instructions()
+    called = [_in_scalars(_Known(hash(one), one)) for one in called_functions(function).values()]
+    calls = Counter(hash(one) for one in called)
+    return count + sum(one.n_instructions() for one in called if calls[hash(one)] < FEWEST)
+
+
 def with_shorter_calls(function: ca.Function) -> ca.Function:
     """A function of scalars that hands over no operand that is zero in all calls of one function, or that is not read.
 
@@ -289,9 +301,7 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
         return function
     symbols = function.sx_in()
     expressions = listing.expressions(listing.wanted(), listing.known_arguments(symbols), shorter)
-    return ca.Function(
-        function.name(), symbols, listing.results(expressions), function.name_in(), function.name_out()
-    )
+    return ca.Function(function.name(), symbols, listing.results(expressions), function.name_in(), function.name_out())
 
 
 @dataclass(frozen=True)

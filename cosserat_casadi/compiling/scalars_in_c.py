@@ -321,7 +321,8 @@ class _Writing:
             call = self.listing.calls[calls[0]]
             kernel = self._kernel(calls)
             together = self.arithmetic.together
-            width = LANES if together is not None and len(calls) >= together and kernel is None else 1
+            alone = kernel is not None or self._reads_constants(calls)
+            width = LANES if together is not None and len(calls) >= together and not alone else 1
             batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
             batches |= dict.fromkeys(calls, batch)
             if kernel is not None:
@@ -330,6 +331,14 @@ class _Writing:
             self._room(width * batch.turns * batch.results)
             self._place_results(batch)
         return batches
+
+    def _reads_constants(self, calls: Sequence[int]) -> bool:
+        """Whether an argument is constant numbers in all calls of a function: they stay where they lie."""
+        operands = [self.listing.calls[number].operands for number in calls]
+        function = self.listing.calls[calls[0]].function
+        ends = accumulate((function.nnz_in(i) for i in range(function.n_in())), initial=0)
+        arguments = [[number for own in operands for number in own[first:end]] for first, end in pairwise(ends)]
+        return any(argument and all(map(self._is_constant, argument)) for argument in arguments)
 
     def _depths(self) -> list[int]:
         """Depth of each value: most calls on a way to it, its own call included.
