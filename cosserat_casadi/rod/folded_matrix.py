@@ -13,11 +13,14 @@ from functools import cache, cached_property
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.block_operators import mirror_factors
 from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+Mirrored = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -151,11 +154,34 @@ def folded(matrix: FloatArray, mirror: Indices, signs: FloatArray, parities: Flo
 @cache
 def _kernels(fold: tuple[int, ...], signs: tuple[float, ...], half: tuple[int, ...]) -> tuple[ca.Function, ca.Function]:
     """Products with a folded matrix of these patterns, and with its transpose: one function for all such matrices."""
-    folds = ca.DM(ca.Sparsity.compressed(fold), signs)
+    first, second, middle, mirrored = _pairs(ca.DM(ca.Sparsity.compressed(fold), signs).full())
     entries = ca.MX.sym("half", ca.Sparsity.compressed(half))
-    modes, rows = ca.MX.sym("modes", entries.shape[1]), ca.MX.sym("rows", folds.shape[1])
-    # The numbers are constants of a rod.
+    modes, rows = ca.MX.sym("modes", entries.shape[1]), ca.MX.sym("rows", entries.shape[0])
+    # Rows that mirror each other with a change of sign change their parts in sums and differences.
+    count = len(first)
+    swapped = np.where(mirrored, 0, count) + np.arange(count)
+    kept = np.where(mirrored, count, 0) + np.arange(count)
+    ahead, behind = rows[first.tolist()], rows[second.tolist()]
+    both = ca.vertcat(ahead + behind, ahead - behind)
+    parts = both[np.concatenate([kept, swapped]).tolist()] if count else both
+    folded_rows = ca.vertcat(parts, rows[middle.tolist()])
+    product = entries @ modes
+    sums, differences, own = ca.vertsplit(product, [0, count, 2 * count, entries.shape[0]])
+    both = ca.vertcat(sums - differences, differences - sums)
+    mirror = both[kept.tolist()] if count else both
+    order = np.argsort(np.concatenate([first, second, middle]))
+    unfolded = ca.vertcat(sums + differences, mirror, own)[order.tolist()]
     # The numbers are constants of a rod.
     words = ["half", "column"], ["product"], {**KEPT, "is_diff_in": [False, True]}
-    unfold = ca.Function("unfold", [entries, modes], [folds.T @ (entries @ modes)], *words)
-    return unfold, ca.Function("fold", [entries, rows], [entries.T @ (folds @ rows)], *words)
+    unfold = ca.Function("unfold", [entries, modes], [unfolded], *words)
+    return unfold, ca.Function("fold", [entries, rows], [entries.T @ folded_rows], *words)
+
+
+def _pairs(fold: FloatArray) -> tuple[Indices, Indices, Indices, Mirrored]:
+    """The first and the second row of each pair, rows that mirror themselves, and which pairs change their sign."""
+    paired = np.count_nonzero(fold, axis=1) == 2
+    count = np.count_nonzero(paired) // 2
+    first = np.argmax(fold != 0, axis=1)
+    second = fold.shape[1] - 1 - np.argmax(fold[:, ::-1] != 0, axis=1)
+    sums = np.arange(count)
+    return first[sums], second[sums], first[~paired], fold[sums, second[sums]] < 0
