@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate, pairwise
 
 import casadi as ca
 
-from cosserat_casadi.compiling.numbered import function_of
-from cosserat_casadi.compiling.steps import program_of
-from cosserat_casadi.maths.calls import called_functions
+from cosserat_casadi.compiling.called import Known, called_functions
 
 LANES = 4
 """Numbers that are computed together: columns, intervals, states."""
@@ -139,8 +137,7 @@ class Listing:
         self._apart = apart
         self._known: dict[Value, int] = {}
         codes = [function.instruction_id(k) for k in range(function.n_instructions())]
-        called = called_functions(function, codes)
-        self._called = {k: _in_scalars(_Known(hash(one), one)) for k, one in called.items()}
+        self._called = called_functions(function, codes)
         # CasADi's variables are used again and again. A constant is a value where it is read.
         self._variables: dict[int, int | Constant] = {}
         for k, code in enumerate(codes):
@@ -272,9 +269,10 @@ class Listing:
 def length(function: ca.Function) -> int:
     """Instructions of a function of scalars; calls of a few are as long as what they call, of intervals each is one."""
     count: int = function.n_instructions()
-    called = [_in_scalars(_Known(hash(one), one)) for one in called_functions(function).values()]
-    calls = Counter(hash(one) for one in called)
-    return count + sum(one.n_instructions() for one in called if calls[hash(one)] < FEWEST)
+    called = called_functions(function).values()
+    calls = Counter(map(hash, called))
+    further: int = sum(one.n_instructions() for one in called if calls[hash(one)] < FEWEST)
+    return count + further
 
 
 def with_shorter_calls(function: ca.Function) -> ca.Function:
@@ -286,9 +284,9 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
     if not function.find_functions(0):
         return function
     listing = Listing(function)
-    operands_of: dict[_Known, list[list[int]]] = {}
+    operands_of: dict[Known, list[list[int]]] = {}
     for call in listing.calls:
-        operands_of.setdefault(_Known(hash(call.function), call.function), []).append(call.operands)
+        operands_of.setdefault(Known(hash(call.function), call.function), []).append(call.operands)
     zero = {number for number, value in enumerate(listing.values) if value == Constant(0.0)}
     shorter = {}
     for known, operands in operands_of.items():
@@ -304,24 +302,8 @@ def with_shorter_calls(function: ca.Function) -> ca.Function:
     return ca.Function(function.name(), symbols, listing.results(expressions), function.name_in(), function.name_out())
 
 
-@dataclass(frozen=True)
-class _Known:
-    """A function by its hash, which it keeps."""
-
-    key: int
-    function: ca.Function = field(compare=False)
-
-
 @cache
-def _in_scalars(known: _Known) -> ca.Function:
-    """A function of scalars: one function for all calls of a function of matrices."""
-    function = known.function
-    # CasADi would write one that is kept as a call of itself.
-    return function_of(program_of(function)).expand() if function.is_a("MXFunction") else function
-
-
-@cache
-def _without(known: _Known, places: tuple[int, ...]) -> ShorterCall:
+def _without(known: Known, places: tuple[int, ...]) -> ShorterCall:
     """A function without operands that are zero: one function, so that the functions that call it share its calls."""
     function = known.function
     symbols = function.sx_in()

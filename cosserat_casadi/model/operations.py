@@ -9,7 +9,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.calls import called_functions, in_scalars
+from cosserat_casadi.compiling.called import called_functions
+from cosserat_casadi.maths.calls import in_scalars
 
 COUNTED_EXACTLY = 100_000
 """Operations up to which a function is expanded to be counted: sharing the terms of so many takes about a second."""

@@ -176,7 +176,9 @@ class Tangent:
     def interval_variation(self) -> Matrix:
         """δθ that each interval adds, base frame, (3·intervals)×n_a, rad."""
         if self.turns is not None:
-            return stack(self.kernels.turned.map(self.intervals)(self._turnings, self._in_intervals(self.turns)))
+            turned = self.kernels.turned.map(self.intervals)(self._turnings, self._in_intervals(self.turns))
+            variation: Matrix = stack(turned)
+            return variation
         if self.igm.pulled.interval_moment is not None:
             return self.interval_operators[0] @ self._turns
         return block_diagonal(self._turnings, self.kernels.turning.sparsity_out(0)) @ self._turns
