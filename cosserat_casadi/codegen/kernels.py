@@ -46,6 +46,13 @@ Compilers would take most of their time for it, and steps do without it.
 """
 
 
+SHORT = 400
+"""Instructions of a function up to which it shares kernels with short ones alone.
+
+Handing over what long ones need would take a fifth of its time.
+"""
+
+
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
     """The functions of the solver in C, with dense outputs; an assembly has its equations in parts."""
     wanted = functions_in_c(model, names)
@@ -126,14 +133,15 @@ def _of_one_rod(model: Model, names: Names, entries: Sequence[FunctionInC], most
     written = {entry.kernel: _written(model, entry, most_in_columns) for entry in entries}
     # All unknowns of a scene of one clamped rod are its strains.
     clamped = [rod.size for rod in model.discrete.rods.values()] == [model.size]
-    straight: dict[int, list[ca.Function | ColumnedFunction]] = defaultdict(list)
+    straight: dict[tuple[int, bool], list[ca.Function | ColumnedFunction]] = defaultdict(list)
     finished: dict[str, Kernel] = {}
     for one in written.values():
         function = one.form.function if isinstance(one, ColumnedFunction) else one
         first = function.name_in()[:2]
         if function.is_a("SXFunction") and (first == ["x", "inputs"] or (clamped and first[0] == "q")):
             # To the solver parameters are further inputs.
-            straight[function.size1_in(function.index_in("inputs"))].append(one)
+            inputs_size = function.size1_in(function.index_in("inputs"))
+            straight[inputs_size, function.n_instructions() <= SHORT].append(one)
     for number, functions in enumerate(straight.values()):
         # CasADi prints an operation that is not known here: then these functions share nothing.
         with suppress(UnknownOperationError):

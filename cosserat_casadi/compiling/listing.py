@@ -93,6 +93,12 @@ class Call:
     operands: list[int]
     results: list[int]
 
+    @property
+    def arguments(self) -> list[list[int]]:
+        """The operands, argument after argument."""
+        sizes = (self.function.nnz_in(i) for i in range(self.function.n_in()))
+        return [self.operands[first:end] for first, end in pairwise(accumulate(sizes, initial=0))]
+
 
 @dataclass(frozen=True)
 class ShorterCall:

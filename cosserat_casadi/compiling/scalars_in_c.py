@@ -11,7 +11,6 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from itertools import accumulate, pairwise
 
 import casadi as ca
 import numpy as np
@@ -334,11 +333,8 @@ class _Writing:
 
     def _reads_constants(self, calls: Sequence[int]) -> bool:
         """Whether an argument is constant numbers in all calls of a function: they stay where they lie."""
-        operands = [self.listing.calls[number].operands for number in calls]
-        function = self.listing.calls[calls[0]].function
-        ends = accumulate((function.nnz_in(i) for i in range(function.n_in())), initial=0)
-        arguments = [[number for own in operands for number in own[first:end]] for first, end in pairwise(ends)]
-        return any(argument and all(map(self._is_constant, argument)) for argument in arguments)
+        arguments = zip(*(self.listing.calls[number].arguments for number in calls), strict=True)
+        return any(all(own and all(map(self._is_constant, own)) for own in of_calls) for of_calls in arguments)
 
     def _depths(self) -> list[int]:
         """Depth of each value: most calls on a way to it, its own call included.
@@ -478,12 +474,9 @@ class _Writing:
             run: how operands lie, None where they are not together.
             copied: for each call the copy of operands, where an argument does not lie alike in all calls.
         """
-        function = calls[0].function
-        ends = list(accumulate((function.nnz_in(i) for i in range(function.n_in())), initial=0))
         pointers: list[list[str]] = [[] for _ in calls]
         forms = []
-        for first, end in pairwise(ends):
-            operands = [call.operands[first:end] for call in calls]
+        for operands in zip(*(call.arguments for call in calls), strict=True):
             runs = [run(one) for one in operands]
             forms_of_calls = {None if one is None else one.form for one in runs}
             if None in forms_of_calls or len(forms_of_calls) > 1:
@@ -542,8 +535,8 @@ class _Writing:
 
     def _is_worth_gathering(self, places: Sequence[int | None]) -> bool:
         """Whether numbers are brought together by a table of their places."""
-        known = len(places) - places.count(None)
-        return self.arithmetic is SINGLE and known >= max(FEWEST_GATHERED, len(places) // 2)
+        lying = sum(place not in (None, ZERO, ZERO + 1) for place in places)
+        return self.arithmetic is SINGLE and lying >= max(FEWEST_GATHERED, len(places) // 2)
 
     def _append_gathering(self, to: str, places: Sequence[int], asked: str = "") -> None:
         """Append a statement that brings the numbers at these places together."""

@@ -133,7 +133,8 @@ class IntervalKernels:
     def turned(self) -> ca.Function:
         """The map (A, turn) ↦ A turn: δθ of an interval for one variation of its turn, 3×1; A of :attr:`turning`."""
         turning = ca.SX.sym("A", self.turning.sparsity_out(0))
-        return ca.Function("turned", [turning, self.turn], [turning @ self.turn], ["A", "turn"], ["turned"], KEPT)
+        names = ["A", "turn"], ["turned"]
+        return ca.Function("turned", [turning, self.turn], [turning @ self.turn], *names, self._kept_in_columns)
 
     @cached_property
     def pulled(self) -> ca.Function:
@@ -146,7 +147,13 @@ class IntervalKernels:
         turned, moment = ca.SX.sym("turned", 3), ca.SX.sym("moment", 3)
         force = a.T @ (moment + v @ turned) + h @ self.turn
         arguments = [a, v, h, self.turn, turned, moment]
-        return ca.Function("pulled", arguments, [force], [*names, "turn", "turned", "moment"], ["force"], KEPT)
+        words = [*names, "turn", "turned", "moment"], ["force"]
+        return ca.Function("pulled", arguments, [force], *words, self._kept_in_columns)
+
+    @property
+    def _kept_in_columns(self) -> dict[str, bool]:
+        """Options of functions that columns call: about one axis they are shorter than a call."""
+        return KEPT if len(self.axes) > 1 else {}
 
     @property
     def _turning(self) -> ca.SX:
