@@ -51,7 +51,7 @@ from cosserat_casadi.compiling.statements import (
     number_in_c,
 )
 
-FEWEST_GATHERED = 16
+FEWEST_GATHERED = 64
 """Numbers from which on a table brings numbers together that lie apart."""
 
 ZERO = 0

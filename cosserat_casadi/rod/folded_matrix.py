@@ -96,7 +96,8 @@ class FoldedTranspose:
 class FoldedAxes:
     """Folded matrices of several axes, as one matrix on fields that are stacked axis by axis, order after order.
 
-    Generated code calls one function for products with matrices of equal pattern: their numbers are an argument.
+    Generated code calls one function for products with matrices of equal pattern: their numbers are an argument. About
+    one axis there is one product, which is written where it stands.
 
     Attributes:
         matrices: of each axis, k×n.
@@ -118,6 +119,8 @@ class FoldedAxes:
 
     def times(self, column: Matrix) -> Matrix:
         """Product with a column of the entries of all axes, axis after axis."""
+        if len(self.matrices) == 1:
+            return self.matrices[0] @ column[: self.matrices[0].half.shape[1]]
         products = []
         start = 0
         for matrix in self.matrices:
@@ -130,6 +133,8 @@ class FoldedAxes:
 
     def transposed_times(self, stacked: Matrix) -> Matrix:
         """Product of the transpose with one stacked field, a column."""
+        if len(self.matrices) == 1:
+            return self.matrices[0].T @ stacked
         count = len(self.matrices)
         parts = ca.vertsplit(stacked, stacked.shape[0] // (count * self.orders))
         columns = [ca.vertcat(*parts[axis::count]) for axis in range(count)]

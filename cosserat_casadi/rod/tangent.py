@@ -415,7 +415,8 @@ class Tangent:
         if self.turns is not None:
             fields = map(self._in_intervals, (self.turns, self.interval_variation, moment))
             pulled = stack(self.kernels.pulled.map(self.intervals)(*self._variations, *fields))
-            return self.rod.turn_axes.transposed_times(pulled) / -self.rod.energy_unit
+            # A product takes a processor far less time than a quotient.
+            return self.rod.turn_axes.transposed_times(pulled) * (-1.0 / self.rod.energy_unit)
         turning, stiffness, second = self.interval_operators
         passing = with_product(moment, stiffness, self.interval_variation)
         pulled = with_product(turning.T @ passing, second, self._turns)
