@@ -62,7 +62,7 @@ class Stream:
 
     @property
     def scales(self) -> list[float]:
-        """What each use of a constant is rounded beside: the largest number of an argument that is called with it."""
+        """Size that each use of a constant is rounded beside: the largest number in its argument of a call."""
         scale_of: dict[int, float] = {}
         for call in self.listing.calls:
             for argument in call.arguments:

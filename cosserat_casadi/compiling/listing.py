@@ -102,7 +102,7 @@ class Call:
 
 @dataclass(frozen=True)
 class ShorterCall:
-    """A function without operands that are zero in all calls, and those that it does not read.
+    """A function without operands that are zero in all calls, and without operands that it does not read.
 
     Attributes:
         function: the function.
@@ -273,7 +273,7 @@ class Listing:
 
 
 def length(function: ca.Function) -> int:
-    """Instructions of a function of scalars; calls of a few are as long as what they call, of intervals each is one."""
+    """Instructions of a function of scalars, with the instructions of functions that are called once or twice."""
     count: int = function.n_instructions()
     called = called_functions(function).values()
     calls = Counter(map(hash, called))

@@ -524,7 +524,7 @@ def _units(program: Program) -> list[Unit]:
 
 
 def _first_places(program: Program) -> list[tuple[int, _Key]]:
-    """Of each step the number of units that it waits for, and which unit may hold it."""
+    """How many units each step waits for, and which unit may hold it."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
     made_by: dict[int, tuple[int, _Key]] = {}
     places = []

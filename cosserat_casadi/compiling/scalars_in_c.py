@@ -724,7 +724,7 @@ class _Run:
 
     @property
     def form(self) -> tuple[bool, tuple[int, ...]]:
-        """What runs have in common that one function can read."""
+        """Key that runs share which one function can read."""
         return self.in_column, self.places
 
 
