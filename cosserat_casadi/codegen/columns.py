@@ -20,7 +20,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
-from cosserat_casadi.compiling.listing import LANES
+from cosserat_casadi.compiling.listing import LANES, with_shorter_calls
 from cosserat_casadi.compiling.printed_kernels import ColumnForm
 from cosserat_casadi.maths.calls import in_scalars
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -63,6 +63,18 @@ class RodColumns:
     def padded_turns(self) -> FloatArray:
         """The turns with zeros behind the last column."""
         return _padded(self.turns)
+
+
+def _turns(tangent: Tangent) -> tuple[FloatArray, ca.MX, ca.MX]:
+    """Turns of the intervals that any column has, shape (entries, count), a symbol of those of one, and all its turns.
+
+    Strains of few modes have no turns of some orders.
+    """
+    turns = tangent.turn_matrix.unfolded.full()
+    rows = np.flatnonzero(turns.any(axis=1)).tolist()
+    turn = ca.MX.sym("turns", len(rows))
+    pattern = ca.Sparsity.triplet(len(turns), 1, rows, [0] * len(rows))
+    return turns[rows], turn, ca.MX(pattern, turn)
 
 
 def _padded(turns: FloatArray) -> FloatArray:
@@ -127,9 +139,8 @@ class ColumnedJacobian:
         self.of_columns = self._scalar("of_columns", list(symbols.values()), jacobian)
 
     def _rod_columns(self, tangent: Tangent) -> RodColumns:
-        turns = tangent.turn_matrix.unfolded.full()
-        turn = ca.MX.sym("turns", turns.shape[0])
-        one = _stacked(Tangent(tangent.igm, turns=turn).columns)
+        turns, turn, every = _turns(tangent)
+        one = _stacked(Tangent(tangent.igm, turns=every).columns)
         pattern = _stacked(tangent.columns).sparsity()
         return RodColumns(self._scalar("of_one", [turn], ca.densify(one)), pattern, turns)
 
@@ -204,7 +215,7 @@ class ColumnPart:
         shared = ca.cse([self.entries, self.column])
         words = [*self.given, *_words_of_columns(name)]
         function = ca.Function(name, self.symbols, shared, words, ["jacobian", "column"])
-        return ColumnForm(function, self.turns, self.column.numel())
+        return ColumnForm(with_shorter_calls(function), self.turns, self.column.numel())
 
 
 def columned_jacobian(written: WrittenJacobian) -> ColumnedJacobian | None:
@@ -254,9 +265,8 @@ def pose_in_columns(model: Model, spec: FunctionSpec, owner: str, name: str) -> 
     if discrete_rod.discretisation.transport == "permuted" or not discrete_rod.angular:
         return None
     written = expressions_of(model, tuple(spec.arguments_of(discrete)), owner)
-    turns = written.system.pose_variations(rod).turn_matrix.unfolded.full()
-    turn = ca.MX.sym("turns", turns.shape[0])
-    of_one = replace(written.system, turns={rod: turn})
+    turns, turn, every_turn = _turns(written.system.pose_variations(rod))
+    of_one = replace(written.system, turns={rod: every_turn})
     derivatives = spec.write(model, replace(written, known={System: of_one}))
     assert derivatives is not None, "every section has a pose"
     by_unknowns, *others = derivatives
@@ -270,7 +280,7 @@ def pose_in_columns(model: Model, spec: FunctionSpec, owner: str, name: str) -> 
     words = [*written.symbols, *_words_of_columns(name)]
     results_by_name = [f"result_{i}" for i in range(len(results))]
     plain = ca.Function(name, [*written.symbols.values(), columns, turn], results, words, results_by_name)
-    return ColumnForm(in_scalars(plain, name), padded, rows)
+    return ColumnForm(with_shorter_calls(in_scalars(plain, name)), padded, rows)
 
 
 def _words_of_columns(name: str) -> list[str]:

@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.passages import passage_kernels
 from cosserat_casadi.codegen.shared_values import with_shared_kernels
-from cosserat_casadi.compiling.listing import UnknownOperationError
+from cosserat_casadi.compiling.listing import UnknownOperationError, length, with_shorter_calls
 from cosserat_casadi.compiling.printed_kernels import ColumnForm, Kernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, with_calls_in_fours
 from cosserat_casadi.maths.calls import chooses, with_dense_results
@@ -45,7 +45,8 @@ MOST_BESIDE_STEPS = 20_000
 Compilers would take most of their time for it, and steps do without it.
 """
 
-SHORT = 1000
+
+SHORT = 400
 """Instructions of a function up to which it shares kernels with short ones alone.
 
 Handing over what long ones need would take a fifth of its time.
@@ -163,9 +164,7 @@ def _written(model: Model, entry: FunctionInC, most_in_columns: int) -> ca.Funct
     longest = STRAIGHT if entry.spec.name in SELDOM else STRAIGHT_BESIDE_INTERVALS
     straight = None if _literal(model) else scalar(entry.function, entry.kernel, longest)
     # More statements than STRAIGHT are worth it only where calls of intervals are made four at a time.
-    if straight is None or (
-        straight.n_instructions() > STRAIGHT and isinstance(with_calls_in_fours(straight), ca.Function)
-    ):
+    if straight is None or (length(straight) > STRAIGHT and isinstance(with_calls_in_fours(straight), ca.Function)):
         return with_dense_results(entry.function, entry.kernel)
     if entry.spec.name in OF_SECTIONS:
         form = pose_in_columns(model, entry.spec, entry.owner or "", entry.kernel)
@@ -222,11 +221,11 @@ def scalar(function: ca.Function, name: str, most: int) -> ca.Function | None:
     """
     symbols = function.sx_in()
     expressions = list(function.call(symbols))
-    if ca.Function(name, symbols, expressions).n_instructions() > SHARED_AT_MOST * most:
+    if length(ca.Function(name, symbols, expressions)) > SHARED_AT_MOST * most:
         return None
     shared = [ca.densify(expression) for expression in ca.cse(expressions)]
-    straight = ca.Function(name, symbols, shared, function.name_in(), function.name_out())
-    return straight if straight.n_instructions() <= most else None
+    straight = with_shorter_calls(ca.Function(name, symbols, shared, function.name_in(), function.name_out()))
+    return straight if length(straight) <= most else None
 
 
 def differentiable(model: Model, names: Names) -> list[ca.Function]:

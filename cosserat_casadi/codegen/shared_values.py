@@ -14,7 +14,7 @@ from itertools import accumulate, pairwise
 
 import casadi as ca
 
-from cosserat_casadi.compiling.listing import Called, Computed, Listing, Read
+from cosserat_casadi.compiling.listing import Called, Computed, Listing
 from cosserat_casadi.compiling.printed_kernels import PrintedKernel
 from cosserat_casadi.compiling.scalars_in_c import ColumnedFunction, columns_in_fours, scalars_in_c, shared_in_c
 from cosserat_casadi.maths.calls import with_shared_terms
@@ -76,12 +76,7 @@ class _Sharing:
             results.append(ca.vertcat(*map(ca.vec, function.call(arguments))))
         symbols = list(known.values())
         self._listing = Listing(with_shared_terms("joint", symbols, results))
-        entries = [symbol.nonzeros() for symbol in symbols]
-        self._read = {
-            number: entries[value.argument][value.entry]
-            for number, value in enumerate(self._listing.values)
-            if isinstance(value, Read)
-        }
+        self._read = self._listing.known_arguments(symbols)
         self._homes = self._homes_of_values()
         self._handed_over = self._read_elsewhere()
         self._kernels: dict[int, ca.Function] = {}

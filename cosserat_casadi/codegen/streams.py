@@ -60,6 +60,18 @@ class Stream:
             entries = sorted(value.entry for value in read if value.argument == i)
             self.reads.append([0] if function.numel_in(i) == 1 else entries)
 
+    @property
+    def scales(self) -> list[float]:
+        """Size that each use of a constant is rounded beside: the largest number in its argument of a call."""
+        scale_of: dict[int, float] = {}
+        for call in self.listing.calls:
+            for argument in call.arguments:
+                values = {number: self.listing.values[number] for number in argument}
+                constants = {number: abs(one.value) for number, one in values.items() if isinstance(one, Constant)}
+                scale_of |= dict.fromkeys(constants, max(constants.values(), default=0.0))
+        numbers = [number for number, value in enumerate(self.listing.values) if isinstance(value, Constant)]
+        return [scale_of.get(number, 0.0) for number in numbers]
+
     @classmethod
     def settled(cls, function: ca.Function) -> Stream:
         """The values without products with a one that is off by rounding.
@@ -133,16 +145,18 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
     # What the streams have in place of one constant, by the numbers of their values: alike but for rounding.
     numbered = [tuple(number_of[value] for value in values) for values in uses]
     varied: dict[tuple[int, ...], tuple[float, ...]] = {}
-    for numbers, values in zip(numbered, uses, strict=True):
-        if len(set(numbers)) > 1:
+    varies = []
+    for numbers, values, scale in zip(numbered, uses, first.scales, strict=True):
+        varies.append(len(set(numbers)) > 1 and max(values) - min(values) > ROUNDING * scale)
+        if varies[-1]:
             varied.setdefault(numbers, values)
     arguments = [*first.function.name_in(), "constants"]
     sizes = [*map(len, first.reads), len(varied)]
     symbols = [ca.SX.sym(argument, size) for argument, size in zip(arguments, sizes, strict=True)]
     symbol_of = dict(zip(varied, _entries(symbols[-1]), strict=True))
     constants = []
-    for numbers, values in zip(numbered, uses, strict=True):
-        constants.append(symbol_of[numbers] if numbers in symbol_of else ca.SX(values[0]))
+    for numbers, values, own in zip(numbered, uses, varies, strict=True):
+        constants.append(symbol_of[numbers] if own else ca.SX(values[0]))
     kernel = ca.Function(name, symbols, ca.cse([first.result(symbols, constants)]), *names_of_part(arguments))
     return kernel, [[values[i] for values in varied.values()] for i in range(len(streams))]
 

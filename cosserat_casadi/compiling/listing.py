@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
+from itertools import accumulate, pairwise
 
 import casadi as ca
 
-from cosserat_casadi.maths.calls import called_functions
+from cosserat_casadi.compiling.called import Known, called_functions
 
 LANES = 4
 """Numbers that are computed together: columns, intervals, states."""
+
+FEWEST = 3
+"""Calls of one function from which on they are made together, four at a time."""
 
 BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 """Operations that four lanes have, as C writes them."""
@@ -87,6 +93,28 @@ class Call:
     operands: list[int]
     results: list[int]
 
+    @property
+    def arguments(self) -> list[list[int]]:
+        """The operands, argument after argument."""
+        sizes = (self.function.nnz_in(i) for i in range(self.function.n_in()))
+        return [self.operands[first:end] for first, end in pairwise(accumulate(sizes, initial=0))]
+
+
+@dataclass(frozen=True)
+class ShorterCall:
+    """A function without operands that are zero in all calls, and without operands that it does not read.
+
+    Attributes:
+        function: the function.
+        places: of the operands that it takes.
+    """
+
+    function: ca.Function
+    places: Sequence[int]
+
+
+NO_CALLS: Mapping[int, ShorterCall] = {}
+
 
 class UnknownOperationError(Exception):
     """An operation has no form in this package's C."""
@@ -149,12 +177,15 @@ class Listing:
             names[function_hash] = f"{name}_{len(names)}" if name in names.values() else name
         return names
 
-    def expressions(self, wanted: Iterable[int], known: Mapping[int, ca.SX]) -> dict[int, ca.SX]:
+    def expressions(
+        self, wanted: Iterable[int], known: Mapping[int, ca.SX], shorter: Mapping[int, ShorterCall] = NO_CALLS
+    ) -> dict[int, ca.SX]:
         """Expressions of values, and of the values that they are computed from, by number.
 
         Args:
             wanted: numbers of the values.
             known: expressions of some values, among them all entries of arguments.
+            shorter: functions that are called in place of others, by the hash of these.
         """
         expressions = dict(known)
         needed = {number for number in wanted if number not in known}
@@ -171,7 +202,12 @@ class Listing:
                 expressions[number] = apply(value.operation, *operands)
             elif isinstance(value, Called) and number not in expressions:
                 call = self.calls[value.call]
-                expressions |= zip(call.results, _call_of_entries(call.function, operands), strict=True)
+                short = shorter.get(hash(call.function))
+                if short is None:
+                    results = _call_of_entries(call.function, operands)
+                else:
+                    results = _call_of_entries(short.function, [operands[place] for place in short.places])
+                expressions |= zip(call.results, results, strict=True)
         return expressions
 
     def entries(self, output: int, expressions: Mapping[int, ca.SX]) -> list[ca.SX]:
@@ -180,6 +216,17 @@ class Listing:
         for entry, number in self.outputs[output].items():
             entries[entry] = expressions[number]
         return entries
+
+    def known_arguments(self, symbols: Sequence[ca.SX]) -> dict[int, ca.SX]:
+        """Symbols of the values that are entries of arguments, by number, from symbols of all arguments."""
+        entries = [symbol.nonzeros() for symbol in symbols]
+        reads = ((number, value) for number, value in enumerate(self.values) if isinstance(value, Read))
+        return {number: entries[value.argument][value.entry] for number, value in reads}
+
+    def results(self, expressions: Mapping[int, ca.SX]) -> list[ca.SX]:
+        """The outputs, from expressions of the values that they have."""
+        patterns = [self.function.sparsity_out(i) for i in range(len(self.outputs))]
+        return [ca.SX(pattern, ca.vertcat(*self.entries(i, expressions))) for i, pattern in enumerate(patterns)]
 
     def _add(self, k: int, code: int) -> None:
         """Append the value, or the values, of the k-th instruction, which has this code."""
@@ -225,13 +272,75 @@ class Listing:
         return number
 
 
-def _call_of_entries(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
-    """Entries of all results of a function that is called with these entries."""
-    shaped = list[ca.SX]()
+def length(function: ca.Function) -> int:
+    """Instructions of a function of scalars, with the instructions of functions that are called once or twice."""
+    count: int = function.n_instructions()
+    called = called_functions(function).values()
+    calls = Counter(map(hash, called))
+    further: int = sum(one.n_instructions() for one in called if calls[hash(one)] < FEWEST)
+    return count + further
+
+
+def with_shorter_calls(function: ca.Function) -> ca.Function:
+    """A function of scalars that hands over no operand that is zero in all calls of one function, or that is not read.
+
+    Derivatives of a kernel are called for variations of few of its arguments, and a strain may have no such Taylor
+    coefficients: without the zeros the called functions are shorter.
+    """
+    if not function.find_functions(0):
+        return function
+    listing = Listing(function)
+    operands_of: dict[Known, list[list[int]]] = {}
+    for call in listing.calls:
+        operands_of.setdefault(Known(hash(call.function), call.function), []).append(call.operands)
+    zero = {number for number, value in enumerate(listing.values) if value == Constant(0.0)}
+    shorter = {}
+    for known, operands in operands_of.items():
+        if known.function.is_a("SXFunction"):
+            places = [place for place, numbers in enumerate(zip(*operands, strict=True)) if zero.issuperset(numbers)]
+            short = _without(known, tuple(places))
+            if len(short.places) < len(operands[0]):
+                shorter[known.key] = short
+    if not shorter:
+        return function
+    symbols = function.sx_in()
+    expressions = listing.expressions(listing.wanted(), listing.known_arguments(symbols), shorter)
+    return ca.Function(function.name(), symbols, listing.results(expressions), function.name_in(), function.name_out())
+
+
+@cache
+def _without(known: Known, places: tuple[int, ...]) -> ShorterCall:
+    """A function without operands that are zero: one function, so that the functions that call it share its calls."""
+    function = known.function
+    symbols = function.sx_in()
+    entries = [entry for symbol in symbols for entry in symbol.nonzeros()]
+    left = [ca.SX(0.0) if place in places else entry for place, entry in enumerate(entries)]
+    # The function is kept as a call where it is called.
+    inside = Listing(function)
+    known = inside.known_arguments(_shaped(function, left))
+    results = ca.cse(inside.results(inside.expressions(inside.wanted(), known)))
+    written = Listing(ca.Function("written", symbols, results))
+    starts = list(accumulate((function.nnz_in(i) for i in range(function.n_in())), initial=0))
+    read = sorted(starts[value.argument] + value.entry for value in written.values if isinstance(value, Read))
+    vectors = []
+    for first, end in pairwise(starts):
+        own = [entries[place] for place in read if first <= place < end]
+        vectors += [ca.vertcat(*own)] if own else []
+    return ShorterCall(ca.Function(function.name(), vectors, results, {"never_inline": True}), read)
+
+
+def _shaped(function: ca.Function, entries: Sequence[ca.SX]) -> list[ca.SX]:
+    """Arguments of a function from all their stored entries."""
+    shaped = []
     start = 0
     for i in range(function.n_in()):
         pattern = function.sparsity_in(i)
         end = start + pattern.nnz()
-        shaped.append(ca.SX(pattern, ca.vertcat(*arguments[start:end])))
+        shaped.append(ca.SX(pattern, ca.vertcat(*entries[start:end])))
         start = end
-    return [entry for result in function.call(shaped, False, True) for entry in result.nonzeros()]
+    return shaped
+
+
+def _call_of_entries(function: ca.Function, entries: Sequence[ca.SX]) -> list[ca.SX]:
+    """Entries of all results of a function that is called with these entries."""
+    return [entry for result in function.call(_shaped(function, entries), False, True) for entry in result.nonzeros()]

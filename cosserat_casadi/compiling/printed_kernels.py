@@ -148,6 +148,26 @@ class Callee:
 
 
 @dataclass(frozen=True)
+class PlacedCallee:
+    """A function that reads its arguments where they lie: the code of four columns calls it, or a kernel.
+
+    Attributes:
+        body: in C.
+        arguments: how many pointers it takes besides one to its results.
+        in_fours: whether it computes four columns.
+    """
+
+    body: str
+    arguments: int
+    in_fours: bool
+
+    def text(self, name: str) -> str:
+        """The function in C, under a name."""
+        given = ", ".join(f"const casadi_real *p{i}" for i in range(self.arguments))
+        return f"static void MADE({name})({given}, casadi_real *made){self.body}"
+
+
+@dataclass(frozen=True)
 class ConstantTable:
     """A constant array.
 
@@ -186,7 +206,7 @@ class PrintedKernel:
     signature: ca.Function
     tables: Mapping[str, ConstantTable]
     body: str
-    callees: Mapping[str, Callee]
+    callees: Mapping[str, Callee | PlacedCallee]
     reals: int
     statements: int
     loops: Mapping[str, str] = field(default_factory=dict)
@@ -239,13 +259,15 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
     public = kernels
     kernels = _with_called(kernels)
     callees = _callees(kernels, stem)
-    any_program = any(kernel.is_program for kernel in kernels)
+    any_program = any(kernel.is_program or "program_" in kernel.body for kernel in kernels)
     routines = product_routines(product for kernel in kernels for product in kernel.products)
     tables = _tables(kernels, stem)
     bodies = {kernel.name(): _with_names(kernel, kernel.body, callees, tables) for kernel in kernels}
-    called = [callees[callee] for kernel in kernels for callee in kernel.callees.values()]
-    functions = [callee.text(name) for callee, name in callees.items()]
-    choices = [_choice(name, PARAMETERS_OF_CALLEE) for name in dict.fromkeys(called)]
+    called = [name for callee, name in callees.items() if isinstance(callee, Callee)]
+    placed = [callee for callee in callees if isinstance(callee, PlacedCallee)]
+    alone = {callee: callees[callee] for callee in placed if not callee.in_fours}
+    functions = [callee.text(name) for callee, name in callees.items() if callee not in alone]
+    choices = [_choice(name, PARAMETERS_OF_CALLEE) for name in called]
     for kernel in kernels:
         for in_fours, parameters in ((kernel.columns, PARAMETERS_OF_COLUMNS), (kernel.loops, PARAMETERS_OF_LOOP)):
             functions += [_with_names(kernel, text, callees, tables) for text in in_fours.values()]
@@ -255,7 +277,7 @@ def printed_sources(kernels: Sequence[PrintedKernel], stem: str, qualifier: str 
         "left_out": LEFT_OUT,
         "programs": '#include "program.h"\n' + routines if any_program else "",
         "choices": "".join(choices),
-        "once": "\n".join(bodies.values()),
+        "once": "\n".join([*(callee.text(name) for callee, name in alone.items()), *bodies.values()]),
         "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in public),
     }
     texts = [*functions, words["once"]]
@@ -310,9 +332,9 @@ def _with_called(kernels: Sequence[PrintedKernel]) -> list[PrintedKernel]:
     return list(every.values())
 
 
-def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee, str]:
+def _callees(kernels: Sequence[PrintedKernel], stem: str) -> dict[Callee | PlacedCallee, str]:
     """Names of the functions that kernels call: one name for each function, by whichever kernels it is called."""
-    name_of: dict[Callee, str] = {}
+    name_of: dict[Callee | PlacedCallee, str] = {}
     for kernel in kernels:
         for word, callee in kernel.callees.items():
             if callee not in name_of:
@@ -368,7 +390,7 @@ def _array(kind: str, name: str, numbers: Sequence[str]) -> str:
 
 
 def _with_names(
-    kernel: PrintedKernel, text: str, callees: Mapping[Callee, str], tables: Mapping[ConstantTable, str]
+    kernel: PrintedKernel, text: str, callees: Mapping[Callee | PlacedCallee, str], tables: Mapping[ConstantTable, str]
 ) -> str:
     """Text of a kernel, with the names that functions and constant arrays have for all kernels."""
     for word, callee in kernel.callees.items():

@@ -18,13 +18,13 @@ from functools import partial
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.compiling.listing import LANES, Constant, Listing, Read, UnknownOperationError
-from cosserat_casadi.compiling.numbered import SMALL, Numbers, Program, Step
-from cosserat_casadi.compiling.printed_kernels import Callee, ConstantTable, PrintedKernel
+from cosserat_casadi.compiling.listing import FEWEST, LANES, Constant, Listing, Read, UnknownOperationError
+from cosserat_casadi.compiling.numbered import SMALL, Numbers, Program, Step, Value
+from cosserat_casadi.compiling.place_tables import ConstantTables
+from cosserat_casadi.compiling.printed_kernels import Callee, PrintedKernel
 from cosserat_casadi.compiling.products import Product, column_groups
 from cosserat_casadi.compiling.scalars_in_c import callee, scalars_in_c
 from cosserat_casadi.compiling.statements import (
-    FEWEST,
     FOURS,
     LONGEST_OF_NUMBERS,
     SINGLE,
@@ -43,12 +43,6 @@ FEWEST_TURNS = 5
 
 LONGEST_PRODUCT_WITHOUT_LOOP = 40
 """Instructions up to which a product of matrices is written without a loop."""
-
-WIDEST_TURN = 120
-"""Entries of a turn up to which places are looked through for turns that move on by equal steps."""
-
-LEAST_SAVED = 4
-"""Numbers that a table must be shorter by where entries become another group."""
 
 LOOP_IN_FOURS = """static void MADE({name})(casadi_real *w) {{
   FOR_FOURS(i, {count}) {{
@@ -127,32 +121,6 @@ class RoomOfKernel:
             else:
                 joined.append((begin, room))
         self._free = joined
-
-
-class ConstantTables:
-    """Constant arrays of a kernel, each there once."""
-
-    def __init__(self) -> None:
-        self.by_name: dict[str, ConstantTable] = {}
-        self._names: dict[ConstantTable, str] = {}
-
-    def of_integers(self, numbers: Numbers) -> str:
-        """The name of a table of whole numbers in C."""
-        return self._named(ConstantTable("int", tuple(map(str, numbers.tolist()))))
-
-    def of_places(self, places: Numbers) -> str:
-        """The name of a table of places in groups (program.h), and their count, from an array with an entry a row."""
-        groups = _groups(places)
-        return f"{self.of_integers(np.concatenate(groups))}, {len(groups)}"
-
-    def of_numbers(self, values: Sequence[float]) -> str:
-        """The name of a table of numbers in C."""
-        return self._named(ConstantTable("casadi_real", tuple("0" if value == 0 else repr(value) for value in values)))
-
-    def _named(self, table: ConstantTable) -> str:
-        name = self._names.setdefault(table, f"t{len(self._names)}")
-        self.by_name[name] = table
-        return f"TABLE({name})"
 
 
 def program_in_c(program: Program, signature: ca.Function) -> PrintedKernel:
@@ -548,9 +516,18 @@ class _Writing:
 
 def _units(program: Program) -> list[Unit]:
     """Units in an order in which each comes behind the units that it waits for."""
+    units: dict[tuple[int, _Key], Unit] = {}
+    for step, (depth, key) in zip(program.steps, _with_late_calls(program, _first_places(program)), strict=True):
+        units.setdefault((depth, key), Unit(key[0], [])).steps.append(step)
+    in_order = [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
+    return [part for unit in in_order for part in _in_bundles(unit)]
+
+
+def _first_places(program: Program) -> list[tuple[int, _Key]]:
+    """How many units each step waits for, and which unit may hold it."""
     calls = Counter(hash(step.function) for step in program.steps if step.called)
     made_by: dict[int, tuple[int, _Key]] = {}
-    units: dict[tuple[int, _Key], Unit] = {}
+    places = []
     for number, step in enumerate(program.steps):
         key = _key(step, number, calls)
         depth = 0
@@ -560,11 +537,33 @@ def _units(program: Program) -> list[Unit]:
                     before, other = made_by[owner]
                     joins = key == other and _joins(key, operand.numbers, program.origins.numbers(owner))
                     depth = max(depth, before if joins else before + 1)
-        units.setdefault((depth, key), Unit(key[0], [])).steps.append(step)
-        for owner in program.origins.holders(_joined([result.numbers for result in step.results])):
-            made_by[owner] = (depth, key)
-    in_order = [unit for _, unit in sorted(units.items(), key=lambda entry: entry[0][0])]
-    return [part for unit in in_order for part in _in_bundles(unit)]
+        places.append((depth, key))
+        made_by |= dict.fromkeys(_owners(program, step.results), (depth, key))
+    return places
+
+
+def _with_late_calls(program: Program, places: list[tuple[int, _Key]]) -> list[tuple[int, _Key]]:
+    """Places of steps, calls with the last other calls of their function that come before their results are read."""
+    depths: dict[_Key, set[int]] = defaultdict(set)
+    for depth, key in places:
+        depths[key].add(depth)
+    last: dict[int, int] = {}
+    late = list(places)
+    for number in reversed(range(len(places))):
+        step = program.steps[number]
+        depth, key = places[number]
+        if key[0] is UnitKind.CALLS:
+            latest = min((last[owner] for owner in _owners(program, step.results) if owner in last), default=depth)
+            depth = max(other for other in depths[key] if other <= max(latest, depth))
+            late[number] = depth, key
+        for owner in _owners(program, step.operands):
+            last[owner] = min(last.get(owner, depth - 1), depth - 1)
+    return late
+
+
+def _owners(program: Program, values: Sequence[Value]) -> list[int]:
+    """The things that hold the entries of values."""
+    return program.origins.holders(_joined([value.numbers for value in values]))
 
 
 _Key = tuple[UnitKind, int]
@@ -645,57 +644,6 @@ def _text(listing: Listing, read: Numbers, elsewhere: dict[int, int], number: in
     if isinstance(value, Read):
         return f"w[{read[value.entry]}]"
     return None
-
-
-def _groups(places: Numbers) -> list[Numbers]:
-    """Places in groups whose turns move on by equal steps, as routines of program.h read them.
-
-    Each group is the number of entries of a turn, the number of turns, the places of the first turn and, where there
-    are more, the step of each from turn to turn.
-
-    Args:
-        places: one entry or product a row, shape (count, places of each).
-    """
-    saved, width, turns = _longest_turns(places)
-    groups = []
-    alone = first = 0
-    while first <= len(places):
-        ends = first == len(places)
-        if (ends or saved[first]) and alone < first:
-            groups.append(np.concatenate([[first - alone, 1], places[alone:first].ravel()]))
-        if ends:
-            return groups
-        if not saved[first]:
-            first += 1
-            continue
-        one, count = width[first], turns[first]
-        begin = places[first : first + one]
-        steps = places[first + one : first + 2 * one] - begin
-        groups.append(np.concatenate([[one, count], begin.ravel(), steps.ravel()]))
-        first += one * count
-        alone = first
-    return groups
-
-
-def _longest_turns(places: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """The turns that begin at each entry and save most: numbers that they save, 0 for none, their width and count."""
-    entries, of_each = places.shape
-    saved = np.zeros(entries, dtype=np.int64)
-    width = np.zeros_like(saved)
-    turns = np.zeros_like(saved)
-    # Two turns are as many numbers as places and steps.
-    for one in range(1, min(WIDEST_TURN, entries // 3) + 1):
-        bends = places[2 * one :] - 2 * places[one:-one] + places[: -2 * one]
-        here = np.arange(len(bends))
-        end = np.where(np.any(bends, axis=1), here, len(bends))
-        straight = np.minimum.accumulate(end[::-1])[::-1] - here
-        count = (straight + 2 * one) // one
-        less = of_each * one * (count - 2) - 2
-        better = np.flatnonzero((less >= LEAST_SAVED) & (less > saved[: len(bends)]))
-        saved[better] = less[better]
-        width[better] = one
-        turns[better] = count[better]
-    return saved, width, turns
 
 
 def _triples(left: ca.Sparsity, right: ca.Sparsity, result: ca.Sparsity) -> Numbers:

@@ -14,8 +14,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.compiling.called import called_functions
 from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, REWRITTEN
-from cosserat_casadi.maths.calls import called_functions
 from cosserat_casadi.maths.typing import FloatArray
 
 Lines = npt.NDArray[np.intc]

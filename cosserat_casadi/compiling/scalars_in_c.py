@@ -8,14 +8,16 @@ order, and equals CasADi's to the last digit.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi.compiling.listing import (
     LANES,
+    Call,
     Called,
     Computed,
     Constant,
@@ -23,14 +25,15 @@ from cosserat_casadi.compiling.listing import (
     Read,
     UnknownOperationError,
 )
+from cosserat_casadi.compiling.place_tables import ConstantTables
 from cosserat_casadi.compiling.printed_kernels import (
     CALL_OF_COLUMNS,
     COLUMNS,
     PART_OF_COLUMNS,
     Callee,
     ColumnForm,
-    ConstantTable,
     Kernel,
+    PlacedCallee,
     PrintedKernel,
     in_groups,
 )
@@ -47,6 +50,12 @@ from cosserat_casadi.compiling.statements import (
     in_parts,
     number_in_c,
 )
+
+FEWEST_GATHERED = 64
+"""Numbers from which on a table brings numbers together that lie apart."""
+
+ZERO = 0
+"""Place of a zero in the array that a kernel works in, once a table reads it; a one is beside it."""
 
 
 def scalars_in_c(
@@ -190,7 +199,8 @@ class _Writing:
         self.kernels = {hash(call.function): kernels.get(hash(call.function)) for call in listing.calls}
         self.is_shared = first_of_shared is not None
         called = [kernel.reals for kernel in self.kernels.values() if kernel is not None]
-        self.reals = max(called, default=first_of_shared or 0)
+        self.reals = max(called, default=first_of_shared or ZERO + 2)
+        self.tables = ConstantTables()
         self.place: dict[int, int] = {}
         self.in_column = self._in_column()
         self.batch_of = self._batches()
@@ -201,12 +211,14 @@ class _Writing:
         self.given_to_columns = self._given_to_columns()
         for value in self.given_to_columns:
             self.place.setdefault(value, self._room(1))
+        self.passed = _Passed()
+        self.turns = ""
         self.columns = 0 if form is None else self._room(form.rows * form.stride)
         self.main = Block("casadi_real", "a", [])
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
         self.column_functions: dict[str, str] = {}
-        self.callees: dict[str, Callee] = {}
+        self.callees: dict[str, Callee | PlacedCallee] = {}
         self.statements = 0
 
     def inherit(self, argument: int, kernels: Sequence[PrintedKernel]) -> None:
@@ -218,14 +230,12 @@ class _Writing:
 
     def result(self) -> PrintedKernel:
         """The kernel."""
-        tables = {}
         self._write_callees()
         for value in self.given_to_columns:
             self._compute(value)
         if self.form is not None:
             if self.form.turns_behind is None:
-                numbers = tuple(f"{value:.17g}" for value in in_groups(self.form.turns))
-                tables["turns"] = ConstantTable("casadi_real", numbers)
+                self.turns = self.tables.of_numbers(in_groups(self.form.turns).tolist())
             self._write_columns(self.form)
         if self.is_shared:
             self._keep_results()
@@ -235,7 +245,7 @@ class _Writing:
         body = "\n".join(self.functions)
         return PrintedKernel(
             self.signature,
-            tables,
+            self.tables.by_name,
             body,
             self.callees,
             self.reals,
@@ -303,13 +313,15 @@ class _Writing:
         depth = self._depths()
         groups: dict[tuple[int, int], list[int]] = defaultdict(list)
         for number, call in enumerate(self.listing.calls):
-            groups[hash(call.function), depth[call.results[0]]].append(number)
+            if not self.in_column[call.results[0]]:
+                groups[hash(call.function), depth[call.results[0]]].append(number)
         batches: dict[int, _Batch] = {}
         for calls in groups.values():
             call = self.listing.calls[calls[0]]
             kernel = self._kernel(calls)
             together = self.arithmetic.together
-            width = LANES if together is not None and len(calls) >= together and kernel is None else 1
+            alone = kernel is not None or self._reads_constants(calls)
+            width = LANES if together is not None and len(calls) >= together and not alone else 1
             batch = _Batch(tuple(calls), width, len(call.operands), len(call.results), self.reals)
             batches |= dict.fromkeys(calls, batch)
             if kernel is not None:
@@ -319,12 +331,21 @@ class _Writing:
             self._place_results(batch)
         return batches
 
+    def _reads_constants(self, calls: Sequence[int]) -> bool:
+        """Whether an argument is constant numbers in all calls of a function: they stay where they lie."""
+        arguments = zip(*(self.listing.calls[number].arguments for number in calls), strict=True)
+        return any(all(own and all(map(self._is_constant, own)) for own in of_calls) for of_calls in arguments)
+
     def _depths(self) -> list[int]:
-        """Depth of each value: most calls on a way to it, its own call included."""
+        """Depth of each value: most calls on a way to it, its own call included.
+
+        Kernels that are shared do not count: a call that waits for more of them is made together with the others.
+        """
         depths: list[int] = []
         for number, value in enumerate(self.listing.values):
             depth = max((depths[operand] for operand in self.listing.operands(number)), default=0)
-            depths.append(depth + 1 if isinstance(value, Called) else depth)
+            counts = isinstance(value, Called) and self.kernels[hash(self.listing.calls[value.call].function)] is None
+            depths.append(depth + counts)
         return depths
 
     def _place_results(self, batch: _Batch) -> None:
@@ -399,16 +420,82 @@ class _Writing:
             # It works in the same array, in which kernels before have left what it reads.
             self.main.statements.append(Statement(f"MADE({kernel.name()})(arg, res, w);", []))
             return
+        if self._reads_places(batch):
+            self._append_calls_at_places(batch)
+            return
+        operands = [0] * (batch.width * batch.turns * batch.operands)
         for k in range(batch.width * batch.turns):
             turn, lane = divmod(k, batch.width)
             # Lanes that are left over compute what the last call does.
             call = self.listing.calls[batch.calls[min(k, len(batch.calls) - 1)]]
             for i, operand in enumerate(call.operands):
-                place = self.given + batch.operand_place(turn, lane, i)
-                self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
+                operands[batch.operand_place(turn, lane, i)] = operand
+        places = [self._place_of(operand) for operand in operands]
+        gathered = self._is_worth_gathering(places)
+        for place, operand in enumerate(operands):
+            if places[place] is None or not gathered:
+                self.main.statements.append(Statement(f"w[{self.given + place}] = {{0}};", [operand]))
+        if gathered:
+            # Numbers that have no place but this one stay in it.
+            sources = [self.given + i if place is None else place for i, place in enumerate(places)]
+            self._append_gathering(f"w + {self.given}", sources)
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
         call = f"MADE({self.name}_{name})(w + {self.given}, w + {batch.made}, {batch.turns});"
         self.main.statements.append(Statement(call, []))
+
+    def _reads_places(self, batch: _Batch) -> bool:
+        """Whether calls, each of which is made alone, read numbers where they lie."""
+        return batch.width == 1 and self.arithmetic is SINGLE
+
+    def _append_calls_at_places(self, batch: _Batch) -> None:
+        """Append calls, one after the other, that read their operands where they lie."""
+        calls = [self.listing.calls[number] for number in batch.calls]
+
+        def copied(operands: Sequence[int]) -> _Run:
+            first = self._room(len(operands))
+            for place, operand in enumerate(operands, first):
+                self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
+            return _run_of("w", range(first, first + len(operands)), 1)
+
+        pointers, forms = self._arguments_at_places(calls, self._run_of_numbers, [copied] * len(calls))
+        name = self._callee_name(calls[0].function, 1)
+        self.callees[name], _ = callee_at_places(Listing(calls[0].function), forms, SINGLE)
+        for k, given in enumerate(pointers):
+            made = f"w + {batch.made + k * batch.results}"
+            self.main.statements.append(Statement(f"MADE({self.name}_{name})({', '.join([*given, made])});", []))
+
+    def _arguments_at_places(
+        self, calls: Sequence[Call], run: Callable[[Sequence[int]], _Run | None], copied: Sequence[Callable[..., _Run]]
+    ) -> tuple[list[list[str]], list[tuple[bool, tuple[int, ...]]]]:
+        """Pointers to the arguments of calls of one function, and how each of these arguments lies.
+
+        Args:
+            calls: the calls.
+            run: how operands lie, None where they are not together.
+            copied: for each call the copy of operands, where an argument does not lie alike in all calls.
+        """
+        pointers: list[list[str]] = [[] for _ in calls]
+        forms = []
+        for operands in zip(*(call.arguments for call in calls), strict=True):
+            runs = [run(one) for one in operands]
+            forms_of_calls = {None if one is None else one.form for one in runs}
+            if None in forms_of_calls or len(forms_of_calls) > 1:
+                runs = [copy(one) for copy, one in zip(copied, operands, strict=True)]
+            found = [one for one in runs if one is not None]
+            forms.append(found[0].form)
+            for pointer, one in zip(pointers, found, strict=True):
+                pointer.append(one.pointer)
+        return pointers, forms
+
+    def _run_of_numbers(self, operands: Sequence[int]) -> _Run | None:
+        """How numbers lie in a table, or in the array that the kernel works in; None where some have no place there."""
+        values = [self.listing.values[operand] for operand in operands]
+        constants = [value.value for value in values if isinstance(value, Constant)]
+        if len(constants) == len(values):
+            return _Run(self.tables.of_numbers(constants), False, tuple(range(len(values))))
+        places = [self.place.get(operand) for operand in operands]
+        known = [place for place in places if place is not None]
+        return _run_of("w", known, 1) if len(known) == len(places) else None
 
     def _write_results(self) -> None:
         """Append the entries of all results; one of several may be asked for by no pointer."""
@@ -417,14 +504,46 @@ class _Writing:
             entries = self.listing.outputs[result]
             may_be_absent = count > 1
             asked = f"if (res[{result}]) " if may_be_absent else ""
-            for entry in range(self.listing.function.nnz_out(result)):
-                place = f"res[{result}][{entry}]"
-                if entry in entries:
-                    self._compute(entries[entry])
-                    stored = Statement(f"{asked}{place} = {{0}};", [entries[entry]], asked=may_be_absent)
-                    self.main.statements.append(stored)
-                else:
-                    self.main.statements.append(Statement(f"{asked}{place} = {self.arithmetic.number(0.0)};", []))
+            count_of_entries = self.listing.function.nnz_out(result)
+            places = [self._place_of(entries[i]) if i in entries else ZERO for i in range(count_of_entries)]
+            gathered = self._is_worth_gathering(places)
+            if gathered:
+                for entry, number in entries.items():
+                    if places[entry] is not None:
+                        self._compute(number)
+                # What has no place is written behind.
+                sources = [ZERO if place is None else place for place in places]
+                self._append_gathering(f"res[{result}]", sources, asked)
+            for entry, place in enumerate(places):
+                if gathered and place is not None:
+                    continue
+                text = f"{asked}res[{result}][{entry}] = "
+                if entry not in entries:
+                    self.main.statements.append(Statement(f"{text}{self.arithmetic.number(0.0)};", []))
+                    continue
+                self._compute(entries[entry])
+                self.main.statements.append(Statement(f"{text}{{0}};", [entries[entry]], asked=may_be_absent))
+
+    def _place_of(self, number: int) -> int | None:
+        """Where a value is in the array, if it has a place there: zero and one have the first two."""
+        value = self.listing.values[number]
+        if isinstance(value, Constant) and value.value in (0.0, 1.0):
+            return ZERO + int(value.value)
+        if isinstance(value, Read) and self._is_of_all_columns(number):
+            return self.columns + value.entry
+        return self.place.get(number)
+
+    def _is_worth_gathering(self, places: Sequence[int | None]) -> bool:
+        """Whether numbers are brought together by a table of their places."""
+        lying = sum(place not in (None, ZERO, ZERO + 1) for place in places)
+        return self.arithmetic is SINGLE and lying >= max(FEWEST_GATHERED, len(places) // 2)
+
+    def _append_gathering(self, to: str, places: Sequence[int], asked: str = "") -> None:
+        """Append a statement that brings the numbers at these places together."""
+        for constant in {ZERO, ZERO + 1} & {*places}:
+            self.main.statements.append(Statement(f"w[{constant}] = {constant - ZERO};", []))
+        table = self.tables.of_places(np.array(places, dtype=np.int64)[:, None])
+        self.main.statements.append(Statement(f"{asked}program_gather({to}, w, {table});", []))
 
     def _keep_results(self) -> None:
         """Append the entries of the one result, each in another place."""
@@ -464,7 +583,7 @@ class _Writing:
     def _write_callees(self) -> None:
         wanted = {}
         for batch in self.batch_of.values():
-            if self._kernel(batch.calls) is not None:
+            if self._kernel(batch.calls) is not None or self._reads_places(batch):
                 continue
             function = self.listing.calls[batch.calls[0]].function
             wanted[self._callee_name(function, batch.width)] = (function, batch.width)
@@ -478,35 +597,43 @@ class _Writing:
     def _write_columns(self, form: ColumnForm) -> None:
         """Write what computes four columns, in parts that pass values on, and append its calls."""
         statements = self._statements_of_columns(form)
-        parts, passed = in_parts(statements, LONGEST, lambda place: f"STORE(passed + {LANES * place}, {{0}});")
-        room = self._room(LANES * passed)
+        # Behind the values that calls take and give.
+        first = self.passed.count
+        parts, passed = in_parts(statements, LONGEST, lambda place: _passed_on(first + place), self.passed.places)
+        room = self._room(LANES * (first + passed))
         name = f"{self.name}_columns"
         calls = []
         functions = []
         for k, part in enumerate(parts):
             block = Block("FOUR", "b", part.statements)
-            body = _body(block.lines(partial(self._text_in_columns, part.passed)))
+            made = {statement.made for statement in part.statements}
+            elsewhere = {value: first + place for value, place in part.passed.items()}
+            elsewhere |= {value: place for value, place in self.passed.places.items() if value not in made}
+            body = _body(block.lines(partial(self._text_in_columns, elsewhere)))
             functions.append(PART_OF_COLUMNS.format(name=name, part=k, body=body))
             calls.append(CALL_OF_COLUMNS.format(name=name, part=k))
             self.statements += len(block.statements)
         listed = "\n".join(calls)
         functions.append(COLUMNS.format(name=name, turns=LANES * len(form.turns), calls=listed))
         self.column_functions[name] = "\n".join(functions)
-        turns = "TABLE(turns)"
-        start = 0
+        turns = self.turns
         if form.turns_behind is not None:
-            turns = f"arg[{form.columns_argument - 1}]"
-            start = form.turns_behind
-        given = f"w, {turns} + {start}, w + {self.columns}, w + {room}, {form.stride // LANES}"
+            turns = f"arg[{form.columns_argument - 1}] + {form.turns_behind}"
+        given = f"w, {turns}, w + {self.columns}, w + {room}, {form.stride // LANES}"
         self.main.statements.append(Statement(f"MADE({name})({given});", []))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
         statements = []
+        called = self._calls_in_columns()
         for number, value in enumerate(self.listing.values):
-            if self.in_column[number] and not isinstance(value, Read):
-                if not isinstance(value, Computed):
-                    raise UnknownOperationError("a call in a column")
+            if not self.in_column[number] or isinstance(value, Read):
+                continue
+            if isinstance(value, Computed):
                 statements.append(FOURS.operation(value.operation, value.operands, number))
+                if number in self.passed.places:
+                    statements.append(Statement(_passed_on(self.passed.places[number]), [number]))
+            elif isinstance(value, Called) and value.result == 0:
+                statements += called[value.call]
         entries = self.listing.outputs[-1]
         for row in range(form.rows):
             place = row * form.stride
@@ -518,6 +645,54 @@ class _Writing:
             else:
                 raise UnknownOperationError("a row that all columns share")
         return statements
+
+    def _calls_in_columns(self) -> dict[int, list[Statement]]:
+        """Statements of each call that columns make, by its number."""
+        listing = self.listing
+        of_columns = [number for number, call in enumerate(listing.calls) if self.in_column[call.results[0]]]
+        for number in of_columns:
+            for result in listing.calls[number].results:
+                self.passed.place(result)
+        statements: dict[int, list[Statement]] = {number: [] for number in of_columns}
+        by_function: dict[int, list[int]] = defaultdict(list)
+        for number in of_columns:
+            by_function[hash(listing.calls[number].function)].append(number)
+        for key, numbers in by_function.items():
+            calls = [listing.calls[number] for number in numbers]
+            copied = [partial(self._passed_copy, statements[number]) for number in numbers]
+            pointers, forms = self._arguments_at_places(calls, self._run_in_columns, copied)
+            name = f"{self.callee_names[key]}_of_column"
+            self.callees[name], count = callee_at_places(Listing(calls[0].function), forms, FOURS)
+            self.statements += count
+            for number, given in zip(numbers, pointers, strict=True):
+                made = f"passed + {LANES * self.passed.places[listing.calls[number].results[0]]}"
+                call = f"MADE({self.name}_{name})({', '.join([*given, made])});"
+                statements[number].append(Statement(call, []))
+        return statements
+
+    def _run_in_columns(self, operands: Sequence[int]) -> _Run | None:
+        """How numbers that the code of columns reads lie in one array; None where they do not."""
+        if not any(self.in_column[operand] for operand in operands):
+            return self._run_of_numbers(operands)
+        values = [self.listing.values[operand] for operand in operands]
+        entries = [value.entry for value in values if isinstance(value, Read)]
+        if len(entries) == len(values):
+            return _run_of("turns", entries, LANES)
+        places = self.passed.places
+        new = all(isinstance(value, Computed) for value in values) and all(self.in_column[one] for one in operands)
+        if new and places.keys().isdisjoint(operands) and len({*operands}) == len(operands):
+            for operand in operands:
+                self.passed.place(operand)
+        known = [places[operand] for operand in operands if operand in places]
+        return _run_of("passed", known, LANES) if len(known) == len(operands) else None
+
+    def _passed_copy(self, statements: list[Statement], operands: Sequence[int]) -> _Run:
+        """A copy of numbers, as the statements are extended by: one behind the other."""
+        first = self.passed.more(len(operands))
+        for place, operand in enumerate(operands, first):
+            store = "STORE" if self.in_column[operand] else "FILL"
+            statements.append(Statement(f"{store}(passed + {LANES * place}, {{0}});", [operand]))
+        return _run_of("passed", range(first, first + len(operands)), LANES)
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
         """Text of a value that is in no variable of the code of columns."""
@@ -531,6 +706,97 @@ class _Writing:
         if isinstance(value, Read):
             return f"TURN({LANES * value.entry})"
         return None
+
+
+@dataclass(frozen=True)
+class _Run:
+    """How an argument of a call lies.
+
+    Attributes:
+        pointer: to its first number in C.
+        in_column: whether it differs from column to column.
+        places: of its numbers behind the first.
+    """
+
+    pointer: str
+    in_column: bool
+    places: tuple[int, ...]
+
+    @property
+    def form(self) -> tuple[bool, tuple[int, ...]]:
+        """Key that runs share which one function can read."""
+        return self.in_column, self.places
+
+
+def _run_of(array: str, places: Sequence[int], lanes: int) -> _Run:
+    """How numbers at these places lie, so many lanes of each beside each other."""
+    behind = tuple(lanes * (place - places[0]) for place in places)
+    return _Run(f"{array} + {lanes * places[0]}", array != "w", behind)
+
+
+class _Passed:
+    """Fours that calls in columns take and give.
+
+    Attributes:
+        places: of values, by their number.
+        count: how many there are.
+    """
+
+    def __init__(self) -> None:
+        self.places: dict[int, int] = {}
+        self.count = 0
+
+    def more(self, count: int) -> int:
+        """Where so many new ones begin."""
+        self.count += count
+        return self.count - count
+
+    def place(self, value: int) -> int:
+        """The new place of a value."""
+        self.places[value] = self.more(1)
+        return self.places[value]
+
+
+def _passed_on(place: int) -> str:
+    """Text of the statement that passes four numbers on."""
+    return f"STORE(passed + {LANES * place}, {{0}});"
+
+
+def callee_at_places(
+    listing: Listing, forms: Sequence[tuple[bool, tuple[int, ...]]], arithmetic: Arithmetic
+) -> tuple[PlacedCallee, int]:
+    """A function that reads its arguments where they lie, and its number of statements.
+
+    Args:
+        listing: the values of the function.
+        forms: of each argument, whether it differs from column to column, and the places of its entries.
+        arithmetic: FOURS for four columns at once, or SINGLE.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form here.
+    """
+    if listing.calls:
+        raise UnknownOperationError(f"a call in {listing.function.name()}, which is called itself")
+    in_fours = arithmetic is FOURS
+    block = Block(*(("FOUR", "b") if in_fours else ("casadi_real", "a")), computations(listing, arithmetic))
+    results = _starts(listing.function.nnz_out(i) for i in range(listing.function.n_out()))
+    for start, entries in zip(results, listing.outputs, strict=True):
+        for entry, number in entries.items():
+            place = start + entry
+            store = f"STORE(made + {LANES * place}, {{0}});" if in_fours else f"made[{place}] = {{0}};"
+            block.statements.append(Statement(store, [number]))
+
+    def text(number: int) -> str | None:
+        value = listing.values[number]
+        if isinstance(value, Constant):
+            return arithmetic.number(value.value)
+        if isinstance(value, Read):
+            in_column, places = forms[value.argument]
+            place = places[value.entry]
+            return f"LOAD(p{value.argument} + {place})" if in_column else f"p{value.argument}[{place}]"
+        return None
+
+    return PlacedCallee(_body(block.lines(text)), len(forms), in_fours), len(block.statements)
 
 
 def callee(listing: Listing, arithmetic: Arithmetic) -> tuple[Callee, int]:

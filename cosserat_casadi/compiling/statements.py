@@ -11,7 +11,16 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from cosserat_casadi.compiling.listing import BINARY, CHOICES, FUNCTIONS, SUMS, Computed, Listing, UnknownOperationError
+from cosserat_casadi.compiling.listing import (
+    BINARY,
+    CHOICES,
+    FEWEST,
+    FUNCTIONS,
+    SUMS,
+    Computed,
+    Listing,
+    UnknownOperationError,
+)
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
@@ -175,9 +184,6 @@ class Arithmetic:
         places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
         return Statement(f"{self.functions[operation]}({places})", operands, made, ATOM)
 
-
-FEWEST = 3
-"""Calls of one function from which on they are made together, four at a time."""
 
 SINGLE = Arithmetic(FUNCTIONS, CHOICES, "{}", FEWEST)
 """Numbers one by one, and calls of intervals four at a time."""

@@ -1,8 +1,8 @@
-"""Calls of functions: at many arguments at once, and which functions a function calls."""
+"""Calls of functions: at many arguments at once, and which functions are called within a function."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import chain, islice
 
@@ -17,28 +17,15 @@ MOST_MAPPED = 64
 Pattern = tuple[tuple[int, int], list[int], list[int]]
 """Shape of a matrix, and rows and columns of its entries, column after column."""
 
+KEPT = {"never_inline": True}
+"""Options of functions that stay functions when a model is expanded to scalars: generated code calls them."""
+
 ONE_DIRECTION = {"max_num_dir": 1}
 """Options of kernels: derivatives along several directions are as many calls of one function, not one long function.
 
 CasADi differentiates kernels itself where rotations follow from the literal linear system. The C of a joint,
 or of a material's law, would be megabytes otherwise, which compilers take minutes for.
 """
-
-
-def called_functions(function: ca.Function, codes: Iterable[int] | None = None) -> dict[int, ca.Function]:
-    """The function that each call of a scalar function is of, by the number of its instruction.
-
-    Args:
-        function: of scalar instructions (an ``SXFunction``).
-        codes: its instructions, where they are known.
-    """
-    if codes is None:
-        codes = map(function.instruction_id, range(function.n_instructions()))
-    calls = [k for k, code in enumerate(codes) if code == ca.OP_CALL]
-    if not calls:
-        return {}
-    elements = function.instructions_sx().nz
-    return {k: elements[k].which_function() for k in calls}
 
 
 def in_scalars(function: ca.Function, name: str) -> ca.Function:

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.maths.calls import called_functions, in_scalars
+from cosserat_casadi.maths.calls import in_scalars
 
 COUNTED_EXACTLY = 100_000
 """Operations up to which a function is expanded to be counted: sharing the terms of so many takes about a second."""
@@ -142,16 +142,16 @@ def _entries_of_columns(matrix: ca.MX) -> npt.NDArray[np.int64]:
 
 
 def _scalar_operations(scalar: ca.Function) -> int:
-    called = called_functions(scalar)
+    elements = scalar.instructions_sx().nz if scalar.find_functions(0) else []
     inside: dict[int, int] = {}
     total = 0
     for i in range(scalar.n_instructions()):
         kind = scalar.instruction_id(i)
         if kind == ca.OP_CALL:
-            callee = hash(called[i])
-            if callee not in inside:
-                inside[callee] = _scalar_operations(called[i])
-            total += inside[callee]
+            called = elements[i].which_function()
+            if hash(called) not in inside:
+                inside[hash(called)] = most_operations(called, {})
+            total += inside[hash(called)]
         elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
             total += 1
     return total

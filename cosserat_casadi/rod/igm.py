@@ -78,8 +78,8 @@ class InverseGeometricModel:
             # (∂Ω/∂q)ᵀ Tᵀ Rᵀ m of every interval.
             pull = interval_kernels(self.rod).pull.map(moment.shape[1])
             pulled = pull(*self.shape.interval_arguments, moment)
-            per_coordinate = self.rod.turn_matrix / -self.rod.energy_unit
-            force = force + per_coordinate.T @ stack(pulled)
+            angular = self.rod.turn_axes.transposed_times(stack(pulled)) * (-1.0 / self.rod.energy_unit)
+            force = ca.vertcat(angular, ca.DM(self.rod.size - angular.shape[0], 1))
         return force + self._linear_force(covector)
 
     @cached_property

@@ -13,6 +13,7 @@ from functools import cache, cached_property
 
 import casadi as ca
 
+from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.magnus import IncrementRates
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.rotation import cross, hat
@@ -20,7 +21,7 @@ from cosserat_casadi.maths.typing import Matrix, check_shape
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.section_kernel import RATES
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
-from cosserat_casadi.rod.transport import ARGUMENTS, KEPT, IntervalKernels, interval_kernels, interval_turns
+from cosserat_casadi.rod.transport import ARGUMENTS, IntervalKernels, interval_kernels, interval_turns
 
 
 @dataclass(frozen=True)

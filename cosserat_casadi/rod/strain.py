@@ -46,8 +46,11 @@ from cosserat_casadi.maths.numbers import (
 )
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
+from cosserat_casadi.rod.folded_matrix import FoldedAxes, FoldedMatrix, folded
 from cosserat_casadi.rod.properties import Field, RodProperties
+
+NOISE = 1e-14
+"""Share of the largest entry of a section matrix below which an entry is zero: sums over Gauss points leave so much."""
 
 _POLYNOMIALS: dict[str, Callable[[int, FloatArray], FloatArray]] = {
     "legendre": chebyshev.legendre_polynomials,
@@ -168,30 +171,28 @@ class DiscreteRod:
 
     @cached_property
     def turn_matrix(self) -> FoldedMatrix:
-        """Matrix from q to the Taylor coefficients of the turns of all intervals, stacked by components.
+        """Matrix from q to the Taylor coefficients of the turns of all intervals, stacked by components."""
+        return self.turn_axes.joined(self.size)
+
+    @cached_property
+    def turn_axes(self) -> FoldedAxes:
+        """Matrices from the coordinates of each turning axis to the Taylor coefficients of the turns about it.
 
         The intervals of an element mirror each other: every mode enters only the sum or the difference of two mirrored
         intervals.
         """
+        orders = len(self.taylor_matrices)
         count = len(self.grid.left_ends)
-        rows = [np.zeros((0, self.size))]
-        mirror = [np.zeros(0, dtype=np.int64)]
-        signs = [np.zeros(0)]
-        for order, matrices in enumerate(self.taylor_matrices):
-            for axis in self.properties.turning_axes:
-                row = np.zeros((count, self.size))
-                if axis in matrices:
-                    row[:, self.columns[axis]] = matrices[axis]
-                first_row = count * (len(rows) - 1)
-                mirror.append(first_row + self.grid.mirrored_intervals)
-                # The l-th Taylor coefficient takes the sign (−1)^l when the interval is turned round.
-                signs.append(np.full(count, (-1.0) ** order))
-                rows.append(row)
-        if len(rows) == 1:
-            return FoldedMatrix(ca.DM(0, 0), ca.DM(0, self.size))
-        matrix = np.vstack(rows)
-        parities = [self.parities(c) for c in self.columns]
-        return folded(matrix, np.concatenate(mirror), np.concatenate(signs), np.concatenate(parities))
+        mirror = np.concatenate([count * order + self.grid.mirrored_intervals for order in range(orders)])
+        # The l-th Taylor coefficient takes the sign (−1)^l when the interval is turned round.
+        signs = np.repeat((-1.0) ** np.arange(orders), count)
+        matrices = []
+        for axis in self.properties.turning_axes:
+            none = np.zeros((count, self.size_of(axis) if axis in self.columns else 0))
+            rows = np.vstack([matrices_of_order.get(axis, none) for matrices_of_order in self.taylor_matrices])
+            parities = self.parities(axis) if axis in self.columns else np.zeros(0)
+            matrices.append(folded(rows, mirror, signs, parities))
+        return FoldedAxes(matrices, orders)
 
     @cached_property
     def at_nodes(self) -> dict[int, FloatArray]:
@@ -445,7 +446,7 @@ def section_matrix(rod: DiscreteRod, diagonal: Field) -> Numbers:
         for c, columns in rod.columns.items():
             phi = rod.shape_functions(c, X, element)
             result[columns, columns] += phi.T @ (weighted[:, [c]] * phi)
-    return without_rounding(result)
+    return without_rounding(result, NOISE)
 
 
 def _gauss_points(rod: DiscreteRod, element: int) -> tuple[FloatArray, FloatArray]:

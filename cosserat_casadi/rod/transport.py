@@ -15,6 +15,7 @@ import casadi as ca
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.block_operators import unstack
+from cosserat_casadi.maths.calls import KEPT
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
@@ -26,9 +27,6 @@ ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
 
 IDENTITY = ca.DM([1, 0, 0, 0])
 """Quaternion of the base section."""
-
-KEPT = {"never_inline": True}
-"""Kernels stay functions when a model is expanded to scalars: generated code calls them in place of repeating them."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +129,32 @@ class IntervalKernels:
         turning = ca.sparsify(ca.cse(self._turning))
         return ca.Function("turning", self.symbols.listed[:-1], [turning], ARGUMENTS[:-1], ["A"], KEPT)
 
+    @cached_property
+    def turned(self) -> ca.Function:
+        """The map (A, turn) ↦ A turn: δθ of an interval for one variation of its turn, 3×1; A of :attr:`turning`."""
+        turning = ca.SX.sym("A", self.turning.sparsity_out(0))
+        names = ["A", "turn"], ["turned"]
+        return ca.Function("turned", [turning, self.turn], [turning @ self.turn], *names, self._kept_in_columns)
+
+    @cached_property
+    def pulled(self) -> ca.Function:
+        """The map (A, V, H, turn, turned, moment) ↦ Aᵀ (moment + V turned) + H turn: variation of :attr:`pull`, size×1.
+
+        It varies with the turn, with the δθ that follows from it, and with the moment; A, V, H as in :attr:`variation`.
+        """
+        names = ["A", "V", "H"]
+        a, v, h = (ca.SX.sym(name, self.variation.sparsity_out(i)) for i, name in enumerate(names))
+        turned, moment = ca.SX.sym("turned", 3), ca.SX.sym("moment", 3)
+        force = a.T @ (moment + v @ turned) + h @ self.turn
+        arguments = [a, v, h, self.turn, turned, moment]
+        words = [*names, "turn", "turned", "moment"], ["force"]
+        return ca.Function("pulled", arguments, [force], *words, self._kept_in_columns)
+
+    @property
+    def _kept_in_columns(self) -> dict[str, bool]:
+        """Options of functions that columns call: about one axis they are shorter than a call."""
+        return KEPT if len(self.axes) > 1 else {}
+
     @property
     def _turning(self) -> ca.SX:
         """R T ∂Ω/∂turn."""
@@ -195,7 +219,7 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
 def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
     intrinsic = as_matrix(rod.intrinsic_turn)
-    varying = unstack(rod.turn_matrix @ q, intrinsic.shape[0])
+    varying = unstack(rod.turn_axes.times(q), intrinsic.shape[0])
     return per_reference_length(intrinsic, ratio) + varying
 
 

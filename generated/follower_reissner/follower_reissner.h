@@ -163,7 +163,7 @@ typedef struct {
   follower_reissner_real balance[2 * FOLLOWER_REISSNER_UNKNOWNS + 18 + 7];
   follower_reissner_real watched[7];
   follower_reissner_real watched_after[7];
-  follower_reissner_real kernel_reals[1558];
+  follower_reissner_real kernel_reals[1669];
   int kernel_integers[1];
 } follower_reissner_workspace;
 

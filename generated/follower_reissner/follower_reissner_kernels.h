@@ -11,57 +11,57 @@ int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, cas
 #define follower_reissner_k_residual_SZ_ARG 3
 #define follower_reissner_k_residual_SZ_RES 1
 #define follower_reissner_k_residual_SZ_IW 0
-#define follower_reissner_k_residual_SZ_W 466
+#define follower_reissner_k_residual_SZ_W 496
 int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_jacobian_SZ_ARG 3
 #define follower_reissner_k_jacobian_SZ_RES 1
 #define follower_reissner_k_jacobian_SZ_IW 0
-#define follower_reissner_k_jacobian_SZ_W 1557
+#define follower_reissner_k_jacobian_SZ_W 1668
 int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_rate_SZ_ARG 5
 #define follower_reissner_k_rate_SZ_RES 1
 #define follower_reissner_k_rate_SZ_IW 0
-#define follower_reissner_k_rate_SZ_W 658
+#define follower_reissner_k_rate_SZ_W 466
 int follower_reissner_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tangent_SZ_ARG 1
 #define follower_reissner_k_tangent_SZ_RES 1
 #define follower_reissner_k_tangent_SZ_IW 0
-#define follower_reissner_k_tangent_SZ_W 0
+#define follower_reissner_k_tangent_SZ_W 2
 int follower_reissner_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_resolution_index_SZ_ARG 2
 #define follower_reissner_k_resolution_index_SZ_RES 1
 #define follower_reissner_k_resolution_index_SZ_IW 0
-#define follower_reissner_k_resolution_index_SZ_W 0
+#define follower_reissner_k_resolution_index_SZ_W 78
 int follower_reissner_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_richer_balance_SZ_ARG 4
 #define follower_reissner_k_richer_balance_SZ_RES 1
 #define follower_reissner_k_richer_balance_SZ_IW 0
-#define follower_reissner_k_richer_balance_SZ_W 910
+#define follower_reissner_k_richer_balance_SZ_W 890
 int follower_reissner_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_watched_SZ_ARG 2
 #define follower_reissner_k_watched_SZ_RES 1
 #define follower_reissner_k_watched_SZ_IW 0
-#define follower_reissner_k_watched_SZ_W 201
+#define follower_reissner_k_watched_SZ_W 233
 int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_igm_SZ_ARG 4
 #define follower_reissner_k_igm_SZ_RES 3
 #define follower_reissner_k_igm_SZ_IW 0
-#define follower_reissner_k_igm_SZ_W 460
+#define follower_reissner_k_igm_SZ_W 466
 int follower_reissner_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_SZ_ARG 2
 #define follower_reissner_k_tip_SZ_RES 2
 #define follower_reissner_k_tip_SZ_IW 0
-#define follower_reissner_k_tip_SZ_W 201
+#define follower_reissner_k_tip_SZ_W 233
 int follower_reissner_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_tip_jacobian_SZ_ARG 2
 #define follower_reissner_k_tip_jacobian_SZ_RES 2
 #define follower_reissner_k_tip_jacobian_SZ_IW 0
-#define follower_reissner_k_tip_jacobian_SZ_W 716
+#define follower_reissner_k_tip_jacobian_SZ_W 767
 int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_shape_SZ_ARG 3
 #define follower_reissner_k_shape_SZ_RES 2
 #define follower_reissner_k_shape_SZ_IW 0
-#define follower_reissner_k_shape_SZ_W 201
+#define follower_reissner_k_shape_SZ_W 233
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

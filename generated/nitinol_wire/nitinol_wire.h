@@ -160,7 +160,7 @@ typedef struct {
   nitinol_wire_real balance[2 * NITINOL_WIRE_UNKNOWNS + 9 + 7];
   nitinol_wire_real watched[7];
   nitinol_wire_real watched_after[7];
-  nitinol_wire_real kernel_reals[1271];
+  nitinol_wire_real kernel_reals[1422];
   int kernel_integers[1];
 } nitinol_wire_workspace;
 

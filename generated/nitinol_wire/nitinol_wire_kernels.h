@@ -11,57 +11,57 @@ int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define nitinol_wire_k_residual_SZ_ARG 3
 #define nitinol_wire_k_residual_SZ_RES 1
 #define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 467
+#define nitinol_wire_k_residual_SZ_W 501
 int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_jacobian_SZ_ARG 3
 #define nitinol_wire_k_jacobian_SZ_RES 1
 #define nitinol_wire_k_jacobian_SZ_IW 0
-#define nitinol_wire_k_jacobian_SZ_W 1270
+#define nitinol_wire_k_jacobian_SZ_W 1421
 int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_rate_SZ_ARG 5
 #define nitinol_wire_k_rate_SZ_RES 1
 #define nitinol_wire_k_rate_SZ_IW 0
-#define nitinol_wire_k_rate_SZ_W 676
+#define nitinol_wire_k_rate_SZ_W 460
 int nitinol_wire_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tangent_SZ_ARG 1
 #define nitinol_wire_k_tangent_SZ_RES 1
 #define nitinol_wire_k_tangent_SZ_IW 0
-#define nitinol_wire_k_tangent_SZ_W 0
+#define nitinol_wire_k_tangent_SZ_W 2
 int nitinol_wire_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_resolution_index_SZ_ARG 2
 #define nitinol_wire_k_resolution_index_SZ_RES 1
 #define nitinol_wire_k_resolution_index_SZ_IW 0
-#define nitinol_wire_k_resolution_index_SZ_W 0
+#define nitinol_wire_k_resolution_index_SZ_W 75
 int nitinol_wire_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_richer_balance_SZ_ARG 4
 #define nitinol_wire_k_richer_balance_SZ_RES 1
 #define nitinol_wire_k_richer_balance_SZ_IW 0
-#define nitinol_wire_k_richer_balance_SZ_W 893
+#define nitinol_wire_k_richer_balance_SZ_W 822
 int nitinol_wire_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_watched_SZ_ARG 2
 #define nitinol_wire_k_watched_SZ_RES 1
 #define nitinol_wire_k_watched_SZ_IW 0
-#define nitinol_wire_k_watched_SZ_W 198
+#define nitinol_wire_k_watched_SZ_W 158
 int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_igm_SZ_ARG 4
 #define nitinol_wire_k_igm_SZ_RES 3
 #define nitinol_wire_k_igm_SZ_IW 0
-#define nitinol_wire_k_igm_SZ_W 502
+#define nitinol_wire_k_igm_SZ_W 509
 int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_SZ_ARG 2
 #define nitinol_wire_k_tip_SZ_RES 2
 #define nitinol_wire_k_tip_SZ_IW 0
-#define nitinol_wire_k_tip_SZ_W 198
+#define nitinol_wire_k_tip_SZ_W 158
 int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_tip_jacobian_SZ_ARG 2
 #define nitinol_wire_k_tip_jacobian_SZ_RES 2
 #define nitinol_wire_k_tip_jacobian_SZ_IW 0
-#define nitinol_wire_k_tip_jacobian_SZ_W 747
+#define nitinol_wire_k_tip_jacobian_SZ_W 765
 int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_shape_SZ_ARG 3
 #define nitinol_wire_k_shape_SZ_RES 2
 #define nitinol_wire_k_shape_SZ_IW 0
-#define nitinol_wire_k_shape_SZ_W 198
+#define nitinol_wire_k_shape_SZ_W 229
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

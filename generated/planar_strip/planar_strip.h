@@ -5,7 +5,7 @@
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and
    turn section coordinates into world coordinates. The unknowns x and the residual are without unit; q are the strain
-   coordinates of one rod. Functions need at most 4 kB of stack.
+   coordinates of one rod. Functions need at most 3 kB of stack.
 
    The scene asks for a tip pose within 0.0001 of the length. The discretisation was judged at the scene's own inputs:
    estimated error 4.9e-05. Far larger loads need it judged anew.
@@ -158,7 +158,7 @@ typedef struct {
   planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 3 + 7];
   planar_strip_real watched[7];
   planar_strip_real watched_after[7];
-  planar_strip_real kernel_reals[293];
+  planar_strip_real kernel_reals[185];
   int kernel_integers[1];
 } planar_strip_workspace;
 

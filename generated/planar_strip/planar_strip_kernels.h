@@ -11,57 +11,57 @@ int planar_strip_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define planar_strip_k_residual_SZ_ARG 3
 #define planar_strip_k_residual_SZ_RES 1
 #define planar_strip_k_residual_SZ_IW 0
-#define planar_strip_k_residual_SZ_W 144
+#define planar_strip_k_residual_SZ_W 66
 int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_jacobian_SZ_ARG 3
 #define planar_strip_k_jacobian_SZ_RES 1
 #define planar_strip_k_jacobian_SZ_IW 0
-#define planar_strip_k_jacobian_SZ_W 236
+#define planar_strip_k_jacobian_SZ_W 184
 int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_rate_SZ_ARG 5
 #define planar_strip_k_rate_SZ_RES 1
 #define planar_strip_k_rate_SZ_IW 0
-#define planar_strip_k_rate_SZ_W 292
+#define planar_strip_k_rate_SZ_W 66
 int planar_strip_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tangent_SZ_ARG 1
 #define planar_strip_k_tangent_SZ_RES 1
 #define planar_strip_k_tangent_SZ_IW 0
-#define planar_strip_k_tangent_SZ_W 0
+#define planar_strip_k_tangent_SZ_W 2
 int planar_strip_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_resolution_index_SZ_ARG 2
 #define planar_strip_k_resolution_index_SZ_RES 1
 #define planar_strip_k_resolution_index_SZ_IW 0
-#define planar_strip_k_resolution_index_SZ_W 0
+#define planar_strip_k_resolution_index_SZ_W 2
 int planar_strip_k_richer_balance(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_richer_balance_SZ_ARG 4
 #define planar_strip_k_richer_balance_SZ_RES 1
 #define planar_strip_k_richer_balance_SZ_IW 0
-#define planar_strip_k_richer_balance_SZ_W 285
+#define planar_strip_k_richer_balance_SZ_W 140
 int planar_strip_k_watched(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_watched_SZ_ARG 2
 #define planar_strip_k_watched_SZ_RES 1
 #define planar_strip_k_watched_SZ_IW 0
-#define planar_strip_k_watched_SZ_W 48
+#define planar_strip_k_watched_SZ_W 50
 int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_igm_SZ_ARG 4
 #define planar_strip_k_igm_SZ_RES 3
 #define planar_strip_k_igm_SZ_IW 0
-#define planar_strip_k_igm_SZ_W 203
+#define planar_strip_k_igm_SZ_W 66
 int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tip_SZ_ARG 2
 #define planar_strip_k_tip_SZ_RES 2
 #define planar_strip_k_tip_SZ_IW 0
-#define planar_strip_k_tip_SZ_W 48
+#define planar_strip_k_tip_SZ_W 50
 int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_tip_jacobian_SZ_ARG 2
 #define planar_strip_k_tip_jacobian_SZ_RES 2
 #define planar_strip_k_tip_jacobian_SZ_IW 0
-#define planar_strip_k_tip_jacobian_SZ_W 168
+#define planar_strip_k_tip_jacobian_SZ_W 94
 int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_shape_SZ_ARG 3
 #define planar_strip_k_shape_SZ_RES 2
 #define planar_strip_k_shape_SZ_IW 0
-#define planar_strip_k_shape_SZ_W 48
+#define planar_strip_k_shape_SZ_W 50
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -5,7 +5,7 @@
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and
    turn section coordinates into world coordinates. The unknowns x and the residual are without unit; q are the strain
-   coordinates of one rod. Functions need at most 9.5 kB of stack.
+   coordinates of one rod. Functions need at most 10.5 kB of stack.
 
    The scene asks for a tip pose within 0.0001 of the length. The discretisation was judged at the scene's own inputs:
    estimated error 7.8e-05. Far larger loads need it judged anew.
@@ -160,7 +160,7 @@ typedef struct {
   precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9 + 7];
   precurved_tube_real watched[7];
   precurved_tube_real watched_after[7];
-  precurved_tube_real kernel_reals[1697];
+  precurved_tube_real kernel_reals[1781];
   int kernel_integers[1];
 } precurved_tube_workspace;
 

@@ -236,7 +236,7 @@ typedef struct {
   six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 108 + 175];
   six_rod_platform_real watched[175];
   six_rod_platform_real watched_after[175];
-  six_rod_platform_real kernel_reals[2731];
+  six_rod_platform_real kernel_reals[2532];
   int kernel_integers[1];
 } six_rod_platform_workspace;
 

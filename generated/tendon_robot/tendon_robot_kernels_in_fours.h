@@ -178,53 +178,60 @@ static void MADE(tendon_robot_kernels_variations)(const casadi_real *given, casa
     EVERY_LANE(MADE(tendon_robot_kernels_variations_turn)(given + lane, made + lane))
 }
 
-static void MADE(tendon_robot_kernels_fwd1_pulls_turn)(const casadi_real *given, casadi_real *made) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
-  FOUR b16, b17;
-  b0 = GIVEN(68) * GIVEN(80) + GIVEN(72) * GIVEN(84) + GIVEN(76) * GIVEN(88);
-  b1 = GIVEN(44) * GIVEN(80) + GIVEN(48) * GIVEN(84) + GIVEN(52) * GIVEN(88);
-  b2 = GIVEN(32) * b1 - GIVEN(24) * b0;
-  b3 = GIVEN(36) * GIVEN(36) / EACH(2.0);
-  b4 = GIVEN(56) * GIVEN(80) + GIVEN(60) * GIVEN(84) + GIVEN(64) * GIVEN(88);
-  b5 = GIVEN(40) * b2 - b3 * b4;
-  b6 = GIVEN(28) * b0 - GIVEN(32) * b4;
-  b7 = GIVEN(40) * b6 - b3 * b1;
-  b8 = EACH(C[1]) * (b0 + (GIVEN(24) * b5 - GIVEN(28) * b7));
-  b9 = GIVEN(88) * GIVEN(168) + GIVEN(76) * GIVEN(180);
-  b9 = GIVEN(80) * GIVEN(160) + GIVEN(68) * GIVEN(172) + (GIVEN(84) * GIVEN(164) + GIVEN(72) * GIVEN(176)) + b9;
-  b10 = GIVEN(88) * GIVEN(144) + GIVEN(52) * GIVEN(180);
-  b10 = GIVEN(80) * GIVEN(136) + GIVEN(44) * GIVEN(172) + (GIVEN(84) * GIVEN(140) + GIVEN(48) * GIVEN(176)) + b10;
-  b11 = EACH(0.5) * (EACH(2.0) * GIVEN(36) * GIVEN(128));
-  b12 = GIVEN(88) * GIVEN(156) + GIVEN(64) * GIVEN(180);
-  b12 = GIVEN(80) * GIVEN(148) + GIVEN(56) * GIVEN(172) + (GIVEN(84) * GIVEN(152) + GIVEN(60) * GIVEN(176)) + b12;
-  b2 = b2 * GIVEN(132) + GIVEN(40) * (b1 * GIVEN(124) + GIVEN(32) * b10 - (b0 * GIVEN(116) + GIVEN(24) * b9));
-  b2 = b2 - (b4 * b11 + b3 * b12);
-  b6 = b6 * GIVEN(132) + GIVEN(40) * (b0 * GIVEN(120) + GIVEN(28) * b9 - (b4 * GIVEN(124) + GIVEN(32) * b12));
-  b6 = b6 - (b1 * b11 + b3 * b10);
-  b13 = b9 + (b5 * GIVEN(116) + GIVEN(24) * b2 - (b7 * GIVEN(120) + GIVEN(28) * b6));
-  b14 = EACH(C[1]) * b13;
-  b15 = GIVEN(24) * b4 - GIVEN(28) * b1;
-  b16 = GIVEN(40) * b15 - b3 * b0;
-  b17 = EACH(C[1]) * (b4 + (GIVEN(32) * b7 - GIVEN(24) * b16));
-  b4 = b15 * GIVEN(132) + GIVEN(40) * (b4 * GIVEN(116) + GIVEN(24) * b12 - (b1 * GIVEN(120) + GIVEN(28) * b10));
-  b9 = b4 - (b0 * b11 + b3 * b9);
-  b6 = b12 + (b7 * GIVEN(124) + GIVEN(32) * b6 - (b16 * GIVEN(116) + GIVEN(24) * b9));
-  b7 = EACH(C[1]) * b6;
-  b2 = b10 + (b16 * GIVEN(120) + GIVEN(28) * b9 - (b5 * GIVEN(124) + GIVEN(32) * b2));
-  b5 = EACH(C[1]) * (b1 + (GIVEN(28) * b16 - GIVEN(32) * b5));
-  b16 = EACH(C[1]) * b2;
-  STORE(made + 0, b8 * GIVEN(108) + GIVEN(16) * b14 - (b17 * GIVEN(112) + GIVEN(20) * b7) + b2);
-  STORE(made + 4, b6 - (b8 * GIVEN(104) + GIVEN(12) * b14) + (b5 * GIVEN(112) + GIVEN(20) * b16));
-  STORE(made + 8, b13 + (b17 * GIVEN(104) + GIVEN(12) * b7) - (b5 * GIVEN(108) + GIVEN(16) * b16));
-  STORE(made + 12, b17 * GIVEN(100) + GIVEN(8) * b7 - (b8 * GIVEN(96) + GIVEN(4) * b14));
-  STORE(made + 16, b8 * GIVEN(92) + GIVEN(0) * b14 - (b5 * GIVEN(100) + GIVEN(8) * b16));
-  STORE(made + 20, b5 * GIVEN(96) + GIVEN(4) * b16 - (b17 * GIVEN(92) + GIVEN(0) * b7));
+static void MADE(tendon_robot_kernels_turned_of_column)(const casadi_real *p0, const casadi_real *p1, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5;
+  b0 = p0[48] * LOAD(p1 + 128);
+  b1 = p0[60] * LOAD(p1 + 160);
+  b2 = p0[52] * LOAD(p1 + 128);
+  b3 = p0[64] * LOAD(p1 + 160);
+  b4 = p0[56] * LOAD(p1 + 128);
+  b5 = p0[68] * LOAD(p1 + 160);
+  b1 = p0[0] * LOAD(p1 + 0) + p0[12] * LOAD(p1 + 32) + p0[24] * LOAD(p1 + 64) + p0[36] * LOAD(p1 + 96) + b0 + b1;
+  STORE(made + 0, b1);
+  b3 = p0[4] * LOAD(p1 + 0) + p0[16] * LOAD(p1 + 32) + p0[28] * LOAD(p1 + 64) + p0[40] * LOAD(p1 + 96) + b2 + b3;
+  STORE(made + 4, b3);
+  b5 = p0[8] * LOAD(p1 + 0) + p0[20] * LOAD(p1 + 32) + p0[32] * LOAD(p1 + 64) + p0[44] * LOAD(p1 + 96) + b4 + b5;
+  STORE(made + 8, b5);
 }
 
-static void MADE(tendon_robot_kernels_fwd1_pulls)(const casadi_real *given, casadi_real *made, int turns) {
-  int turn;
-  for (turn = 0; turn < turns; turn++, given += 184, made += 24)
-    EVERY_LANE(MADE(tendon_robot_kernels_fwd1_pulls_turn)(given + lane, made + lane))
+static void MADE(tendon_robot_kernels_pulled_of_column)(const casadi_real *p0, const casadi_real *p1, const casadi_real *p2, const casadi_real *p3, const casadi_real *p4, const casadi_real *p5, casadi_real *made) {
+  FOUR b0, b1, b2, b3;
+  b0 = LOAD(p5 + 0) + (p1[0] * LOAD(p4 + 0) + p1[12] * LOAD(p4 + 4) + p1[24] * LOAD(p4 + 8));
+  b1 = LOAD(p5 + 4) + (p1[4] * LOAD(p4 + 0) + p1[16] * LOAD(p4 + 4) + p1[28] * LOAD(p4 + 8));
+  b2 = LOAD(p5 + 8) + (p1[8] * LOAD(p4 + 0) + p1[20] * LOAD(p4 + 4) + p1[32] * LOAD(p4 + 8));
+  b3 = p0[0] * b0 + p0[4] * b1 + p0[8] * b2 + (p2[32] * LOAD(p3 + 128) + p2[40] * LOAD(p3 + 160));
+  STORE(made + 0, b3);
+  b3 = p0[12] * b0 + p0[16] * b1 + p0[20] * b2 + (p2[24] * LOAD(p3 + 96) + p2[44] * LOAD(p3 + 160));
+  STORE(made + 4, b3);
+  b3 = p0[24] * b0 + p0[28] * b1 + p0[32] * b2 + (p2[28] * LOAD(p3 + 96) + p2[36] * LOAD(p3 + 128));
+  STORE(made + 8, b3);
+  b3 = p0[36] * b0 + p0[40] * b1 + p0[44] * b2 + (p2[8] * LOAD(p3 + 32) + p2[16] * LOAD(p3 + 64));
+  STORE(made + 12, b3);
+  b3 = p0[48] * b0 + p0[52] * b1 + p0[56] * b2 + (p2[0] * LOAD(p3 + 0) + p2[20] * LOAD(p3 + 64));
+  STORE(made + 16, b3);
+  b2 = p0[60] * b0 + p0[64] * b1 + p0[68] * b2 + (p2[4] * LOAD(p3 + 0) + p2[12] * LOAD(p3 + 32));
+  STORE(made + 20, b2);
+}
+
+static void MADE(tendon_robot_kernels_fold_of_column)(const casadi_real *p0, const casadi_real *p1, casadi_real *made) {
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
+  b0 = LOAD(p1 + 0) + LOAD(p1 + 72);
+  b1 = LOAD(p1 + 24) + LOAD(p1 + 48);
+  b2 = (LOAD(p1 + 12) + LOAD(p1 + 84)) * p0[4];
+  b3 = (LOAD(p1 + 36) + LOAD(p1 + 60)) * p0[5];
+  b4 = LOAD(p1 + 96) + LOAD(p1 + 168);
+  b5 = LOAD(p1 + 120) + LOAD(p1 + 144);
+  b6 = (LOAD(p1 + 108) + LOAD(p1 + 180)) * p0[14];
+  b7 = (LOAD(p1 + 132) + LOAD(p1 + 156)) * p0[15];
+  b8 = (LOAD(p1 + 132) - LOAD(p1 + 156)) * p0[19];
+  STORE(made + 0, b0 * p0[0] + b1 * p0[1]);
+  STORE(made + 4, (LOAD(p1 + 0) - LOAD(p1 + 72)) * p0[2] + (LOAD(p1 + 24) - LOAD(p1 + 48)) * p0[3] + b2 + b3);
+  b1 = b0 * p0[6] + b1 * p0[7] + (LOAD(p1 + 12) - LOAD(p1 + 84)) * p0[8] + (LOAD(p1 + 36) - LOAD(p1 + 60)) * p0[9];
+  STORE(made + 8, b1);
+  STORE(made + 12, b4 * p0[10] + b5 * p0[11]);
+  b7 = (LOAD(p1 + 96) - LOAD(p1 + 168)) * p0[12] + (LOAD(p1 + 120) - LOAD(p1 + 144)) * p0[13] + b6 + b7;
+  STORE(made + 16, b7);
+  STORE(made + 20, b4 * p0[16] + b5 * p0[17] + (LOAD(p1 + 108) - LOAD(p1 + 180)) * p0[18] + b8);
 }
 
 static void MADE(tendon_robot_kernels_chain_turn)(const casadi_real *given, casadi_real *made) {
@@ -238,35 +245,6 @@ static void MADE(tendon_robot_kernels_chain)(const casadi_real *given, casadi_re
   int turn;
   for (turn = 0; turn < turns; turn++, given += 8, made += 4)
     MADE(tendon_robot_kernels_chain_turn)(given, made);
-}
-
-static void MADE(tendon_robot_kernels_pull_turn)(const casadi_real *given, casadi_real *made) {
-  casadi_real a0, a1, a2, a3, a4, a5, a6, a7;
-  a0 = given[17] * given[20] + given[18] * given[21] + given[19] * given[22];
-  a1 = given[11] * given[20] + given[12] * given[21] + given[13] * given[22];
-  a2 = given[9] * given[9] / 2.0;
-  a3 = given[14] * given[20] + given[15] * given[21] + given[16] * given[22];
-  a4 = given[10] * (given[8] * a1 - given[6] * a0) - a2 * a3;
-  a5 = given[10] * (given[7] * a0 - given[8] * a3) - a2 * a1;
-  a6 = a0 + (given[6] * a4 - given[7] * a5);
-  a7 = C[1] * a6;
-  a0 = given[10] * (given[6] * a3 - given[7] * a1) - a2 * a0;
-  a5 = a3 + (given[8] * a5 - given[6] * a0);
-  a3 = C[1] * a5;
-  a4 = a1 + (given[7] * a0 - given[8] * a4);
-  a0 = C[1] * a4;
-  made[0] = given[4] * a7 - given[5] * a3 + a4;
-  made[1] = a5 - given[3] * a7 + given[5] * a0;
-  made[2] = a6 + given[3] * a3 - given[4] * a0;
-  made[3] = given[2] * a3 - given[1] * a7;
-  made[4] = given[0] * a7 - given[2] * a0;
-  made[5] = given[1] * a0 - given[0] * a3;
-}
-
-static void MADE(tendon_robot_kernels_pull)(const casadi_real *given, casadi_real *made, int turns) {
-  int turn;
-  for (turn = 0; turn < turns; turn++, given += 23, made += 6)
-    MADE(tendon_robot_kernels_pull_turn)(given, made);
 }
 
 static void MADE(tendon_robot_kernels_turnings_turn)(const casadi_real *given, casadi_real *made) {
@@ -334,269 +312,116 @@ static void MADE(tendon_robot_kernels_turnings)(const casadi_real *given, casadi
 
 static void MADE(tendon_robot_k_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2;
-  b0 = w[505] * TURN(160);
-  STORE(passed + 60, b0 = w[445] * TURN(0) + w[457] * TURN(32) + w[469] * TURN(64) + w[481] * TURN(96) + w[493] * TURN(128) + b0);
-  b1 = w[506] * TURN(164);
-  STORE(passed + 92, b1 = w[446] * TURN(4) + w[458] * TURN(36) + w[470] * TURN(68) + w[482] * TURN(100) + w[494] * TURN(132) + b1);
-  STORE(passed + 52, b1 = b0 + b1);
-  b0 = w[507] * TURN(168);
-  STORE(passed + 116, b0 = w[447] * TURN(8) + w[459] * TURN(40) + w[471] * TURN(72) + w[483] * TURN(104) + w[495] * TURN(136) + b0);
-  STORE(passed + 44, b0 = b1 + b0);
-  b1 = w[508] * TURN(172);
-  STORE(passed + 84, b1 = w[448] * TURN(12) + w[460] * TURN(44) + w[472] * TURN(76) + w[484] * TURN(108) + w[496] * TURN(140) + b1);
-  STORE(passed + 36, b1 = b0 + b1);
-  b0 = w[661] * TURN(176);
-  STORE(passed + 192, b0 = w[601] * TURN(16) + w[613] * TURN(48) + w[625] * TURN(80) + w[637] * TURN(112) + w[649] * TURN(144) + b0);
-  STORE(passed + 28, b0 = b1 + b0);
-  b1 = w[662] * TURN(180);
-  STORE(passed + 248, b1 = w[602] * TURN(20) + w[614] * TURN(52) + w[626] * TURN(84) + w[638] * TURN(116) + w[650] * TURN(148) + b1);
-  STORE(passed + 20, b1 = b0 + b1);
-  b0 = w[663] * TURN(184);
-  STORE(passed + 276, b0 = w[603] * TURN(24) + w[615] * TURN(56) + w[627] * TURN(88) + w[639] * TURN(120) + w[651] * TURN(152) + b0);
-  STORE(passed + 12, b0 = b1 + b0);
-  b1 = w[664] * TURN(188);
-  STORE(passed + 220, b1 = w[604] * TURN(28) + w[616] * TURN(60) + w[628] * TURN(92) + w[640] * TURN(124) + w[652] * TURN(156) + b1);
-  STORE(passed + 76, b1 = b0 + b1);
-  b0 = w[501] * TURN(160);
-  STORE(passed + 64, b0 = w[441] * TURN(0) + w[453] * TURN(32) + w[465] * TURN(64) + w[477] * TURN(96) + w[489] * TURN(128) + b0);
-  b2 = w[502] * TURN(164);
-  STORE(passed + 88, b2 = w[442] * TURN(4) + w[454] * TURN(36) + w[466] * TURN(68) + w[478] * TURN(100) + w[490] * TURN(132) + b2);
-  STORE(passed + 56, b2 = b0 + b2);
-  b0 = w[503] * TURN(168);
-  STORE(passed + 112, b0 = w[443] * TURN(8) + w[455] * TURN(40) + w[467] * TURN(72) + w[479] * TURN(104) + w[491] * TURN(136) + b0);
-  STORE(passed + 48, b0 = b2 + b0);
-  b2 = w[504] * TURN(172);
-  STORE(passed + 80, b2 = w[444] * TURN(12) + w[456] * TURN(44) + w[468] * TURN(76) + w[480] * TURN(108) + w[492] * TURN(140) + b2);
-  STORE(passed + 40, b2 = b0 + b2);
-  b0 = w[657] * TURN(176);
-  STORE(passed + 188, b0 = w[597] * TURN(16) + w[609] * TURN(48) + w[621] * TURN(80) + w[633] * TURN(112) + w[645] * TURN(144) + b0);
-  STORE(passed + 32, b0 = b2 + b0);
-  b2 = w[658] * TURN(180);
-  STORE(passed + 244, b2 = w[598] * TURN(20) + w[610] * TURN(52) + w[622] * TURN(84) + w[634] * TURN(116) + w[646] * TURN(148) + b2);
-  STORE(passed + 24, b2 = b0 + b2);
-  b0 = w[659] * TURN(184);
-  STORE(passed + 272, b0 = w[599] * TURN(24) + w[611] * TURN(56) + w[623] * TURN(88) + w[635] * TURN(120) + w[647] * TURN(152) + b0);
-  STORE(passed + 16, b0 = b2 + b0);
-  b2 = w[660] * TURN(188);
-  STORE(passed + 216, b2 = w[600] * TURN(28) + w[612] * TURN(60) + w[624] * TURN(92) + w[636] * TURN(124) + w[648] * TURN(156) + b2);
-  STORE(passed + 72, b2 = b0 + b2);
-  STORE(passed + 8, w[985] * b1 - w[1034] * b2);
-  b2 = w[509] * TURN(160);
-  STORE(passed + 68, b2 = w[449] * TURN(0) + w[461] * TURN(32) + w[473] * TURN(64) + w[485] * TURN(96) + w[497] * TURN(128) + b2);
-  b1 = w[510] * TURN(164);
-  STORE(passed + 96, b1 = w[450] * TURN(4) + w[462] * TURN(36) + w[474] * TURN(68) + w[486] * TURN(100) + w[498] * TURN(132) + b1);
-  STORE(passed + 4, b2 + b1);
-  STORE(passed + 0, w[451] * TURN(8) + w[463] * TURN(40));
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16, b17, b18, b19, b20, b21;
+  MADE(tendon_robot_kernels_turned_of_column)(w + 489, turns + 0, passed + 0);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 490, turns + 4, passed + 12);
+  STORE(passed + 500, b0 = PASSED(4) + PASSED(16));
+  MADE(tendon_robot_kernels_turned_of_column)(w + 491, turns + 8, passed + 24);
+  STORE(passed + 488, b1 = b0 + PASSED(28));
+  MADE(tendon_robot_kernels_turned_of_column)(w + 492, turns + 12, passed + 36);
+  STORE(passed + 476, b2 = b1 + PASSED(40));
+  MADE(tendon_robot_kernels_turned_of_column)(w + 645, turns + 16, passed + 48);
+  STORE(passed + 460, b3 = b2 + PASSED(52));
+  MADE(tendon_robot_kernels_turned_of_column)(w + 646, turns + 20, passed + 60);
+  STORE(passed + 552, b4 = b3 + PASSED(64));
+  MADE(tendon_robot_kernels_turned_of_column)(w + 647, turns + 24, passed + 72);
+  STORE(passed + 576, b5 = b4 + PASSED(76));
+  MADE(tendon_robot_kernels_turned_of_column)(w + 648, turns + 28, passed + 84);
+  b6 = b5 + PASSED(88);
+  STORE(passed + 496, b7 = PASSED(0) + PASSED(12));
+  STORE(passed + 484, b8 = b7 + PASSED(24));
+  STORE(passed + 472, b9 = b8 + PASSED(36));
+  STORE(passed + 456, b10 = b9 + PASSED(48));
+  STORE(passed + 560, b11 = b10 + PASSED(60));
+  STORE(passed + 584, b12 = b11 + PASSED(72));
+  b13 = b12 + PASSED(84);
+  STORE(passed + 504, b14 = PASSED(8) + PASSED(20));
+  STORE(passed + 492, b15 = b14 + PASSED(32));
+  STORE(passed + 480, b16 = b15 + PASSED(44));
+  STORE(passed + 464, b17 = b16 + PASSED(56));
+  STORE(passed + 548, b18 = b17 + PASSED(68));
+  STORE(passed + 572, b19 = b18 + PASSED(80));
+  b20 = b19 + PASSED(92);
+  STORE(passed + 580, b21 = w[1129] * b6 - w[1130] * b13 + w[1131] * b20);
+  STORE(passed + 556, b21 = b21 + (w[1132] * b5 - w[1133] * b12 + w[1134] * b19));
+  STORE(passed + 540, b21 = b21 + (w[1135] * b4 - w[1136] * b11 + w[1137] * b18));
+  STORE(passed + 532, b21 = b21 + (w[1138] * b3 - w[1139] * b10 + w[1140] * b17));
+  STORE(passed + 524, b21 = b21 + (w[1141] * b2 - w[1142] * b9 + w[1143] * b16));
+  STORE(passed + 516, b21 = b21 + (w[1144] * b1 - w[1145] * b8 + w[1146] * b15));
+  STORE(passed + 508, b21 = b21 + (w[1147] * b0 - w[1148] * b7 + w[1149] * b14));
+  STORE(passed + 360, b21 + (w[1150] * PASSED(4) - w[1151] * PASSED(0) + w[1152] * PASSED(8)));
+  STORE(passed + 588, b21 = w[1153] * b13 - w[1154] * b6 + w[1155] * b20);
+  STORE(passed + 564, b21 = b21 + (w[1156] * b12 - w[1157] * b5 + w[1158] * b19));
+  STORE(passed + 544, b21 = b21 + (w[1159] * b11 - w[1160] * b4 + w[1161] * b18));
+  STORE(passed + 536, b17 = b21 + (w[1162] * b10 - w[1163] * b3 + w[1164] * b17));
+  STORE(passed + 528, b16 = b17 + (w[1165] * b9 - w[1166] * b2 + w[1167] * b16));
+  STORE(passed + 520, b15 = b16 + (w[1168] * b8 - w[1169] * b1 + w[1170] * b15));
+  STORE(passed + 512, b14 = b15 + (w[1171] * b7 - w[1172] * b0 + w[1173] * b14));
+  STORE(passed + 364, b14 + (w[1174] * PASSED(0) - w[1175] * PASSED(4) + w[1176] * PASSED(8)));
+  STORE(passed + 592, b20 = w[1177] * b13 + w[1178] * b6 - w[1179] * b20);
+  STORE(passed + 568, b19 = b20 + (w[1180] * b12 + w[1181] * b5 - w[1182] * b19));
+  STORE(passed + 468, b19 + (w[1183] * b11 + w[1184] * b4 - w[1185] * b18));
 }
 
 static void MADE(tendon_robot_k_jacobian_columns_1)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13;
-  STORE(passed + 120, b0 = PASSED(0) + w[475] * TURN(72) + w[487] * TURN(104) + w[499] * TURN(136) + w[511] * TURN(168));
-  b0 = PASSED(4) + b0;
-  b1 = w[512] * TURN(172);
-  b1 = w[452] * TURN(12) + w[464] * TURN(44) + w[476] * TURN(76) + w[488] * TURN(108) + w[500] * TURN(140) + b1;
-  STORE(passed + 180, b2 = b0 + b1);
-  b3 = w[665] * TURN(176);
-  STORE(passed + 196, b3 = w[605] * TURN(16) + w[617] * TURN(48) + w[629] * TURN(80) + w[641] * TURN(112) + w[653] * TURN(144) + b3);
-  STORE(passed + 236, b3 = b2 + b3);
-  b4 = w[666] * TURN(180);
-  STORE(passed + 252, b4 = w[606] * TURN(20) + w[618] * TURN(52) + w[630] * TURN(84) + w[642] * TURN(116) + w[654] * TURN(148) + b4);
-  STORE(passed + 264, b4 = b3 + b4);
-  b5 = w[667] * TURN(184);
-  STORE(passed + 280, b5 = w[607] * TURN(24) + w[619] * TURN(56) + w[631] * TURN(88) + w[643] * TURN(120) + w[655] * TURN(152) + b5);
-  STORE(passed + 208, b5 = b4 + b5);
-  b6 = w[668] * TURN(188);
-  STORE(passed + 224, b6 = w[608] * TURN(28) + w[620] * TURN(60) + w[632] * TURN(92) + w[644] * TURN(124) + w[656] * TURN(156) + b6);
-  b6 = b5 + b6;
-  STORE(passed + 212, b7 = PASSED(8) + w[1083] * b6);
-  STORE(passed + 268, b7 = b7 + (w[1084] * PASSED(12) - w[1085] * PASSED(16) + w[1086] * b5));
-  STORE(passed + 240, b7 = b7 + (w[1087] * PASSED(20) - w[1088] * PASSED(24) + w[1089] * b4));
-  STORE(passed + 184, b7 = b7 + (w[1090] * PASSED(28) - w[1091] * PASSED(32) + w[1092] * b3));
-  b7 = b7 + (w[1093] * PASSED(36) - w[1094] * PASSED(40) + w[1095] * b2);
-  STORE(passed + 108, b8 = b7 + (w[1096] * PASSED(44) - w[1097] * PASSED(48) + w[1098] * b0));
-  b8 = b8 + (w[1099] * PASSED(52) - w[1100] * PASSED(56) + w[1101] * PASSED(4));
-  b9 = w[525] * PASSED(60);
-  b10 = w[537] * PASSED(68);
-  STORE(passed + 144, b10 = b8 + (w[1102] * PASSED(60) - w[1103] * PASSED(64) + w[1104] * PASSED(68)) + w[513] * PASSED(64) + b9 + b10);
-  STORE(passed + 228, b9 = w[1108] * PASSED(72) - w[1109] * PASSED(76) + w[1110] * b6);
-  STORE(passed + 284, b9 = b9 + (w[1111] * PASSED(16) - w[1112] * PASSED(12) + w[1113] * b5));
-  STORE(passed + 256, b9 = b9 + (w[1114] * PASSED(24) - w[1115] * PASSED(20) + w[1116] * b4));
-  STORE(passed + 200, b9 = b9 + (w[1117] * PASSED(32) - w[1118] * PASSED(28) + w[1119] * b3));
-  b9 = b9 + (w[1120] * PASSED(40) - w[1121] * PASSED(36) + w[1122] * b2);
-  STORE(passed + 124, b11 = b9 + (w[1123] * PASSED(48) - w[1124] * PASSED(44) + w[1125] * b0));
-  b11 = b11 + (w[1126] * PASSED(56) - w[1127] * PASSED(52) + w[1128] * PASSED(4));
-  b12 = w[529] * PASSED(60);
-  b13 = w[541] * PASSED(68);
-  STORE(passed + 148, b13 = b11 + (w[1129] * PASSED(64) - w[1130] * PASSED(60) + w[1131] * PASSED(68)) + w[517] * PASSED(64) + b12 + b13);
-  STORE(passed + 232, b6 = w[1135] * PASSED(72) + w[1136] * PASSED(76) - w[1137] * b6);
-  STORE(passed + 288, b5 = b6 + (w[1138] * PASSED(16) + w[1139] * PASSED(12) - w[1140] * b5));
-  STORE(passed + 260, b4 = b5 + (w[1141] * PASSED(24) + w[1142] * PASSED(20) - w[1143] * b4));
-  STORE(passed + 204, b3 = b4 + (w[1144] * PASSED(32) + w[1145] * PASSED(28) - w[1146] * b3));
-  b2 = b3 + (w[1147] * PASSED(40) + w[1148] * PASSED(36) - w[1149] * b2);
-  STORE(passed + 128, b3 = b2 + (w[1150] * PASSED(48) + w[1151] * PASSED(44) - w[1152] * b0));
-  b3 = b3 + (w[1153] * PASSED(56) + w[1154] * PASSED(52) - w[1155] * PASSED(4));
-  b4 = w[533] * PASSED(60);
-  b5 = w[545] * PASSED(68);
-  STORE(passed + 152, b5 = b3 + (w[1156] * PASSED(64) + w[1157] * PASSED(60) - w[1158] * PASSED(68)) + w[521] * PASSED(64) + b4 + b5);
-  STORE(passed + 136, b5 = w[441] * b10 + w[445] * b13 + w[449] * b5 + w[581] * TURN(128) + w[589] * TURN(160));
-  STORE(passed + 156, b7 = w[426] * b0 - w[437] * PASSED(44) + b7 + w[516] * PASSED(80) + w[528] * PASSED(84) + w[540] * b1);
-  STORE(passed + 160, b9 = w[437] * PASSED(48) - w[407] * b0 + b9 + w[520] * PASSED(80) + w[532] * PASSED(84) + w[544] * b1);
-  STORE(passed + 164, b1 = w[407] * PASSED(44) - w[426] * PASSED(48) + b2 + w[524] * PASSED(80) + w[536] * PASSED(84) + w[548] * b1);
-  STORE(passed + 140, b1 = w[444] * b7 + w[448] * b9 + w[452] * b1 + w[584] * TURN(140) + w[592] * TURN(172));
-  STORE(passed + 176, b1 = b5 + b1);
-  STORE(passed + 132, EACH(C[2]) * b1);
-  b1 = w[538] * PASSED(96);
-  STORE(passed + 168, b1 = w[430] * PASSED(68) - w[439] * PASSED(60) + b8 + w[514] * PASSED(88) + w[526] * PASSED(92) + b1);
-  b8 = w[542] * PASSED(96);
-  STORE(passed + 172, b8 = w[439] * PASSED(64) - w[413] * PASSED(68) + b11 + w[518] * PASSED(88) + w[530] * PASSED(92) + b8);
-  STORE(passed + 104, w[442] * b1 + w[446] * b8);
-  b8 = w[546] * PASSED(96);
-  b8 = w[413] * PASSED(60) - w[430] * PASSED(64) + b3 + w[522] * PASSED(88) + w[534] * PASSED(92) + b8;
-  STORE(passed + 100, b8);
-}
-
-static void MADE(tendon_robot_k_jacobian_columns_2)(const casadi_real *w, const casadi_real *turns,
-    casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
-  b0 = PASSED(104) + w[450] * PASSED(100) + w[582] * TURN(132) + w[590] * TURN(164);
-  b1 = w[539] * PASSED(120);
-  STORE(passed + 364, b1 = w[428] * PASSED(4) - w[438] * PASSED(52) + PASSED(108) + w[515] * PASSED(112) + w[527] * PASSED(116) + b1);
-  b2 = w[543] * PASSED(120);
-  STORE(passed + 368, b2 = w[438] * PASSED(56) - w[410] * PASSED(4) + PASSED(124) + w[519] * PASSED(112) + w[531] * PASSED(116) + b2);
-  b3 = w[547] * PASSED(120);
-  STORE(passed + 372, b3 = w[410] * PASSED(52) - w[428] * PASSED(56) + PASSED(128) + w[523] * PASSED(112) + w[535] * PASSED(116) + b3);
-  b4 = w[443] * b1 + w[447] * b2 + w[451] * b3 + w[583] * TURN(136) + w[591] * TURN(168);
-  b5 = b0 + b4;
-  STORE(passed + 392, PASSED(132) + EACH(C[3]) * b5);
-  b6 = w[477] * PASSED(144) + w[481] * PASSED(148) + w[485] * PASSED(152) + w[557] * TURN(32) + w[565] * TURN(64);
-  b7 = w[480] * PASSED(156) + w[484] * PASSED(160) + w[488] * PASSED(164) + w[560] * TURN(44) + w[568] * TURN(76);
-  b8 = w[478] * PASSED(168) + w[482] * PASSED(172) + w[486] * PASSED(100) + w[558] * TURN(36) + w[566] * TURN(68);
-  b3 = w[479] * b1 + w[483] * b2 + w[487] * b3 + w[559] * TURN(40) + w[567] * TURN(72);
-  b4 = EACH(C[4]) * (PASSED(136) - PASSED(140)) + EACH(C[4]) * (b0 - b4) + EACH(C[5]) * (b6 + b7) + EACH(C[6]) * (b8 + b3);
-  STORE(passed + 396, b4);
-  STORE(passed + 400, EACH(C[7]) * PASSED(176) + EACH(C[8]) * b5 + EACH(C[9]) * (b6 - b7) + EACH(C[10]) * (b8 - b3));
-  b3 = w[693] * PASSED(196);
-  STORE(passed + 316, b3 = w[424] * PASSED(180) - w[436] * PASSED(36) + PASSED(184) + w[669] * PASSED(188) + w[681] * PASSED(192) + b3);
-  b8 = w[697] * PASSED(196);
-  STORE(passed + 320, b8 = w[436] * PASSED(40) - w[404] * PASSED(180) + PASSED(200) + w[673] * PASSED(188) + w[685] * PASSED(192) + b8);
-  b7 = w[701] * PASSED(196);
-  STORE(passed + 324, b7 = w[404] * PASSED(36) - w[424] * PASSED(40) + PASSED(204) + w[677] * PASSED(188) + w[689] * PASSED(192) + b7);
-  STORE(passed + 308, b7 = w[597] * b3 + w[601] * b8 + w[605] * b7 + w[737] * TURN(144) + w[745] * TURN(176));
-  b8 = w[696] * PASSED(224);
-  STORE(passed + 328, b8 = w[418] * PASSED(208) - w[433] * PASSED(12) + PASSED(212) + w[672] * PASSED(216) + w[684] * PASSED(220) + b8);
-  b3 = w[700] * PASSED(224);
-  STORE(passed + 332, b3 = w[433] * PASSED(16) - w[395] * PASSED(208) + PASSED(228) + w[676] * PASSED(216) + w[688] * PASSED(220) + b3);
-  b6 = w[704] * PASSED(224);
-  STORE(passed + 336, b6 = w[395] * PASSED(12) - w[418] * PASSED(16) + PASSED(232) + w[680] * PASSED(216) + w[692] * PASSED(220) + b6);
-  STORE(passed + 312, b6 = w[600] * b8 + w[604] * b3 + w[608] * b6 + w[740] * TURN(156) + w[748] * TURN(188));
-  STORE(passed + 360, b6 = b7 + b6);
-  STORE(passed + 304, EACH(C[2]) * b6);
-  b6 = w[694] * PASSED(252);
-  STORE(passed + 340, b6 = w[422] * PASSED(236) - w[435] * PASSED(28) + PASSED(240) + w[670] * PASSED(244) + w[682] * PASSED(248) + b6);
-  b7 = w[698] * PASSED(252);
-  STORE(passed + 344, b7 = w[435] * PASSED(32) - w[401] * PASSED(236) + PASSED(256) + w[674] * PASSED(244) + w[686] * PASSED(248) + b7);
-  b3 = w[702] * PASSED(252);
-  STORE(passed + 348, b3 = w[401] * PASSED(28) - w[422] * PASSED(32) + PASSED(260) + w[678] * PASSED(244) + w[690] * PASSED(248) + b3);
-  STORE(passed + 300, w[598] * b6 + w[602] * b7 + w[606] * b3 + w[738] * TURN(148) + w[746] * TURN(180));
-  b3 = w[695] * PASSED(280);
-  STORE(passed + 352, b3 = w[420] * PASSED(264) - w[434] * PASSED(20) + PASSED(268) + w[671] * PASSED(272) + w[683] * PASSED(276) + b3);
-  b7 = w[699] * PASSED(280);
-  STORE(passed + 356, b7 = w[434] * PASSED(24) - w[398] * PASSED(264) + PASSED(284) + w[675] * PASSED(272) + w[687] * PASSED(276) + b7);
-  STORE(passed + 296, w[599] * b3 + w[603] * b7);
-  b7 = w[398] * PASSED(20) - w[420] * PASSED(24) + PASSED(288) + w[679] * PASSED(272) + w[691] * PASSED(276);
-  STORE(passed + 292, b7);
-}
-
-static void MADE(tendon_robot_k_jacobian_columns_3)(const casadi_real *w, const casadi_real *turns,
-    casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10;
-  STORE(passed + 380, b0 = PASSED(292) + w[703] * PASSED(280));
-  b1 = PASSED(296) + w[607] * b0 + w[739] * TURN(152) + w[747] * TURN(184);
-  b2 = PASSED(300) + b1;
-  STORE(passed + 404, PASSED(304) + EACH(C[3]) * b2);
-  b3 = w[633] * PASSED(316) + w[637] * PASSED(320) + w[641] * PASSED(324) + w[713] * TURN(48) + w[721] * TURN(80);
-  b4 = w[636] * PASSED(328) + w[640] * PASSED(332) + w[644] * PASSED(336) + w[716] * TURN(60) + w[724] * TURN(92);
-  b5 = w[634] * PASSED(340) + w[638] * PASSED(344) + w[642] * PASSED(348) + w[714] * TURN(52) + w[722] * TURN(84);
-  b6 = w[635] * PASSED(352) + w[639] * PASSED(356) + w[643] * b0 + w[715] * TURN(56) + w[723] * TURN(88);
-  b7 = EACH(C[6]) * (b5 + b6);
-  b7 = EACH(C[4]) * (PASSED(308) - PASSED(312)) + EACH(C[4]) * (PASSED(300) - b1) + EACH(C[5]) * (b3 + b4) + b7;
-  STORE(passed + 408, b7);
-  STORE(passed + 412, EACH(C[7]) * PASSED(360) + EACH(C[8]) * b2 + EACH(C[9]) * (b3 - b4) + EACH(C[10]) * (b5 - b6));
-  b6 = w[453] * PASSED(144) + w[457] * PASSED(148) + w[461] * PASSED(152) + w[573] * TURN(96) + w[593] * TURN(160);
-  b5 = w[456] * PASSED(156) + w[460] * PASSED(160) + w[464] * PASSED(164) + w[576] * TURN(108) + w[596] * TURN(172);
-  b4 = b6 + b5;
-  b3 = w[454] * PASSED(168) + w[458] * PASSED(172) + w[462] * PASSED(100) + w[574] * TURN(100) + w[594] * TURN(164);
-  b2 = w[455] * PASSED(364) + w[459] * PASSED(368) + w[463] * PASSED(372) + w[575] * TURN(104) + w[595] * TURN(168);
-  b7 = b3 + b2;
-  STORE(passed + 416, EACH(C[2]) * b4 + EACH(C[3]) * b7);
-  b1 = w[489] * PASSED(144) + w[493] * PASSED(148) + w[497] * PASSED(152) + w[549] * TURN(0) + w[569] * TURN(64);
-  b8 = w[492] * PASSED(156) + w[496] * PASSED(160) + w[500] * PASSED(164) + w[552] * TURN(12) + w[572] * TURN(76);
-  b9 = w[490] * PASSED(168) + w[494] * PASSED(172) + w[498] * PASSED(100) + w[550] * TURN(4) + w[570] * TURN(68);
-  b10 = w[491] * PASSED(364) + w[495] * PASSED(368) + w[499] * PASSED(372) + w[551] * TURN(8) + w[571] * TURN(72);
-  b2 = EACH(C[4]) * (b6 - b5) + EACH(C[4]) * (b3 - b2) + EACH(C[5]) * (b1 + b8) + EACH(C[6]) * (b9 + b10);
-  STORE(passed + 420, b2);
-  STORE(passed + 424, EACH(C[7]) * b4 + EACH(C[8]) * b7 + EACH(C[9]) * (b1 - b8) + EACH(C[10]) * (b9 - b10));
-  b10 = w[609] * PASSED(316) + w[613] * PASSED(320) + w[617] * PASSED(324) + w[729] * TURN(112) + w[749] * TURN(176);
-  b9 = w[612] * PASSED(328) + w[616] * PASSED(332) + w[620] * PASSED(336) + w[732] * TURN(124) + w[752] * TURN(188);
-  STORE(passed + 384, b8 = b10 + b9);
-  b1 = w[610] * PASSED(340) + w[614] * PASSED(344) + w[618] * PASSED(348) + w[730] * TURN(116) + w[750] * TURN(180);
-  b0 = w[611] * PASSED(352) + w[615] * PASSED(356) + w[619] * b0 + w[731] * TURN(120) + w[751] * TURN(184);
-  STORE(passed + 388, b7 = b1 + b0);
-  STORE(passed + 428, EACH(C[2]) * b8 + EACH(C[3]) * b7);
-  STORE(passed + 376, EACH(C[4]) * (b10 - b9) + EACH(C[4]) * (b1 - b0));
-}
-
-static void MADE(tendon_robot_k_jacobian_columns_4)(const casadi_real *w, const casadi_real *turns,
-    casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
-  FOUR b16, b17, b18, b19, b20, b21, b22, b23;
-  b0 = w[645] * PASSED(316) + w[649] * PASSED(320) + w[653] * PASSED(324) + w[705] * TURN(16) + w[725] * TURN(80);
-  b1 = w[648] * PASSED(328) + w[652] * PASSED(332) + w[656] * PASSED(336) + w[708] * TURN(28) + w[728] * TURN(92);
-  b2 = w[646] * PASSED(340) + w[650] * PASSED(344) + w[654] * PASSED(348) + w[706] * TURN(20) + w[726] * TURN(84);
-  b3 = w[647] * PASSED(352) + w[651] * PASSED(356) + w[655] * PASSED(380) + w[707] * TURN(24) + w[727] * TURN(88);
-  b4 = w[465] * PASSED(144) + w[469] * PASSED(148) + w[473] * PASSED(152) + w[577] * TURN(96) + w[585] * TURN(128);
-  b5 = w[468] * PASSED(156) + w[472] * PASSED(160) + w[476] * PASSED(164) + w[580] * TURN(108) + w[588] * TURN(140);
-  b6 = b4 + b5;
-  b7 = w[466] * PASSED(168) + w[470] * PASSED(172) + w[474] * PASSED(100) + w[578] * TURN(100) + w[586] * TURN(132);
-  b8 = w[467] * PASSED(364) + w[471] * PASSED(368) + w[475] * PASSED(372) + w[579] * TURN(104) + w[587] * TURN(136);
-  b9 = b7 + b8;
-  b10 = w[501] * PASSED(144) + w[505] * PASSED(148) + w[509] * PASSED(152) + w[553] * TURN(0) + w[561] * TURN(32);
-  b11 = w[504] * PASSED(156) + w[508] * PASSED(160) + w[512] * PASSED(164) + w[556] * TURN(12) + w[564] * TURN(44);
-  b12 = w[502] * PASSED(168) + w[506] * PASSED(172) + w[510] * PASSED(100) + w[554] * TURN(4) + w[562] * TURN(36);
-  b13 = w[503] * PASSED(364) + w[507] * PASSED(368) + w[511] * PASSED(372) + w[555] * TURN(8) + w[563] * TURN(40);
-  b14 = w[621] * PASSED(316) + w[625] * PASSED(320) + w[629] * PASSED(324) + w[733] * TURN(112) + w[741] * TURN(144);
-  b15 = w[624] * PASSED(328) + w[628] * PASSED(332) + w[632] * PASSED(336) + w[736] * TURN(124) + w[744] * TURN(156);
-  b16 = b14 + b15;
-  b17 = w[622] * PASSED(340) + w[626] * PASSED(344) + w[630] * PASSED(348) + w[734] * TURN(116) + w[742] * TURN(148);
-  b18 = w[623] * PASSED(352) + w[627] * PASSED(356) + w[631] * PASSED(380) + w[735] * TURN(120) + w[743] * TURN(152);
-  b19 = b17 + b18;
-  b20 = w[657] * PASSED(316) + w[661] * PASSED(320) + w[665] * PASSED(324) + w[709] * TURN(16) + w[717] * TURN(48);
-  b21 = w[660] * PASSED(328) + w[664] * PASSED(332) + w[668] * PASSED(336) + w[712] * TURN(28) + w[720] * TURN(60);
-  b22 = w[658] * PASSED(340) + w[662] * PASSED(344) + w[666] * PASSED(348) + w[710] * TURN(20) + w[718] * TURN(52);
-  b23 = w[659] * PASSED(352) + w[663] * PASSED(356) + w[667] * PASSED(380) + w[711] * TURN(24) + w[719] * TURN(56);
-  STORE(columns + 0, PASSED(392));
-  STORE(columns + 20, PASSED(396));
-  STORE(columns + 40, PASSED(400));
-  STORE(columns + 60, PASSED(404));
-  STORE(columns + 80, PASSED(408));
-  STORE(columns + 100, PASSED(412));
-  STORE(columns + 120, PASSED(416));
-  STORE(columns + 140, PASSED(420));
-  STORE(columns + 160, PASSED(424));
-  STORE(columns + 180, PASSED(428));
-  STORE(columns + 200, PASSED(376) + EACH(C[5]) * (b0 + b1) + EACH(C[6]) * (b2 + b3));
-  b3 = EACH(C[7]) * PASSED(384) + EACH(C[8]) * PASSED(388) + EACH(C[9]) * (b0 - b1) + EACH(C[10]) * (b2 - b3);
-  STORE(columns + 220, b3);
-  STORE(columns + 240, EACH(C[11]) * b6 + EACH(C[12]) * b9);
-  b8 = EACH(C[13]) * (b4 - b5) + EACH(C[13]) * (b7 - b8) + EACH(C[14]) * (b10 + b11) + EACH(C[15]) * (b12 + b13);
-  STORE(columns + 260, b8);
-  STORE(columns + 280, EACH(C[16]) * b6 + EACH(C[17]) * b9 + EACH(C[18]) * (b10 - b11) + EACH(C[19]) * (b12 - b13));
-  STORE(columns + 300, EACH(C[11]) * b16 + EACH(C[12]) * b19);
-  b18 = EACH(C[13]) * (b14 - b15) + EACH(C[13]) * (b17 - b18) + EACH(C[14]) * (b20 + b21) + EACH(C[15]) * (b22 + b23);
-  STORE(columns + 320, b18);
-  STORE(columns + 340, EACH(C[16]) * b16 + EACH(C[17]) * b19 + EACH(C[18]) * (b20 - b21) + EACH(C[19]) * (b22 - b23));
+  FOUR b0, b1, b2, b3;
+  b0 = PASSED(468) + (w[1186] * PASSED(456) + w[1187] * PASSED(460) - w[1188] * PASSED(464));
+  b1 = b0 + (w[1189] * PASSED(472) + w[1190] * PASSED(476) - w[1191] * PASSED(480));
+  b2 = b1 + (w[1192] * PASSED(484) + w[1193] * PASSED(488) - w[1194] * PASSED(492));
+  b3 = b2 + (w[1195] * PASSED(496) + w[1196] * PASSED(500) - w[1197] * PASSED(504));
+  STORE(passed + 368, b3 + (w[1198] * PASSED(0) + w[1199] * PASSED(4) - w[1200] * PASSED(8)));
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 489, w + 561, w + 597, turns + 0, passed + 0, passed + 360, passed + 96);
+  STORE(passed + 372, w[474] * PASSED(8) - w[483] * PASSED(4) + PASSED(508));
+  STORE(passed + 376, w[483] * PASSED(0) - w[457] * PASSED(8) + PASSED(512));
+  STORE(passed + 380, w[457] * PASSED(4) - w[474] * PASSED(0) + b3);
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 490, w + 562, w + 598, turns + 4, passed + 12, passed + 372, passed + 120);
+  STORE(passed + 384, w[472] * PASSED(504) - w[482] * PASSED(500) + PASSED(516));
+  STORE(passed + 388, w[482] * PASSED(496) - w[454] * PASSED(504) + PASSED(520));
+  STORE(passed + 392, w[454] * PASSED(500) - w[472] * PASSED(496) + b2);
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 491, w + 563, w + 599, turns + 8, passed + 24, passed + 384, passed + 144);
+  STORE(passed + 396, w[470] * PASSED(492) - w[481] * PASSED(488) + PASSED(524));
+  STORE(passed + 400, w[481] * PASSED(484) - w[451] * PASSED(492) + PASSED(528));
+  STORE(passed + 404, w[451] * PASSED(488) - w[470] * PASSED(484) + b1);
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 492, w + 564, w + 600, turns + 12, passed + 36, passed + 396, passed + 168);
+  STORE(passed + 408, w[468] * PASSED(480) - w[480] * PASSED(476) + PASSED(532));
+  STORE(passed + 412, w[480] * PASSED(472) - w[448] * PASSED(480) + PASSED(536));
+  STORE(passed + 416, w[448] * PASSED(476) - w[468] * PASSED(472) + b0);
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 645, w + 717, w + 753, turns + 16, passed + 48, passed + 408, passed + 192);
+  STORE(passed + 420, w[466] * PASSED(464) - w[479] * PASSED(460) + PASSED(540));
+  STORE(passed + 424, w[479] * PASSED(456) - w[445] * PASSED(464) + PASSED(544));
+  STORE(passed + 428, w[445] * PASSED(460) - w[466] * PASSED(456) + PASSED(468));
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 646, w + 718, w + 754, turns + 20, passed + 60, passed + 420, passed + 216);
+  STORE(passed + 432, w[464] * PASSED(548) - w[478] * PASSED(552) + PASSED(556));
+  STORE(passed + 436, w[478] * PASSED(560) - w[442] * PASSED(548) + PASSED(564));
+  STORE(passed + 440, w[442] * PASSED(552) - w[464] * PASSED(560) + PASSED(568));
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 647, w + 719, w + 755, turns + 24, passed + 72, passed + 432, passed + 240);
+  STORE(passed + 444, w[462] * PASSED(572) - w[477] * PASSED(576) + PASSED(580));
+  STORE(passed + 448, w[477] * PASSED(584) - w[439] * PASSED(572) + PASSED(588));
+  STORE(passed + 452, w[439] * PASSED(576) - w[462] * PASSED(584) + PASSED(592));
+  MADE(tendon_robot_kernels_pulled_of_column)(w + 648, w + 720, w + 756, turns + 28, passed + 84, passed + 444, passed + 264);
+  MADE(tendon_robot_kernels_fold_of_column)(tendon_robot_kernels_table_0, passed + 96, passed + 288);
+  MADE(tendon_robot_kernels_fold_of_column)(tendon_robot_kernels_table_0, passed + 100, passed + 312);
+  MADE(tendon_robot_kernels_fold_of_column)(tendon_robot_kernels_table_1, passed + 104, passed + 336);
+  STORE(columns + 0, EACH(C[2]) * PASSED(288));
+  STORE(columns + 20, EACH(C[2]) * PASSED(292));
+  STORE(columns + 40, EACH(C[2]) * PASSED(296));
+  STORE(columns + 60, EACH(C[2]) * PASSED(300));
+  STORE(columns + 80, EACH(C[2]) * PASSED(304));
+  STORE(columns + 100, EACH(C[2]) * PASSED(308));
+  STORE(columns + 120, EACH(C[2]) * PASSED(312));
+  STORE(columns + 140, EACH(C[2]) * PASSED(316));
+  STORE(columns + 160, EACH(C[2]) * PASSED(320));
+  STORE(columns + 180, EACH(C[2]) * PASSED(324));
+  STORE(columns + 200, EACH(C[2]) * PASSED(328));
+  STORE(columns + 220, EACH(C[2]) * PASSED(332));
+  STORE(columns + 240, EACH(C[2]) * PASSED(336));
+  STORE(columns + 260, EACH(C[2]) * PASSED(340));
+  STORE(columns + 280, EACH(C[2]) * PASSED(344));
+  STORE(columns + 300, EACH(C[2]) * PASSED(348));
+  STORE(columns + 320, EACH(C[2]) * PASSED(352));
+  STORE(columns + 340, EACH(C[2]) * PASSED(356));
 }
 
 static void MADE(tendon_robot_k_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
@@ -605,9 +430,6 @@ static void MADE(tendon_robot_k_jacobian_columns)(const casadi_real *w, const ca
   for (group = 0; group < groups; group++, turns += 192, columns += 4) {
     EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
     EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_1)(w, turns + lane, columns + lane, passed + lane))
-    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_2)(w, turns + lane, columns + lane, passed + lane))
-    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_3)(w, turns + lane, columns + lane, passed + lane))
-    EVERY_LANE(MADE(tendon_robot_k_jacobian_columns_4)(w, turns + lane, columns + lane, passed + lane))
   }
 }
 
@@ -619,205 +441,186 @@ static void MADE(tendon_robot_k_richer_balance_loop_0)(casadi_real *w) {
 
 static void MADE(tendon_robot_k_richer_balance_loop_2)(casadi_real *w) {
   FOR_FOURS(i, 36) {
-    STORE(w + 208 + i, LOAD(tendon_robot_kernels_table_3 + i) * LOAD(w + 244 + i));
+    STORE(w + 208 + i, LOAD(tendon_robot_kernels_table_8 + i) * LOAD(w + 244 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_3)(casadi_real *w) {
   FOR_FOURS(i, 60) {
-    STORE(w + 370 + i, LOAD(w + 84 + i) + LOAD(w + 144 + i));
+    STORE(w + 388 + i, LOAD(w + 84 + i) + LOAD(w + 144 + i));
   }
 }
 
-static void MADE(tendon_robot_k_richer_balance_loop_7)(casadi_real *w) {
-  FOR_FOURS(i, 24) {
-    STORE(w + 430 + i, SPREAD(w[204]) * LOAD(w + 108 + i));
-    STORE(w + 454 + i, SPREAD(w[205]) * LOAD(w + 76 + i));
-    STORE(w + 478 + i, SPREAD(w[206]) * LOAD(w + 132 + i));
-    STORE(w + 502 + i, SPREAD(w[207]) * LOAD(w + 166 + i));
+static void MADE(tendon_robot_k_richer_balance_loop_4)(casadi_real *w) {
+  FOR_FOURS(i, 16) {
+    STORE(w + 66 + i, LOAD(w + 280 + i) + LOAD(w + 296 + i));
+    STORE(w + 144 + i, LOAD(w + 280 + i) - LOAD(w + 296 + i));
+    STORE(w + 160 + i, LOAD(w + 296 + i) - LOAD(w + 280 + i));
+    STORE(w + 176 + i, LOAD(w + 316 + i) + LOAD(w + 332 + i));
+    STORE(w + 244 + i, LOAD(w + 316 + i) - LOAD(w + 332 + i));
+    STORE(w + 260 + i, LOAD(w + 332 + i) - LOAD(w + 316 + i));
+    STORE(w + 448 + i, LOAD(w + 352 + i) + LOAD(w + 368 + i));
+    STORE(w + 464 + i, LOAD(w + 352 + i) - LOAD(w + 368 + i));
+    STORE(w + 480 + i, LOAD(w + 368 + i) - LOAD(w + 352 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_8)(casadi_real *w) {
-  FOR_FOURS(i, 12) {
-    STORE(w + 78 + i, LOAD(w + 442 + i) + LOAD(w + 466 + i));
+  FOR_FOURS(i, 24) {
+    STORE(w + 538 + i, SPREAD(w[204]) * LOAD(w + 82 + i));
+    STORE(w + 578 + i, SPREAD(w[205]) * LOAD(w + 106 + i));
+    STORE(w + 602 + i, SPREAD(w[206]) * LOAD(w + 650 + i));
+    STORE(w + 626 + i, SPREAD(w[207]) * LOAD(w + 674 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_9)(casadi_real *w) {
-  FOR_FOURS(i, 24) {
-    STORE(w + 108 + i, LOAD(w + 132 + i) + LOAD(w + 478 + i));
+  FOR_FOURS(i, 12) {
+    STORE(w + 94 + i, LOAD(w + 550 + i) + LOAD(w + 590 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_10)(casadi_real *w) {
   FOR_FOURS(i, 24) {
-    STORE(w + 132 + i, LOAD(w + 160 + i) + LOAD(w + 502 + i));
+    STORE(w + 110 + i, LOAD(w + 496 + i) + LOAD(w + 602 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_11)(casadi_real *w) {
-  FOR_FOURS(i, 19) {
-    FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
-    b0 = EACH(2.0) * LOAD(w + 787 + i);
-    b1 = b0 * LOAD(w + 787 + i);
-    b2 = EACH(2.0) * LOAD(w + 806 + i) * LOAD(w + 806 + i);
-    b3 = EACH(2.0) * LOAD(w + 825 + i);
-    b4 = b3 * LOAD(w + 787 + i);
-    b5 = EACH(2.0) * LOAD(w + 844 + i);
-    b6 = b5 * LOAD(w + 806 + i);
-    b7 = b3 * LOAD(w + 806 + i);
-    b8 = b5 * LOAD(w + 787 + i);
-    b3 = EACH(1.0) - b3 * LOAD(w + 825 + i);
-    b0 = b0 * LOAD(w + 806 + i);
-    b5 = b5 * LOAD(w + 825 + i);
-    STORE(w + 430 + i, EACH(1.0) - b1 - b2);
-    STORE(w + 449 + i, b4 + b6);
-    STORE(w + 468 + i, b7 - b8);
-    STORE(w + 487 + i, b4 - b6);
-    STORE(w + 506 + i, b3 - b2);
-    STORE(w + 525 + i, b0 + b5);
-    STORE(w + 730 + i, b7 + b8);
-    STORE(w + 749 + i, b0 - b5);
-    STORE(w + 768 + i, b3 - b1);
+  FOR_FOURS(i, 24) {
+    STORE(w + 496 + i, LOAD(w + 520 + i) + LOAD(w + 626 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_12)(casadi_real *w) {
-  FOR_FOURS(i, 20) {
-    FOUR b0, b1, b2;
-    b0 = EACH(0.4) * LOAD(w + 863 + i);
-    b1 = EACH(0.4) * LOAD(w + 883 + i);
-    b2 = EACH(0.4) * LOAD(w + 903 + i);
-    STORE(w + 66 + i, b0);
-    STORE(w + 156 + i, b1);
-    STORE(w + 176 + i, b2);
-    STORE(w + 787 + i, b1 * LOAD(w + 410 + i) - b2 * LOAD(w + 390 + i));
-    STORE(w + 807 + i, b2 * LOAD(w + 370 + i) - b0 * LOAD(w + 410 + i));
-    STORE(w + 827 + i, b0 * LOAD(w + 390 + i) - b1 * LOAD(w + 370 + i));
+  FOR_FOURS(i, 19) {
+    FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
+    b0 = EACH(2.0) * LOAD(w + 719 + i);
+    b1 = b0 * LOAD(w + 719 + i);
+    b2 = EACH(2.0) * LOAD(w + 738 + i) * LOAD(w + 738 + i);
+    b3 = EACH(2.0) * LOAD(w + 757 + i);
+    b4 = b3 * LOAD(w + 719 + i);
+    b5 = EACH(2.0) * LOAD(w + 966 + i);
+    b6 = b5 * LOAD(w + 738 + i);
+    b7 = b3 * LOAD(w + 738 + i);
+    b8 = b5 * LOAD(w + 719 + i);
+    b3 = EACH(1.0) - b3 * LOAD(w + 757 + i);
+    b0 = b0 * LOAD(w + 738 + i);
+    b5 = b5 * LOAD(w + 757 + i);
+    STORE(w + 548 + i, EACH(1.0) - b1 - b2);
+    STORE(w + 567 + i, b4 + b6);
+    STORE(w + 586 + i, b7 - b8);
+    STORE(w + 605 + i, b4 - b6);
+    STORE(w + 624 + i, b3 - b2);
+    STORE(w + 643 + i, b0 + b5);
+    STORE(w + 662 + i, b7 + b8);
+    STORE(w + 681 + i, b0 - b5);
+    STORE(w + 700 + i, b3 - b1);
   }
 }
 
-static void MADE(tendon_robot_k_richer_balance_loop_14)(casadi_real *w) {
-  FOR_FOURS(i, 36) {
-    STORE(w + 244 + i, LOAD(w + 208 + i) + LOAD(w + 280 + i) + LOAD(w + 316 + i));
+static void MADE(tendon_robot_k_richer_balance_loop_13)(casadi_real *w) {
+  FOR_FOURS(i, 20) {
+    FOUR b0, b1, b2;
+    b0 = EACH(0.4) * LOAD(w + 1005 + i);
+    b1 = EACH(0.4) * LOAD(w + 1025 + i);
+    b2 = EACH(0.4) * LOAD(w + 1045 + i);
+    STORE(w + 82 + i, b0);
+    STORE(w + 520 + i, b1);
+    STORE(w + 719 + i, b2);
+    STORE(w + 739 + i, b1 * LOAD(w + 428 + i) - b2 * LOAD(w + 408 + i));
+    STORE(w + 759 + i, b2 * LOAD(w + 388 + i) - b0 * LOAD(w + 428 + i));
+    STORE(w + 985 + i, b0 * LOAD(w + 408 + i) - b1 * LOAD(w + 388 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_15)(casadi_real *w) {
-  FOR_FOURS(i, 18) {
-    STORE(w + 66 + i, LOAD(w + 244 + i));
+  FOR_FOURS(i, 16) {
+    STORE(w + 66 + i, LOAD(w + 260 + i) + LOAD(w + 276 + i));
+    STORE(w + 82 + i, LOAD(w + 260 + i) - LOAD(w + 276 + i));
+    STORE(w + 144 + i, LOAD(w + 292 + i) + LOAD(w + 308 + i));
+    STORE(w + 160 + i, LOAD(w + 292 + i) - LOAD(w + 308 + i));
+    STORE(w + 176 + i, LOAD(w + 324 + i) + LOAD(w + 340 + i));
+    STORE(w + 244 + i, LOAD(w + 324 + i) - LOAD(w + 340 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_16)(casadi_real *w) {
+  FOR_FOURS(i, 36) {
+    STORE(w + 144 + i, LOAD(w + 280 + i) + EACH(C[2]) * LOAD(w + 244 + i) + LOAD(w + 316 + i));
   }
 }
 
 static void MADE(tendon_robot_k_richer_balance_loop_17)(casadi_real *w) {
   FOR_FOURS(i, 18) {
-    STORE(w + 66 + i, EACH((-1.0)) * LOAD(w + 104 + i));
+    STORE(w + 66 + i, LOAD(w + 84 + i));
+  }
+}
+
+static void MADE(tendon_robot_k_richer_balance_loop_19)(casadi_real *w) {
+  FOR_FOURS(i, 18) {
+    STORE(w + 66 + i, EACH((-1.0)) * LOAD(w + 84 + i));
   }
 }
 
 static void MADE(tendon_robot_k_tip_jacobian_columns_0)(const casadi_real *w, const casadi_real *turns,
     casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8;
-  b0 = w[313] * TURN(160);
-  STORE(passed + 28, b0 = w[253] * TURN(0) + w[265] * TURN(32) + w[277] * TURN(64) + w[289] * TURN(96) + w[301] * TURN(128) + b0);
-  b1 = w[314] * TURN(164);
-  b1 = w[254] * TURN(4) + w[266] * TURN(36) + w[278] * TURN(68) + w[290] * TURN(100) + w[302] * TURN(132) + b1;
-  STORE(passed + 32, b1 = b0 + b1);
-  b2 = w[315] * TURN(168);
-  b2 = w[255] * TURN(8) + w[267] * TURN(40) + w[279] * TURN(72) + w[291] * TURN(104) + w[303] * TURN(136) + b2;
-  STORE(passed + 36, b2 = b1 + b2);
-  b3 = w[316] * TURN(172);
-  b3 = w[256] * TURN(12) + w[268] * TURN(44) + w[280] * TURN(76) + w[292] * TURN(108) + w[304] * TURN(140) + b3;
-  STORE(passed + 40, b3 = b2 + b3);
-  b4 = w[580] * b3;
-  b5 = w[385] * TURN(176);
-  b5 = w[325] * TURN(16) + w[337] * TURN(48) + w[349] * TURN(80) + w[361] * TURN(112) + w[373] * TURN(144) + b5;
-  STORE(passed + 44, b5 = b3 + b5);
-  b3 = w[386] * TURN(180);
-  b3 = w[326] * TURN(20) + w[338] * TURN(52) + w[350] * TURN(84) + w[362] * TURN(116) + w[374] * TURN(148) + b3;
-  STORE(passed + 48, b3 = b5 + b3);
-  b6 = w[387] * TURN(184);
-  b6 = w[327] * TURN(24) + w[339] * TURN(56) + w[351] * TURN(88) + w[363] * TURN(120) + w[375] * TURN(152) + b6;
-  STORE(passed + 52, b6 = b3 + b6);
-  b7 = w[388] * TURN(188);
-  b7 = w[328] * TURN(28) + w[340] * TURN(60) + w[352] * TURN(92) + w[364] * TURN(124) + w[376] * TURN(156) + b7;
-  STORE(passed + 56, b7 = b6 + b7);
-  b7 = w[608] * b7;
-  b8 = w[317] * TURN(160);
-  STORE(passed + 12, b8 = w[257] * TURN(0) + w[269] * TURN(32) + w[281] * TURN(64) + w[293] * TURN(96) + w[305] * TURN(128) + b8);
-  b7 = w[559] * b0 + w[566] * b1 + w[573] * b2 + b4 + b4 + w[587] * b5 + w[594] * b3 + w[601] * b6 + b7;
-  b6 = w[318] * TURN(164);
-  b6 = w[258] * TURN(4) + w[270] * TURN(36) + w[282] * TURN(68) + w[294] * TURN(100) + w[306] * TURN(132) + b6;
-  STORE(passed + 16, b6 = b8 + b6);
-  b3 = w[319] * TURN(168);
-  b3 = w[259] * TURN(8) + w[271] * TURN(40) + w[283] * TURN(72) + w[295] * TURN(104) + w[307] * TURN(136) + b3;
-  STORE(passed + 20, b3 = b6 + b3);
-  b5 = w[320] * TURN(172);
-  b5 = w[260] * TURN(12) + w[272] * TURN(44) + w[284] * TURN(76) + w[296] * TURN(108) + w[308] * TURN(140) + b5;
-  STORE(passed + 24, b5 = b3 + b5);
-  b4 = w[636] * b5;
-  b2 = w[389] * TURN(176);
-  b2 = w[329] * TURN(16) + w[341] * TURN(48) + w[353] * TURN(80) + w[365] * TURN(112) + w[377] * TURN(144) + b2;
-  STORE(passed + 4, b2 = b5 + b2);
-  STORE(passed + 8, b7 - w[615] * b8 - w[622] * b6 - w[629] * b3 - b4 - b4 - w[643] * b2);
-  STORE(passed + 0, w[330] * TURN(20));
-}
-
-static void MADE(tendon_robot_k_tip_jacobian_columns_1)(const casadi_real *w, const casadi_real *turns,
-    casadi_real *columns, casadi_real *passed) {
-  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13;
-  b0 = w[390] * TURN(180);
-  b0 = PASSED(0) + w[342] * TURN(52) + w[354] * TURN(84) + w[366] * TURN(116) + w[378] * TURN(148) + b0;
-  b0 = PASSED(4) + b0;
-  b1 = w[391] * TURN(184);
-  b1 = w[331] * TURN(24) + w[343] * TURN(56) + w[355] * TURN(88) + w[367] * TURN(120) + w[379] * TURN(152) + b1;
-  b1 = b0 + b1;
-  b2 = w[392] * TURN(188);
-  b2 = w[332] * TURN(28) + w[344] * TURN(60) + w[356] * TURN(92) + w[368] * TURN(124) + w[380] * TURN(156) + b2;
-  b2 = b1 + b2;
-  b3 = w[309] * TURN(160);
-  b3 = w[249] * TURN(0) + w[261] * TURN(32) + w[273] * TURN(64) + w[285] * TURN(96) + w[297] * TURN(128) + b3;
-  b4 = w[310] * TURN(164);
-  b4 = w[250] * TURN(4) + w[262] * TURN(36) + w[274] * TURN(68) + w[286] * TURN(100) + w[298] * TURN(132) + b4;
-  b4 = b3 + b4;
-  b5 = w[311] * TURN(168);
-  b5 = w[251] * TURN(8) + w[263] * TURN(40) + w[275] * TURN(72) + w[287] * TURN(104) + w[299] * TURN(136) + b5;
-  b5 = b4 + b5;
-  b6 = w[312] * TURN(172);
-  b6 = w[252] * TURN(12) + w[264] * TURN(44) + w[276] * TURN(76) + w[288] * TURN(108) + w[300] * TURN(140) + b6;
-  b6 = b5 + b6;
-  b7 = w[580] * b6;
-  b8 = w[381] * TURN(176);
-  b8 = w[321] * TURN(16) + w[333] * TURN(48) + w[345] * TURN(80) + w[357] * TURN(112) + w[369] * TURN(144) + b8;
-  b8 = b6 + b8;
-  b9 = w[382] * TURN(180);
-  b9 = w[322] * TURN(20) + w[334] * TURN(52) + w[346] * TURN(84) + w[358] * TURN(116) + w[370] * TURN(148) + b9;
-  b9 = b8 + b9;
-  b10 = w[383] * TURN(184);
-  b10 = w[323] * TURN(24) + w[335] * TURN(56) + w[347] * TURN(88) + w[359] * TURN(120) + w[371] * TURN(152) + b10;
-  b10 = b9 + b10;
-  b11 = w[384] * TURN(188);
-  b11 = w[324] * TURN(28) + w[336] * TURN(60) + w[348] * TURN(92) + w[360] * TURN(124) + w[372] * TURN(156) + b11;
-  b11 = b10 + b11;
-  b12 = w[608] * b11;
-  b12 = w[559] * b3 + w[566] * b4 + w[573] * b5 + b7 + b7 + w[587] * b8 + w[594] * b9 + w[601] * b10 + b12;
-  b7 = w[716] * PASSED(24);
-  b13 = w[718] * b0;
-  b13 = w[665] * PASSED(12) - b12 + w[714] * PASSED(16) + w[715] * PASSED(20) + b7 + b7 + w[717] * PASSED(4) + b13;
-  b6 = w[636] * b6;
-  b7 = w[664] * b11;
-  b7 = w[615] * b3 + w[622] * b4 + w[629] * b5 + b6 + b6 + w[643] * b8 + w[650] * b9 + w[657] * b10 + b7;
-  b10 = w[716] * PASSED(40);
-  b9 = w[718] * PASSED(48);
-  b9 = b7 - w[665] * PASSED(28) - w[714] * PASSED(32) - w[715] * PASSED(36) - b10 - b10 - w[717] * PASSED(44) - b9;
-  STORE(columns + 0, PASSED(8) - w[650] * b0 - w[657] * b1 - w[664] * b2);
-  STORE(columns + 20, b13 + w[719] * b1 + w[720] * b2);
-  STORE(columns + 40, b9 - w[719] * PASSED(52) - w[720] * PASSED(56));
-  STORE(columns + 60, EACH((-1.0)) * ((b11 * w[171] + PASSED(56) * w[168] + b2 * w[169]) / EACH(2.0)));
-  STORE(columns + 80, (b11 * w[170] + PASSED(56) * w[169] - b2 * w[168]) / EACH(2.0));
-  STORE(columns + 100, (PASSED(56) * w[170] - b11 * w[169] + b2 * w[171]) / EACH(2.0));
-  STORE(columns + 120, (b11 * w[168] - PASSED(56) * w[171] + b2 * w[170]) / EACH(2.0));
+  FOUR b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15;
+  FOUR b16, b17, b18, b19, b20, b21, b22;
+  MADE(tendon_robot_kernels_turned_of_column)(w + 326, turns + 0, passed + 0);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 327, turns + 4, passed + 12);
+  b0 = PASSED(4) + PASSED(16);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 328, turns + 8, passed + 24);
+  b1 = b0 + PASSED(28);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 329, turns + 12, passed + 36);
+  b2 = b1 + PASSED(40);
+  b3 = w[705] * b2;
+  MADE(tendon_robot_kernels_turned_of_column)(w + 398, turns + 16, passed + 48);
+  b4 = b2 + PASSED(52);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 399, turns + 20, passed + 60);
+  b5 = b4 + PASSED(64);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 400, turns + 24, passed + 72);
+  b6 = b5 + PASSED(76);
+  MADE(tendon_robot_kernels_turned_of_column)(w + 401, turns + 28, passed + 84);
+  b7 = b6 + PASSED(88);
+  b3 = w[648] * PASSED(4) + w[667] * b0 + w[686] * b1 + b3 + b3 + w[724] * b4 + w[743] * b5 + w[762] * b6;
+  b8 = PASSED(8) + PASSED(20);
+  b9 = b8 + PASSED(32);
+  b10 = b9 + PASSED(44);
+  b11 = w[785] * b10;
+  b12 = b10 + PASSED(56);
+  b13 = b12 + PASSED(68);
+  b14 = w[787] * b13;
+  b15 = b13 + PASSED(80);
+  b16 = w[788] * b15;
+  b17 = b15 + PASSED(92);
+  b16 = b3 + w[781] * b7 - w[782] * PASSED(8) - w[783] * b8 - w[784] * b9 - b11 - b11 - w[786] * b12 - b14 - b16;
+  b14 = PASSED(0) + PASSED(12);
+  b11 = b14 + PASSED(24);
+  b3 = b11 + PASSED(36);
+  b18 = w[705] * b3;
+  b19 = b3 + PASSED(48);
+  b20 = b19 + PASSED(60);
+  b21 = b20 + PASSED(72);
+  b22 = b21 + PASSED(84);
+  b18 = w[648] * PASSED(0) + w[667] * b14 + w[686] * b11 + b18 + b18 + w[724] * b19 + w[743] * b20 + w[762] * b21;
+  b10 = w[793] * b10;
+  b13 = w[795] * b13;
+  b15 = w[796] * b15;
+  b15 = w[790] * PASSED(8) - (b18 + w[781] * b22) + w[791] * b8 + w[792] * b9 + b10 + b10 + w[794] * b12 + b13 + b15;
+  b3 = w[785] * b3;
+  b21 = w[782] * PASSED(0) + w[783] * b14 + w[784] * b11 + b3 + b3 + w[786] * b19 + w[787] * b20 + w[788] * b21;
+  b2 = w[793] * b2;
+  b5 = w[795] * b5;
+  b6 = w[796] * b6;
+  b6 = b21 + w[789] * b22 - w[790] * PASSED(4) - w[791] * b0 - w[792] * b1 - b2 - b2 - w[794] * b4 - b5 - b6;
+  STORE(columns + 0, b16 - w[789] * b17);
+  STORE(columns + 20, b15 + w[797] * b17);
+  STORE(columns + 40, b6 - w[797] * b7);
+  STORE(columns + 60, EACH((-1.0)) * ((b22 * w[227] + b7 * w[224] + b17 * w[225]) / EACH(2.0)));
+  STORE(columns + 80, (b22 * w[226] + b7 * w[225] - b17 * w[224]) / EACH(2.0));
+  STORE(columns + 100, (b7 * w[226] - b22 * w[225] + b17 * w[227]) / EACH(2.0));
+  STORE(columns + 120, (b22 * w[224] - b7 * w[227] + b17 * w[226]) / EACH(2.0));
 }
 
 static void MADE(tendon_robot_k_tip_jacobian_columns)(const casadi_real *w, const casadi_real *turns,
@@ -825,6 +628,5 @@ static void MADE(tendon_robot_k_tip_jacobian_columns)(const casadi_real *w, cons
   int group;
   for (group = 0; group < groups; group++, turns += 192, columns += 4) {
     EVERY_LANE(MADE(tendon_robot_k_tip_jacobian_columns_0)(w, turns + lane, columns + lane, passed + lane))
-    EVERY_LANE(MADE(tendon_robot_k_tip_jacobian_columns_1)(w, turns + lane, columns + lane, passed + lane))
   }
 }
