@@ -131,6 +131,41 @@ def test_what_steps_lose_where_a_rod_slaps_down_falls_with_them_and_tells_the_er
     assert own.fall.least(fine, own.paths(fine)) < UNBALANCED * lost / 15.0
 
 
+def thrown_at_a_ball(friction: float) -> dict[str, Any]:
+    """A free rod whose end flies against a ball, and slides along it."""
+    ball = {"name": "ball", "kind": "sphere", "centre": [0.3, 0, 0.03], "radius": 0.02, "restitution": 0.3}
+    record = {
+        "name": "rod",
+        "length": 0.3,
+        "strain": "kirchhoff",
+        "material": {"youngs_modulus": 3e6, "poisson_ratio": 0.45, "density": 1100.0},
+        "section": {"shape": "circle", "radius": 5e-3},
+        "damping": {"retardation_time": 5e-3},
+        "base": FREE,
+    }
+    return {
+        "schema": 1,
+        "accuracy": {"modes": 4, "nodes": 8},
+        "rods": [record],
+        "obstacles": [ball | ({"friction": friction} if friction else {})],
+        "velocities": [{"rod": "rod", "linear": [0, 0, 1]}],
+        "simulation": {"duration": 0.012, "frames": 13},
+    }
+
+
+def test_an_end_that_slides_along_a_ball_moves_as_without_friction_where_there_is_hardly_any() -> None:
+    """Beside the end the ball was lost, and no step after that was solved; other motions go from event to event."""
+    from_event_to_event = simulator(thrown_at_a_ball(0.0))
+    wanted = from_event_to_event.paths(from_event_to_event.controlled(1e-6))
+    equal = simulator(thrown_at_a_ball(1e-9))
+    history = equal.stepped(1.25e-4)
+    assert history.completed
+    assert path_distance(equal.paths(history), wanted) < 1e-6
+    # More than a friction of none: what slides there does so with one.
+    rubbed = equal.paths(simulator(thrown_at_a_ball(0.3)).stepped(2.5e-4))
+    assert path_distance(rubbed, wanted) > 1e-4
+
+
 @pytest.mark.slow
 def test_missing_energy_tells_the_error_of_a_thrown_rod_whose_waves_steps_damp() -> None:
     """Motions with steps twice and half as long are ten times nearer than the true one: all damp the same waves."""
