@@ -22,7 +22,7 @@ from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
-from tests.codegen.test_friction_in_steps import ball_on_a_floor
+from tests.codegen.test_friction_in_steps import ball_on_a_floor, thrown_at_a_ball
 from tests.codegen.test_steps_in_contact import LENGTH, floor, rod, scene
 from tests.conftest import ROOT
 from tests.model.test_base_joints import ends
@@ -129,28 +129,6 @@ def test_what_steps_lose_where_a_rod_slaps_down_falls_with_them_and_tells_the_er
     assert path_distance(own.paths(history), own.paths(fine)) < 0.5 * motion.error_estimate < 1e-3
     # With the 1.5th power of the step.
     assert own.fall.least(fine, own.paths(fine)) < UNBALANCED * lost / 15.0
-
-
-def thrown_at_a_ball(friction: float) -> dict[str, Any]:
-    """A free rod whose end flies against a ball, and slides along it."""
-    ball = {"name": "ball", "kind": "sphere", "centre": [0.3, 0, 0.03], "radius": 0.02, "restitution": 0.3}
-    record = {
-        "name": "rod",
-        "length": 0.3,
-        "strain": "kirchhoff",
-        "material": {"youngs_modulus": 3e6, "poisson_ratio": 0.45, "density": 1100.0},
-        "section": {"shape": "circle", "radius": 5e-3},
-        "damping": {"retardation_time": 5e-3},
-        "base": FREE,
-    }
-    return {
-        "schema": 1,
-        "accuracy": {"modes": 4, "nodes": 8},
-        "rods": [record],
-        "obstacles": [ball | ({"friction": friction} if friction else {})],
-        "velocities": [{"rod": "rod", "linear": [0, 0, 1]}],
-        "simulation": {"duration": 0.012, "frames": 13},
-    }
 
 
 def test_an_end_that_slides_along_a_ball_moves_as_without_friction_where_there_is_hardly_any() -> None:
