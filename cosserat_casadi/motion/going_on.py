@@ -1,13 +1,13 @@
 """A motion that goes on from the end of another, with the very digits of one motion over all of the time.
 
-The motions that told the error of the first part go on beside it, so that they tell the error of the whole. Modes and
-steps stay as they were.
+The motions that told the error of the first part go on beside it, so that they tell the error of the whole. Modes stay
+as they were, and so do steps; equal steps that do not meet the tolerance further on are halved from there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +34,7 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
+    MOST_HALVINGS,
     Companion,
     Simulator,
     Tell,
@@ -101,56 +102,100 @@ def go_on(
     given = subject.at() if isinstance(subject, Model) else None
     scene = given.scene if given is not None else _moving(subject, simulation)
     asked = simulation or scene.simulation
-    first = checkpoint.strands[0]
-    model = _model_of(scene, given, first, checkpoint)
+    model = _model_of(scene, given, checkpoint.strands[0], checkpoint)
     check_simulation(model, asked)
     assert asked is not None, "checked"
     if not asked.duration > checkpoint.time:
         problem = f"{asked.duration:g} s is not beyond t = {checkpoint.time:g} s, where the motion goes on"
         raise SceneError(Problem("simulation.duration", problem, "times go on: give the end of the whole motion"))
 
-    def gone_on(strand: Strand, model: Model, stage: str) -> tuple[Simulator, History]:
-        begun = checkpoint if strand is first else None
-        simulator = Simulator(model, asked, resumed_start(model, strand.resume), stage, tell, source, begun, events)
-        return simulator, simulator.resumed(strand)
-
-    simulator, history = gone_on(first, model, "going on")
-    if not history.completed:
-        return ended_early(simulator, history)
-    paths = simulator.paths(history)
-    by_steps = 0.0 if len(checkpoint.strands) > 1 else float("nan")
-    is_damped = all(rod.damping is not None for rod in scene.rods)
-    # The factors of a first part tell of waves that it had: jumps that were to come were not known then.
-    has_jumps = not is_damped and bool(simulator.moving.jumps(asked.duration))
-    # Fronts of earlier loads are still on their way.
-    by_other_modes = 0.0 if is_damped or given is not None else lacking_at_fronts(history, asked.duration)
-    companions = []
-    for strand in checkpoint.strands[1:]:
-        other = model
-        if strand.discretisation != first.discretisation:
-            other = _model_of_strand(scene, None, strand)
-        beside, told = gone_on(strand, other, "going on, for the error")
-        if told.outcome is StepOutcome.INTERRUPTED:
-            message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
-            return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
-        factor = max(strand.factor, _later_factor(simulator, strand, history, told, has_jumps=has_jumps))
-        left = factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
-        if strand.by_modes:
-            by_other_modes = max(by_other_modes, left)
-        else:
-            by_steps = max(by_steps, left)
-        companions.append(Companion(told, factor, strand.impacts, strand.by_modes))
-    by_steps = float(np.maximum(by_steps, simulator.fall.least(history, paths)))
-    error = by_steps + by_other_modes
-    by_modes = any(strand.by_modes for strand in checkpoint.strands)
-    if given is None and not scene.accuracy.fixed and not by_modes:
-        # The modes were enough so far, as their last coefficients told.
-        error += lacking(history, asked.duration)
-    # An error that is not known makes that of the whole unknown.
-    total = float(np.maximum(error, checkpoint.error))
-    bound = bound_of(scene, asked, tolerance_of(scene, asked))
-    motion = judged(simulator, history, total, bound, companions)
+    beginning = _Beginning(scene, given, model, checkpoint, asked, tell, source, tuple(events))
+    strands = checkpoint.strands
+    motion, asks_shorter = beginning.followed(strands)
+    for _ in range(MOST_HALVINGS):
+        if not asks_shorter:
+            break
+        strands = tuple(strand.halved() for strand in strands)
+        motion, asks_shorter = beginning.followed(strands)
     return motion if given is None else replace(motion, tolerance=None)
+
+
+@dataclass(frozen=True)
+class _Beginning:
+    """Where a motion goes on, whatever its steps from there.
+
+    Attributes:
+        scene: the scene.
+        given: the model that was given; None for a scene.
+        model: the model of the motion.
+        checkpoint: where the motion goes on from.
+        asked: duration, frames, tolerance.
+        tell: is told of every step.
+        source: chooses the kernels.
+        events: of the user.
+    """
+
+    scene: Scene
+    given: Model | None
+    model: Model
+    checkpoint: Checkpoint
+    asked: Simulation
+    tell: Tell | None
+    source: MotionCompiler | None
+    events: tuple[MotionEvent, ...]
+
+    def followed(self, strands: Sequence[Strand]) -> tuple[Motion, bool]:
+        """The motion along its strands, and whether shorter steps are asked for: equal ones suited the parts before.
+
+        They are where the motion ends early, or its steps err by more than the modes leave of the tolerance. An error
+        of the parts before stays as it is.
+        """
+        scene, asked, model, checkpoint = self.scene, self.asked, self.model, self.checkpoint
+        first = strands[0]
+        simulator, history = self._gone_on(first, model, "going on", checkpoint)
+        may_be_shorter = simulator.has_equal_steps and asked.step is None
+        if not history.completed:
+            is_early = history.outcome is not StepOutcome.INTERRUPTED
+            return ended_early(simulator, history), may_be_shorter and is_early
+        paths = simulator.paths(history)
+        by_steps = 0.0 if len(strands) > 1 else float("nan")
+        is_damped = all(rod.damping is not None for rod in scene.rods)
+        # The factors of a first part tell of waves that it had: jumps that were to come were not known then.
+        has_jumps = not is_damped and bool(simulator.moving.jumps(asked.duration))
+        # Fronts of earlier loads are still on their way.
+        by_modes = 0.0 if is_damped or self.given is not None else lacking_at_fronts(history, asked.duration)
+        companions = []
+        for strand in strands[1:]:
+            other = model
+            if strand.discretisation != first.discretisation:
+                other = _model_of_strand(scene, None, strand)
+            beside, told = self._gone_on(strand, other, "going on, for the error", None)
+            if told.outcome is StepOutcome.INTERRUPTED:
+                message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
+                return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message), False
+            factor = max(strand.factor, _later_factor(simulator, strand, history, told, has_jumps=has_jumps))
+            left = factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
+            if strand.by_modes:
+                by_modes = max(by_modes, left)
+            else:
+                by_steps = max(by_steps, left)
+            companions.append(Companion(told, factor, strand.impacts, strand.by_modes))
+        by_steps = float(np.maximum(by_steps, simulator.fall.least(history, paths)))
+        if self.given is None and not scene.accuracy.fixed and not any(strand.by_modes for strand in strands):
+            # The modes were enough so far, as their last coefficients told.
+            by_modes += lacking(history, asked.duration)
+        tolerance = tolerance_of(scene, asked)
+        # An error that is not known makes that of the whole unknown.
+        total = float(np.maximum(by_steps + by_modes, checkpoint.error))
+        motion = judged(simulator, history, total, bound_of(scene, asked, tolerance), companions)
+        left_by_modes = max(tolerance, checkpoint.error) - by_modes
+        return motion, may_be_shorter and by_steps > left_by_modes > 0.0
+
+    def _gone_on(self, strand: Strand, model: Model, stage: str, begun: Checkpoint | None) -> tuple[Simulator, History]:
+        """The simulator of a strand, and the motion along it."""
+        start = resumed_start(model, strand.resume)
+        simulator = Simulator(model, self.asked, start, stage, self.tell, self.source, begun, self.events)
+        return simulator, simulator.resumed(strand)
 
 
 def _later_factor(simulator: Simulator, strand: Strand, history: History, told: History, *, has_jumps: bool) -> float:

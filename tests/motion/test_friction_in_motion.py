@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from benchmarks.thrown_rods import random_scene
-from cosserat_casadi import SceneError, build, read_scene, scene_from_dict, simulate
+from cosserat_casadi import Model, SceneError, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.fall_of_errors import UNBALANCED
@@ -330,6 +330,30 @@ def test_a_third_motion_goes_on_where_impacts_ask_for_one() -> None:
     later = simulate(scene_from_dict({**drop, "simulation": drop["simulation"] | {"duration": 0.15}}), start=first)
     assert later.converged and later.end is not None and len(later.end.strands) == 3
     assert later.error_estimate >= first.error_estimate
+
+
+@pytest.mark.slow
+def test_a_part_with_impacts_after_a_flight_has_shorter_steps_where_its_tolerance_asks_for_them() -> None:
+    def thrown(end: float, **more: Any) -> Model:
+        record = rod(base=FREE | {"tangent": [1, 0, 0.3]}, stiffness={"bending_y": 0.5})
+        simulation = {"duration": end, "frames": 11, "start": "unloaded", "tolerance": 3e-5, **more}
+        velocities = [{"rod": "rod", "linear": [0.5, 0, 0]}]
+        tables = scene(floor(-0.03, friction=0.4), record, accuracy=SMALL, simulation=simulation, velocities=velocities)
+        return build(scene_from_dict(tables).with_motion_inputs(), moving=True)
+
+    flight = simulate(thrown(0.07))
+    assert not flight.events
+    later = simulate(thrown(0.1), start=flight)
+    assert later.converged and later.events
+    assert later.error_estimate <= 3e-5
+    shortest = later.statistics.largest_step
+    assert shortest < 0.6 * flight.statistics.largest_step
+    whole = simulate(thrown(0.1, step=shortest / 4.0))
+    assert np.abs(later.tip().position[-1] - whole.tip().position[-1]).max() < 3e-5 * LENGTH
+    # The next part goes on with these steps; where a size is given, it stays.
+    assert simulate(thrown(0.105), start=later).statistics.largest_step <= shortest * (1.0 + 1e-9)
+    given = simulate(thrown(0.1, step=0.07 / 50), start=flight)
+    assert given.statistics.largest_step > 0.9 * flight.statistics.largest_step
 
 
 @pytest.mark.slow
