@@ -123,7 +123,7 @@ def go_on(
 
 
 def _along(simulator: Simulator, strands: Sequence[Strand], *, of_model: bool) -> tuple[Motion, float]:
-    """The motion from a checkpoint along its strands, and the error of equal steps over what it may be.
+    """The motion from a checkpoint along its strands, and the error of equal steps over the error allowed.
 
     Modes leave a part of the tolerance to steps. The ratio is infinite where the motion ends early, and zero where
     shorter steps are of no use. An error of the parts before stays as it is.
