@@ -28,7 +28,7 @@ LINES = {
     "maths": 2_610,
     "mjcf": 1_055,
     "model": 11_740,
-    "motion": 15_135,
+    "motion": 15_160,
     "numerics": 5_385,
     "obstacles": 415,
     "page": 810,

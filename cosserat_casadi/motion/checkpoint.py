@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Mapping
-from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
@@ -90,6 +90,11 @@ class Strand:
     impacts: float
     by_modes: bool
     resume: Resume
+
+    def halved(self) -> Strand:
+        """The motion from where it has come to, with equal steps half as long."""
+        assert self.settings.size is not None, "its steps are equal"
+        return replace(self, settings=replace(self.settings, size=self.settings.size / 2.0))
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """A motion that goes on from the end of another, with the very digits of one motion over all of the time.
 
-The motions that told the error of the first part go on beside it, so that they tell the error of the whole. Modes and
-steps stay as they were.
+The motions that told the error of the first part go on beside it, so that they tell the error of the whole. Modes stay
+as they were, and so do steps; equal steps that do not meet the tolerance further on are halved from there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.centred_coordinates import CentredCoordinates, can_be_centred
 from cosserat_casadi.motion.checkpoint import Checkpoint, Strand, of_another_scene, read_checkpoint
-from cosserat_casadi.motion.fall_of_errors import is_struck
+from cosserat_casadi.motion.fall_of_errors import FAR_APART, is_struck
 from cosserat_casadi.motion.felt_modes import (
     ORDER_OF_WAVES,
     UNKNOWN_ORDER,
@@ -34,6 +34,8 @@ from cosserat_casadi.motion.motion_event import MotionEvent
 from cosserat_casadi.motion.motion_start import resumed_start
 from cosserat_casadi.motion.moving_model import moving_model
 from cosserat_casadi.motion.simulate import (
+    MOST_APART,
+    MOST_HALVINGS,
     Companion,
     Simulator,
     Tell,
@@ -101,56 +103,77 @@ def go_on(
     given = subject.at() if isinstance(subject, Model) else None
     scene = given.scene if given is not None else _moving(subject, simulation)
     asked = simulation or scene.simulation
-    first = checkpoint.strands[0]
-    model = _model_of(scene, given, first, checkpoint)
+    model = _model_of(scene, given, checkpoint.strands[0], checkpoint)
     check_simulation(model, asked)
     assert asked is not None, "checked"
     if not asked.duration > checkpoint.time:
         problem = f"{asked.duration:g} s is not beyond t = {checkpoint.time:g} s, where the motion goes on"
         raise SceneError(Problem("simulation.duration", problem, "times go on: give the end of the whole motion"))
 
-    def gone_on(strand: Strand, model: Model, stage: str) -> tuple[Simulator, History]:
-        begun = checkpoint if strand is first else None
-        simulator = Simulator(model, asked, resumed_start(model, strand.resume), stage, tell, source, begun, events)
-        return simulator, simulator.resumed(strand)
+    start = resumed_start(model, checkpoint.strands[0].resume)
+    simulator = Simulator(model, asked, start, "going on", tell, source, checkpoint, events)
+    strands, before, apart = checkpoint.strands, np.inf, 0
+    for _ in range(MOST_HALVINGS):
+        motion, excess = _along(simulator, strands, of_model=given is not None)
+        apart = apart + 1 if excess > max(before, FAR_APART) else 0
+        if not excess > 1.0 or apart == MOST_APART:
+            break
+        before, strands = excess, tuple(strand.halved() for strand in strands)
+    return motion if given is None else replace(motion, tolerance=None)
 
-    simulator, history = gone_on(first, model, "going on")
+
+def _along(simulator: Simulator, strands: Sequence[Strand], *, of_model: bool) -> tuple[Motion, float]:
+    """The motion from a checkpoint along its strands, and the error of equal steps over the error allowed.
+
+    Modes leave a part of the tolerance to steps. The ratio is infinite where the motion ends early, and zero where
+    shorter steps are of no use. An error of the parts before stays as it is.
+
+    Args:
+        simulator: the simulator of the first strand.
+        strands: the motion, then the motions that tell its error.
+        of_model: whether a model was given, and its modes with it.
+    """
+    scene, asked, checkpoint = simulator.model.scene, simulator.simulation, simulator.begun
+    assert checkpoint is not None, "it goes on from one"
+    may_be_shorter = simulator.has_equal_steps and asked.step is None
+    history = simulator.resumed(strands[0])
     if not history.completed:
-        return ended_early(simulator, history)
+        is_early = history.outcome is not StepOutcome.INTERRUPTED
+        return ended_early(simulator, history), np.inf if may_be_shorter and is_early else 0.0
     paths = simulator.paths(history)
-    by_steps = 0.0 if len(checkpoint.strands) > 1 else float("nan")
+    by_steps = 0.0 if len(strands) > 1 else float("nan")
     is_damped = all(rod.damping is not None for rod in scene.rods)
     # The factors of a first part tell of waves that it had: jumps that were to come were not known then.
     has_jumps = not is_damped and bool(simulator.moving.jumps(asked.duration))
     # Fronts of earlier loads are still on their way.
-    by_other_modes = 0.0 if is_damped or given is not None else lacking_at_fronts(history, asked.duration)
+    by_modes = 0.0 if is_damped or of_model else lacking_at_fronts(history, asked.duration)
     companions = []
-    for strand in checkpoint.strands[1:]:
-        other = model
-        if strand.discretisation != first.discretisation:
-            other = _model_of_strand(scene, None, strand)
-        beside, told = gone_on(strand, other, "going on, for the error")
+    for strand in strands[1:]:
+        is_same = strand.discretisation == strands[0].discretisation
+        other = simulator.model if is_same else _model_of_strand(scene, None, strand)
+        start = resumed_start(other, strand.resume)
+        beside = replace(simulator, model=other, start=start, stage="going on, for the error", begun=None)
+        told = beside.resumed(strand)
         if told.outcome is StepOutcome.INTERRUPTED:
             message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
-            return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message)
+            return motion_of(simulator, history, MotionOutcome.INTERRUPTED, float("nan"), message), 0.0
         factor = max(strand.factor, _later_factor(simulator, strand, history, told, has_jumps=has_jumps))
         left = factor * path_distance(paths, beside.paths(told)) if told.completed else float("inf")
         if strand.by_modes:
-            by_other_modes = max(by_other_modes, left)
+            by_modes = max(by_modes, left)
         else:
             by_steps = max(by_steps, left)
         companions.append(Companion(told, factor, strand.impacts, strand.by_modes))
     by_steps = float(np.maximum(by_steps, simulator.fall.least(history, paths)))
-    error = by_steps + by_other_modes
-    by_modes = any(strand.by_modes for strand in checkpoint.strands)
-    if given is None and not scene.accuracy.fixed and not by_modes:
+    if not of_model and not scene.accuracy.fixed and not any(strand.by_modes for strand in strands):
         # The modes were enough so far, as their last coefficients told.
-        error += lacking(history, asked.duration)
+        by_modes += lacking(history, asked.duration)
+    tolerance = tolerance_of(scene, asked)
     # An error that is not known makes that of the whole unknown.
-    total = float(np.maximum(error, checkpoint.error))
-    bound = bound_of(scene, asked, tolerance_of(scene, asked))
-    motion = judged(simulator, history, total, bound, companions)
-    return motion if given is None else replace(motion, tolerance=None)
+    total = float(np.maximum(by_steps + by_modes, checkpoint.error))
+    motion = judged(simulator, history, total, bound_of(scene, asked, tolerance), companions)
+    left_by_modes = max(tolerance, checkpoint.error) - by_modes
+    return motion, by_steps / left_by_modes if may_be_shorter and left_by_modes > 0.0 else 0.0
 
 
 def _later_factor(simulator: Simulator, strand: Strand, history: History, told: History, *, has_jumps: bool) -> float:

@@ -492,6 +492,27 @@ def test_the_lowest_valley_between_sections_that_are_looked_at_is_not_missed_bes
         assert_allclose(facing.deepest(sunk).gap, lowest, rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("from_end", [0.3, 0.45, 0.4999, 0.5001])
+@pytest.mark.parametrize("is_tip", [False, True])
+def test_a_valley_halfway_from_an_end_to_the_section_beside_it_is_found(from_end: float, is_tip: bool) -> None:
+    """Both sections are as low there: a ball that pressed was lost, and the rod next struck it from inside."""
+    radius, depth, beside = 0.02, 1e-8, from_end / LOOKS
+    place = 1.0 - beside if is_tip else beside
+    ball = f"""
+        [[obstacles]]
+        name = "ball"
+        kind = "sphere"
+        centre = [{LENGTH * place}, 0, {-radius + depth * LENGTH}]
+        radius = {radius}
+    """
+    model = free_rod(ball)
+    (facing,) = facings(model)
+    nodes = facing.nodes(model.unloaded(), moving_inputs(model).pieces(0.1)[0].at(0.0).value)
+    (valley,) = facing.minima(nodes, TOUCHING)
+    assert_allclose([valley.place, valley.gap], [place, -depth], rtol=0, atol=1e-12)
+    assert_allclose(facing.lowest(nodes, ()), -depth, rtol=0, atol=1e-12)
+
+
 def test_a_rod_that_is_laid_down_because_its_contacts_change_too_often_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """With no change in a moment allowed, a rod that touches lies down where its contacts change."""
     scene = read_scene("examples/rod_hits_floor.toml", ["simulation.duration=0.36", "accuracy.modes=2"])

@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from benchmarks.thrown_rods import random_scene
-from cosserat_casadi import SceneError, build, read_scene, scene_from_dict, simulate
+from cosserat_casadi import Model, SceneError, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.checkpoint import Checkpoint
 from cosserat_casadi.motion.fall_of_errors import UNBALANCED
@@ -22,7 +22,7 @@ from cosserat_casadi.motion.tip_paths import path_distance
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome, MotionProgress
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.motion_equations import Instant
-from tests.codegen.test_friction_in_steps import ball_on_a_floor
+from tests.codegen.test_friction_in_steps import ball_on_a_floor, thrown_at_a_ball
 from tests.codegen.test_steps_in_contact import LENGTH, floor, rod, scene
 from tests.conftest import ROOT
 from tests.model.test_base_joints import ends
@@ -129,6 +129,19 @@ def test_what_steps_lose_where_a_rod_slaps_down_falls_with_them_and_tells_the_er
     assert path_distance(own.paths(history), own.paths(fine)) < 0.5 * motion.error_estimate < 1e-3
     # With the 1.5th power of the step.
     assert own.fall.least(fine, own.paths(fine)) < UNBALANCED * lost / 15.0
+
+
+def test_an_end_that_slides_along_a_ball_moves_as_without_friction_where_there_is_hardly_any() -> None:
+    """Beside the end the ball was lost, and no step after that was solved; other motions go from event to event."""
+    from_event_to_event = simulator(thrown_at_a_ball(0.0))
+    wanted = from_event_to_event.paths(from_event_to_event.controlled(1e-6))
+    equal = simulator(thrown_at_a_ball(1e-9))
+    history = equal.stepped(1.25e-4)
+    assert history.completed
+    assert path_distance(equal.paths(history), wanted) < 1e-6
+    # More than a friction of none: what slides there does so with one.
+    rubbed = equal.paths(simulator(thrown_at_a_ball(0.3)).stepped(2.5e-4))
+    assert path_distance(rubbed, wanted) > 1e-4
 
 
 @pytest.mark.slow
@@ -317,6 +330,30 @@ def test_a_third_motion_goes_on_where_impacts_ask_for_one() -> None:
     later = simulate(scene_from_dict({**drop, "simulation": drop["simulation"] | {"duration": 0.15}}), start=first)
     assert later.converged and later.end is not None and len(later.end.strands) == 3
     assert later.error_estimate >= first.error_estimate
+
+
+@pytest.mark.slow
+def test_a_part_with_impacts_after_a_flight_has_shorter_steps_where_its_tolerance_asks_for_them() -> None:
+    def thrown(end: float, **more: Any) -> Model:
+        record = rod(base=FREE | {"tangent": [1, 0, 0.3]}, stiffness={"bending_y": 0.5})
+        simulation = {"duration": end, "frames": 11, "start": "unloaded", "tolerance": 3e-5, **more}
+        velocities = [{"rod": "rod", "linear": [0.5, 0, 0]}]
+        tables = scene(floor(-0.03, friction=0.4), record, accuracy=SMALL, simulation=simulation, velocities=velocities)
+        return build(scene_from_dict(tables).with_motion_inputs(), moving=True)
+
+    flight = simulate(thrown(0.07))
+    assert not flight.events
+    later = simulate(thrown(0.1), start=flight)
+    assert later.converged and later.events
+    assert later.error_estimate <= 3e-5
+    shortest = later.statistics.largest_step
+    assert shortest < 0.6 * flight.statistics.largest_step
+    whole = simulate(thrown(0.1, step=shortest / 4.0))
+    assert np.abs(later.tip().position[-1] - whole.tip().position[-1]).max() < 3e-5 * LENGTH
+    # The next part goes on with these steps; where a size is given, it stays.
+    assert simulate(thrown(0.105), start=later).statistics.largest_step <= shortest * (1.0 + 1e-9)
+    given = simulate(thrown(0.1, step=0.07 / 50), start=flight)
+    assert given.statistics.largest_step > 0.9 * flight.statistics.largest_step
 
 
 @pytest.mark.slow

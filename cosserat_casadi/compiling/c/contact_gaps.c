@@ -279,6 +279,18 @@ static void look_along(const facing *own, const real *nodes, workspace *work) {
   if (!own->is_body) gaps_along(own, nodes, gaps_of(own, work), work);
 }
 
+/* How much lower the gap may be next to a section that is looked at first, one of the least about it: by its bend, which two
+   steps from section to section tell. Beside an end one of them is not enough: halfway down to the next section it is zero. */
+static real step_down(const real *gaps, int last, int look) {
+  const int first = look == 0 ? 0 : look == last ? last - 2 : look - 1;
+  real deepest = BETWEEN;
+  for (int i = first; i < first + 2; i++) {
+    const real step = ABSOLUTE(gaps[i + 1] - gaps[i]);
+    if (step > deepest) deepest = step;
+  }
+  return deepest;
+}
+
 /* The next section, from one of those that are looked at first on, whose gap is the least about it and not above a bound.
    Returns the section to go on from, zero where there is no more. Ends that are not watched are none, but where all are asked
    for. A section that is looked at has one valley at most. */
@@ -296,11 +308,7 @@ static int next_valley(const facing *own, int look, real below, int all, section
     /* Of equal ones the first and the last. */
     const int is_valley = fall >= 0 && rise >= 0 && fall + rise > 0;
     const int is_watched = all || ((i > 0 || own->watches_base) && (i < last || own->watches_tip));
-    /* Between two sections as low as each other the gap may be lower, by its bend. */
-    real deeper = BETWEEN;
-    if (i > 0 && fall > deeper) deeper = fall;
-    if (i < last && rise > deeper) deeper = rise;
-    if (!is_valley || !is_watched || gaps[i] > below + deeper) continue;
+    if (!is_valley || !is_watched || gaps[i] > below + step_down(gaps, last, i)) continue;
     look_lowest_by(own, i, found, work);
     if (!(found->value > below)) return i + 1;
   }

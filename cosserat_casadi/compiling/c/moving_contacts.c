@@ -156,14 +156,6 @@ int gap_valleys(const facing *own, const real *nodes, real below, real *places, 
   return count;
 }
 
-/* How much lower than a section that is looked at the minimum next to it may be. */
-static real step_down(const real *gaps, int count, int look) {
-  real highest = gaps[look];
-  if (look > 0 && gaps[look - 1] > highest) highest = gaps[look - 1];
-  if (look < count - 1 && gaps[look + 1] > highest) highest = gaps[look + 1];
-  return highest - gaps[look] + BETWEEN;
-}
-
 /* Whether a section that is looked at first is the least about it, and none of those left out: sections in the valleys of
    some, next to them, and at some ends. Equal ones count where they are the first or the last. */
 static int is_lowest(const facing *own, const real *gaps, int count, int look, int all, const int *left_out,
@@ -204,7 +196,7 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
   }
   for (int i = 0; i < count; i++) {
     /* A valley between two sections may be lower than another one at a section, such as an end, whose gap is less. */
-    const real deeper = step_down(gaps, count, i);
+    const real deeper = step_down(gaps, count - 1, i);
     if (gaps[i] - deeper > least || !is_lowest(own, gaps, count, i, all, left_out, but_count, ends, end_count)) continue;
     gap.place = place_of_look(own, i);
     gap.value = gaps[i];
