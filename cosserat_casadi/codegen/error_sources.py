@@ -40,6 +40,7 @@ def error_words(model: Model, names: Names) -> Words:
         return {"error_reals": 0}
     richer = model.discrete.richer
     elements = blindness.TurnedElements(richer)
+    last, before = richer.strains_of_pairs
     tolerance = model.scene.accuracy.tolerance
     watched_count = len(watched_owners(model.discrete))
     cable_count = len(watched_cables(model.discrete))
@@ -51,7 +52,10 @@ def error_words(model: Model, names: Names) -> Words:
         "watched_poses": (watched_count - cable_count) // POSE_SIZE,
         "watched_cables": cable_count,
         "richer_size": richer.discrete.size,
-        "is_among_last": numbers(richer.is_among_last.astype(int).tolist()),
+        "strains": int(last.max()) + 1,
+        "last_of_missing": numbers(last[~richer.known].tolist()),
+        "before_of_missing": numbers(before[~richer.known].tolist()),
+        "before_of_unknown": numbers(before[richer.known].tolist()),
         "elements": len(elements.unloaded),
         "element_of_unknown": numbers(elements.of_unknowns.tolist()),
         "turns": numbers(elements.turns.tolist()),

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.load_path import column
@@ -56,10 +57,10 @@ SHORTEST = 1e-10
 """Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
 
 FASTEST = 0.02
-"""Smallest ratio of the errors with and without two more modes that is believed."""
+"""Smallest ratio by which errors, and coefficients of strains, are believed to fall with two more modes."""
 
 SLOWEST = 0.7
-"""Largest ratio of the errors with and without two more modes that is believed."""
+"""Largest ratio by which errors, and coefficients of strains, are believed to fall with two more modes."""
 
 UNKNOWN = 1.0
 """Error of an answer that no correction settles near: the whole length."""
@@ -430,14 +431,14 @@ def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Co
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
     """Change by modes beyond the modes of the richer model: the rest of a geometric series.
 
-    The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E. A first look
-    does not know the highest degrees well enough to tell e.
+    The two highest degrees move watched poses by e, the next two move them by e r, and so on. A first look does not
+    know the highest degrees well enough to tell e.
     """
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
     whole = richer_balance(solution, correction.known, correction.missing).poses
     fewer = richer_balance(solution, correction.known, _without_last(solution, correction).missing).poses
-    return _rest(change_size(whole.change_from(fewer)), correction.change)
+    return change_size(whole.change_from(fewer)) * _sum_beyond(solution, correction)
 
 
 def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:
@@ -448,7 +449,7 @@ def _share_beyond(solution: Solution, correction: Correction, corrected: Solutio
     if not correction.settled or change <= ROUNDING:
         return 0.0
     fewer = _richer_answer(solution, _without_last(solution, correction))
-    return _rest(_shape_change(fewer, corrected), change) / change
+    return _shape_change(fewer, corrected) * _sum_beyond(solution, correction) / change
 
 
 def _without_last(solution: Solution, correction: Correction) -> Correction:
@@ -457,10 +458,23 @@ def _without_last(solution: Solution, correction: Correction) -> Correction:
     return replace(correction, missing=np.where(is_last, 0.0, correction.missing))
 
 
-def _rest(last: float, change: float) -> float:
-    """The rest of a geometric series of which the two highest degrees give the last part of a change."""
-    ratio = float(np.clip(last / change, FASTEST, SLOWEST))
-    return last * ratio / (1 - ratio)
+def _sum_beyond(solution: Solution, correction: Correction) -> float:
+    """Sum r + r² + … of what degrees beyond those of the richer model give, over what its two highest degrees give.
+
+    The coefficients of each strain fall from two degrees to the next two as its highest four do: of two degrees one may
+    be empty by symmetry. r is what the next two degrees of all strains would be, over what the highest two are.
+    """
+    richer = solution.model.discrete.richer
+    squares = richer_unknowns(solution, correction.known, correction.missing) ** 2
+    last, before = (_sums(strains, squares) for strains in richer.strains_of_pairs)
+    fall = np.divide(last, before, out=np.full(len(last), SLOWEST**2), where=last < SLOWEST**2 * before)
+    ratio = max(float(np.sqrt(last @ fall / last.sum())), FASTEST) if last.any() else FASTEST
+    return ratio / (1 - ratio)
+
+
+def _sums(numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
+    """Sum of the values of each number, shape (largest number + 1,); values with a number below zero do not count."""
+    return np.bincount(numbers[numbers >= 0], values[numbers >= 0])
 
 
 def _richer_answer(solution: Solution, correction: Correction) -> Solution:

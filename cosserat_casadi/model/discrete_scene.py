@@ -614,15 +614,28 @@ class Richer:
         return self.discrete.size - self.coarse.size
 
     @cached_property
-    def is_among_last(self) -> npt.NDArray[np.bool_]:
-        """Whether each missing coordinate is of one of the two highest degrees of its strain, shape (missing,)."""
-        last = np.zeros(self.discrete.size, dtype=bool)
+    def strains_of_pairs(self) -> npt.NDArray[np.int64]:
+        """Number of the strain, over all rods, of each coordinate of the richer scene, shape (2, richer size).
+
+        The first row has the coordinates of the two highest degrees of their strain, the second row those of the two
+        degrees below; all others are −1.
+        """
+        strains = np.full((2, self.discrete.size), -1)
+        number = 0
         for name, rich_rod in self.discrete.rods.items():
             first = self.discrete.unknowns.strain(name).start
             for component, columns in rich_rod.columns.items():
                 degrees = rich_rod.degrees(component)
-                last[first + columns.start : first + columns.stop] = degrees > degrees.max() - 2
-        return last[~self.known]
+                pairs = (degrees.max() - degrees) // 2
+                for pair, row in enumerate(strains):
+                    row[first + columns.start : first + columns.stop][pairs == pair] = number
+                number += 1
+        return strains
+
+    @cached_property
+    def is_among_last(self) -> npt.NDArray[np.bool_]:
+        """Whether each missing coordinate is of one of the two highest degrees of its strain, shape (missing,)."""
+        return self.strains_of_pairs[0, ~self.known] >= 0
 
     def joined(self, x: Matrix, missing: Matrix) -> Matrix:
         """Unknowns of the richer scene from the unknowns of the coarse one and the missing ones."""

@@ -69,6 +69,7 @@ static const follower_reissner_real SAME_BRANCH = (follower_reissner_real)0.5;
 #define SOLVER_WATCHED_POSES 1
 #define SOLVER_WATCHED_CABLES 0
 #define SOLVER_ELEMENTS 1
+#define SOLVER_STRAINS 6
 enum { ERROR_SWEEPS = 4 };
 static const follower_reissner_real ERROR_SAFETY = (follower_reissner_real)1.2;
 static const follower_reissner_real ERROR_FIRST_LOOK = (follower_reissner_real)2.0;

@@ -69,6 +69,7 @@ static const nitinol_wire_real SAME_BRANCH = (nitinol_wire_real)0.5;
 #define SOLVER_WATCHED_POSES 1
 #define SOLVER_WATCHED_CABLES 0
 #define SOLVER_ELEMENTS 1
+#define SOLVER_STRAINS 3
 enum { ERROR_SWEEPS = 4 };
 static const nitinol_wire_real ERROR_SAFETY = (nitinol_wire_real)1.2;
 static const nitinol_wire_real ERROR_FIRST_LOOK = (nitinol_wire_real)2.0;

@@ -82,8 +82,11 @@ static solver_status within_limits(solver_status end, const real *x, const real 
 #define is_beyond(x, inputs, next, next_inputs, work) ((void)(inputs), 0)
 #define is_barred(path, now, work) ((void)(path), 0)
 
-/* Which missing coordinates are of one of the two highest degrees of their strain. */
-static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1};
+/* Strain of each missing coordinate that is of its two highest degrees, and of each coordinate that is of the two below
+   these; else -1. */
+static const int LAST_OF_MISSING[SOLVER_MISSING] = {-1, 0, 0};
+static const int BEFORE_OF_MISSING[SOLVER_MISSING] = {0, -1, -1};
+static const int BEFORE_OF_UNKNOWN[N] = {-1, -1, -1, 0};
 
 /* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
 static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 0};

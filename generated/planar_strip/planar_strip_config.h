@@ -69,6 +69,7 @@ static const planar_strip_real SAME_BRANCH = (planar_strip_real)0.5;
 #define SOLVER_WATCHED_POSES 1
 #define SOLVER_WATCHED_CABLES 0
 #define SOLVER_ELEMENTS 1
+#define SOLVER_STRAINS 1
 enum { ERROR_SWEEPS = 4 };
 static const planar_strip_real ERROR_SAFETY = (planar_strip_real)1.2;
 static const planar_strip_real ERROR_FIRST_LOOK = (planar_strip_real)2.0;

@@ -69,6 +69,7 @@ static const precurved_tube_real SAME_BRANCH = (precurved_tube_real)0.5;
 #define SOLVER_WATCHED_POSES 1
 #define SOLVER_WATCHED_CABLES 0
 #define SOLVER_ELEMENTS 1
+#define SOLVER_STRAINS 3
 enum { ERROR_SWEEPS = 4 };
 static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.2;
 static const precurved_tube_real ERROR_FIRST_LOOK = (precurved_tube_real)2.0;

@@ -155,20 +155,42 @@ static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian,
   return change;
 }
 
-/* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is what the two highest
-   degrees move over the whole change. */
+/* Sum r + r^2 + ... of what degrees beyond those of the richer model give, over what its two highest degrees give. The
+   coefficients of each strain fall from two degrees to the next two as its highest four do: of two degrees one may be empty
+   by symmetry. r is what the next two degrees of all strains would be, over what the highest two are. */
+static real sum_beyond(const real *x, const workspace *work) {
+  real last[SOLVER_STRAINS] = {0};
+  real before[SOLVER_STRAINS] = {0};
+  real squares = 0;
+  real next = 0;
+  for (int i = 0; i < N; i++) {
+    const real coefficient = x[i] + work->known_correction[i];
+    if (BEFORE_OF_UNKNOWN[i] >= 0) before[BEFORE_OF_UNKNOWN[i]] += coefficient * coefficient;
+  }
+  for (int i = 0; i < MISSING; i++) {
+    const real square = work->missing[i] * work->missing[i];
+    if (LAST_OF_MISSING[i] >= 0) last[LAST_OF_MISSING[i]] += square;
+    if (BEFORE_OF_MISSING[i] >= 0) before[BEFORE_OF_MISSING[i]] += square;
+  }
+  for (int k = 0; k < SOLVER_STRAINS; k++) {
+    const real slowest = ERROR_SLOWEST * ERROR_SLOWEST;
+    squares += last[k];
+    next += last[k] * (last[k] < slowest * before[k] ? last[k] / before[k] : slowest);
+  }
+  real ratio = squares > 0 ? SQUARE_ROOT(next / squares) : ERROR_FASTEST;
+  if (!(ratio >= ERROR_FASTEST)) ratio = ERROR_FASTEST;
+  return ratio / (1 - ratio);
+}
+
+/* What modes beyond those of the richer model would add to what is watched: the rest of a geometric series. */
 static real rest_of_series(const real *x, const real *inputs, real change, workspace *work) {
   if (change <= ERROR_FLOOR) return 0;
   const real *richer = work->balance + 2 * N + MISSING;
-  for (int i = 0; i < MISSING; i++) work->fewer[i] = IS_AMONG_LAST[i] ? 0 : work->missing[i];
+  for (int i = 0; i < MISSING; i++) work->fewer[i] = LAST_OF_MISSING[i] >= 0 ? 0 : work->missing[i];
   (void)balance(x, work->missing, inputs, work);
   memcpy(work->watched_after, richer, sizeof work->watched_after);
   (void)balance(x, work->fewer, inputs, work);
-  const real last = largest_change(richer, work->watched_after);
-  real ratio = last / change;
-  if (ratio < ERROR_FASTEST) ratio = ERROR_FASTEST;
-  if (!(ratio <= ERROR_SLOWEST)) ratio = ERROR_SLOWEST;
-  return last * ratio / (1 - ratio);
+  return largest_change(richer, work->watched_after) * sum_beyond(x, work);
 }
 
 /* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. */

@@ -74,6 +74,7 @@ static const six_rod_platform_real SAME_BRANCH = (six_rod_platform_real)0.5;
 #define SOLVER_WATCHED_POSES 25
 #define SOLVER_WATCHED_CABLES 0
 #define SOLVER_ELEMENTS 6
+#define SOLVER_STRAINS 36
 enum { ERROR_SWEEPS = 4 };
 static const six_rod_platform_real ERROR_SAFETY = (six_rod_platform_real)1.2;
 static const six_rod_platform_real ERROR_FIRST_LOOK = (six_rod_platform_real)2.0;

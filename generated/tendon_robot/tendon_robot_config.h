@@ -69,6 +69,7 @@ static const tendon_robot_real SAME_BRANCH = (tendon_robot_real)0.5;
 #define SOLVER_WATCHED_POSES 1
 #define SOLVER_WATCHED_CABLES 4
 #define SOLVER_ELEMENTS 2
+#define SOLVER_STRAINS 3
 enum { ERROR_SWEEPS = 4 };
 static const tendon_robot_real ERROR_SAFETY = (tendon_robot_real)1.2;
 static const tendon_robot_real ERROR_FIRST_LOOK = (tendon_robot_real)2.0;

@@ -108,27 +108,17 @@ def test_robot_of_six_tendons(seed: int) -> None:
     assert away.within_tolerance is False
 
 
-@pytest.fixture(scope="module")
-def locked_platform() -> Model:
-    read = read_scene(AWAY / "platform_locks.toml")
-    return build(read, discretise(read, (2, 2, 1), 4, "magnus4"))
-
-
 @pytest.mark.slow
-def test_platform_that_its_modes_lock(locked_platform: Model) -> None:
+def test_platform_that_its_modes_lock() -> None:
+    read = read_scene(AWAY / "platform_locks.toml")
+    locked_platform = build(read, discretise(read, (2, 2, 1), 4, "magnus4"))
     pushed = solve(locked_platform, {"load.force": [3.0, 2.0, 0.0]})
     still = solve(locked_platform, estimate_error=False)
     # As many constraints as coordinates that move: it stays where it is.
     assert_allclose(pushed.body().position, still.body().position, rtol=0, atol=1e-10)
     assert pushed.error_estimate is not None
-    assert pushed.error_estimate > true_error(pushed)
+    assert 1.0 < pushed.error_estimate / true_error(pushed) < 1.5
     assert pushed.within_tolerance is False
-
-
-@pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="one degree has nearly all of the change: the rest of the series is a guess")
-def test_platform_that_its_modes_lock_is_told_no_more_than_thrice_its_error(locked_platform: Model) -> None:
-    assert_estimated(solve(locked_platform, {"load.force": [3.0, 2.0, 0.0]}))
 
 
 @pytest.mark.parametrize(("tension", "height"), [(11.3, -0.0703), (5.17, -0.0356)])
