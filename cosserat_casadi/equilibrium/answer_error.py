@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.load_path import column
@@ -56,11 +55,8 @@ CONTRACTING = 0.5
 SHORTEST = 1e-10
 """Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
 
-FASTEST = 0.02
-"""Smallest ratio by which errors, and coefficients of strains, are believed to fall with two more modes."""
-
 SLOWEST = 0.7
-"""Largest ratio by which errors, and coefficients of strains, are believed to fall with two more modes."""
+"""Largest ratio of errors, or of the coefficients of a strain, with and without two more modes that is believed."""
 
 UNKNOWN = 1.0
 """Error of an answer that no correction settles near: the whole length."""
@@ -466,15 +462,11 @@ def _sum_beyond(solution: Solution, correction: Correction) -> float:
     """
     richer = solution.model.discrete.richer
     squares = richer_unknowns(solution, correction.known, correction.missing) ** 2
-    last, before = (_sums(strains, squares) for strains in richer.strains_of_pairs)
+    of_pairs = np.bincount(richer.degree_pairs, squares, minlength=2 * richer.strain_count + 2)
+    last, before = of_pairs[:-2:2], of_pairs[1:-2:2]
     fall = np.divide(last, before, out=np.full(len(last), SLOWEST**2), where=last < SLOWEST**2 * before)
-    ratio = max(float(np.sqrt(last @ fall / last.sum())), FASTEST) if last.any() else FASTEST
+    ratio = float(np.sqrt(last @ fall / last.sum())) if last.any() else 0.0
     return ratio / (1 - ratio)
-
-
-def _sums(numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
-    """Sum of the values of each number, shape (largest number + 1,); values with a number below zero do not count."""
-    return np.bincount(numbers[numbers >= 0], values[numbers >= 0])
 
 
 def _richer_answer(solution: Solution, correction: Correction) -> Solution:
