@@ -256,6 +256,24 @@ def test_levels_in_contact_are_blind_to_what_loads_roll_up_as_well() -> None:
     assert pose_distance(found, alone) < found.error_estimate <= 1e-3
 
 
+def test_levels_in_contact_go_as_far_as_coils_ask() -> None:
+    """Five and seven modes of ten turns have no equilibrium; the obstacle is far off."""
+    far = {"name": "far", "kind": "sphere", "centre": [0.0, 0.0, 9.0], "radius": 0.1}
+    round_one = {
+        "material": {"youngs_modulus": 2e11, "poisson_ratio": 0.29},
+        "section": {"shape": "circle", "radius": 1e-3},
+    }
+    coiled = {"intrinsic": {"curvature": [0, 49.6, 4.34]}}
+    wire = {"name": "rod", "length": 1.26, "strain": "kirchhoff", **round_one, **coiled}
+    drawn = push(force=[0.3, 0.0, 0.0])
+    found, alone = (
+        solve(scene(drawn, rods=[wire], obstacles=obstacles, accuracy={"tolerance": tolerance}))
+        for obstacles, tolerance in (([far], 1e-3), ([], 1e-5))
+    )
+    assert found.error_estimate is not None
+    assert pose_distance(found, alone) < found.error_estimate + 1e-5 < 1e-3
+
+
 @pytest.mark.parametrize(
     ("modes", "nodes", "length", "velocity"),
     [((7, 7, 1), 10, 0.6, [0.285, -0.249, -0.123]), ((5, 5, 1), 12, 0.594, [0.296, -0.161, 0.136])],
