@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi.codegen.block_sources import Words
 from cosserat_casadi.codegen.names import Names
@@ -99,8 +98,9 @@ def turned_tables(name: str, elements: blindness.TurnedElements, *, among_all: b
     richer = elements.richer
     of_missing, modes_of_missing = elements.of_missing, elements.modes_of_missing
     if among_all:
-        of_missing = _spread(of_missing, ~richer.known, -1)
-        modes_of_missing = _spread(modes_of_missing, ~richer.known, 0)
+        of_all = np.full((2, len(richer.known)), -1)
+        of_all[:, ~richer.known] = of_missing, modes_of_missing
+        of_missing, modes_of_missing = of_all
     tables = {
         "of_unknown": elements.of_unknowns,
         "by_unknown": elements.turns,
@@ -112,10 +112,3 @@ def turned_tables(name: str, elements: blindness.TurnedElements, *, among_all: b
     fields = {**sizes, **{field: f"{name}_{field.upper()}" for field in tables}}
     lines = [table(f"{name}_{field.upper()}", values.tolist()) for field, values in tables.items()]
     return f"{''.join(lines)}static const turned_elements {name} = {record(fields)};"
-
-
-def _spread(values: blindness.Indices, places: npt.NDArray[np.bool_], other: int) -> blindness.Indices:
-    """Values at some places of a row, and one value at all others, shape (places,)."""
-    row = np.full(len(places), other)
-    row[places] = values
-    return row

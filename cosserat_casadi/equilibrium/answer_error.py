@@ -425,23 +425,16 @@ def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Co
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
-    """Change by modes beyond the modes of the richer model: the rest of a geometric series.
-
-    The two highest degrees move watched poses by e, the next two move them by e r, and so on. A first look does not
-    know the highest degrees well enough to tell e.
-    """
+    """Change by modes beyond those of the richer model, whose highest degrees a first look does not know enough."""
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
-    whole = richer_balance(solution, correction.known, correction.missing).poses
-    fewer = richer_balance(solution, correction.known, _without_last(solution, correction).missing).poses
+    both = (correction, _without_last(solution, correction))
+    whole, fewer = (richer_balance(solution, own.known, own.missing).poses for own in both)
     return change_size(whole.change_from(fewer)) * _sum_beyond(solution, correction)
 
 
 def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:
-    """Share of a change of the shape that modes beyond the modes of the richer model add; none after a first look.
-
-    Between watched sections a shape may wave with the missing modes where these hardly move a tip.
-    """
+    """Share of a change of the shape, which waves between watched sections too, that modes beyond those would add."""
     if not correction.settled or change <= ROUNDING:
         return 0.0
     fewer = _richer_answer(solution, _without_last(solution, correction))
@@ -462,8 +455,7 @@ def _sum_beyond(solution: Solution, correction: Correction) -> float:
     """
     richer = solution.model.discrete.richer
     squares = richer_unknowns(solution, correction.known, correction.missing) ** 2
-    of_pairs = np.bincount(richer.degree_pairs, squares, minlength=2 * richer.strain_count + 2)
-    last, before = of_pairs[:-2:2], of_pairs[1:-2:2]
+    last, before = np.bincount(richer.degree_pairs, squares, 2 * richer.strain_count + 2)[:-2].reshape(-1, 2).T
     fall = np.divide(last, before, out=np.full(len(last), SLOWEST**2), where=last < SLOWEST**2 * before)
     ratio = float(np.sqrt(last @ fall / last.sum())) if last.any() else 0.0
     return ratio / (1 - ratio)

@@ -182,14 +182,7 @@ def ends_by_column(ranges: Sequence[str], layout: CaseLayout, *, grids: bool = F
 
 
 def fault_of_ends(where: str, name: str, low: float, high: float) -> Problem | None:
-    """Why two ends are no range; None where they are one.
-
-    Args:
-        where: what gives them.
-        name: of the input or the parameter.
-        low: lower end.
-        high: upper end.
-    """
+    """Why two ends of an input or a parameter are no range; None where they are one."""
     if not (np.isfinite(low) and np.isfinite(high)):
         return Problem(where, f"the range of {name} must have two finite ends, got {low:g}:{high:g}")
     if low == high:
