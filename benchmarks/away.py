@@ -248,10 +248,15 @@ def _case(subject: Subject, rng: np.random.Generator, *, inside: bool) -> Case |
 
 
 def _corrected(answer: Solution, finer: Model) -> FloatArray:
-    """Unknowns of the finer model at an answer with the last of its corrections."""
+    """Unknowns of the finer model at the equilibrium of the richer model that the answer's correction leads to.
+
+    From the correction itself Newton's method on so many more modes may reach another equilibrium.
+    """
     _, correction = believed_correction(answer)
     unknowns = richer_unknowns(answer, correction.known, correction.missing)
-    return prolong(replace(answer, model=answer.model.richer, x=unknowns), finer)
+    corrected = replace(answer, model=answer.model.richer, x=unknowns)
+    settled = solve(corrected.model, answer.inputs, start=unknowns, estimate_error=False)
+    return prolong(settled if settled.converged else corrected, finer)
 
 
 def _estimate_in_c(

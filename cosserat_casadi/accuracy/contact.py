@@ -6,14 +6,12 @@ tolerance. The coarser of the two is the solution, and their distance its estima
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
 
-import numpy.typing as npt
-
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import nodes_for_turn
+from cosserat_casadi.accuracy.levels import FIRST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
+from cosserat_casadi.accuracy.scene_solver import SceneSolver
 from cosserat_casadi.equilibrium.contact.contact_answer_error import same_contacts, with_contact_error
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids
 from cosserat_casadi.equilibrium.contact.contact_search import equilibrium_in
@@ -22,10 +20,7 @@ from cosserat_casadi.equilibrium.contact.contact_state import state_in
 from cosserat_casadi.equilibrium.metrics import largest_turn
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
-from cosserat_casadi.numerics.progress import Progress, Report
-
-LEVELS = (5, 7, 9, 11, 13, 16, 20, 24, 28)
-"""Modes per strain and element that are tried."""
+from cosserat_casadi.model.required_modes import wave_modes
 
 FINER_MODES = 3
 """Modes that are added to the user's to estimate their error."""
@@ -34,34 +29,31 @@ MOST_FAILURES = 1
 """Levels without an equilibrium after which the next one ends the search: the cushions are the same on all."""
 
 
-def solve_contact_scene(
-    scene: scenes.Scene,
-    values: Mapping[str, npt.ArrayLike] | None,
-    transport: str,
-    progress: Progress | None = None,
-    report: Report | None = None,
-) -> Solution:
+def solve_contact_scene(solver: SceneSolver, transport: str) -> Solution:
     """Equilibrium of a scene with obstacles to its tolerance, or on the modes and nodes that it fixes.
 
     Args:
-        scene: without parameters.
-        values: inputs by name.
+        solver: of the scene, without parameters.
         transport: rotation integrator where the scene names none.
-        progress: told the share of the load path that is done.
-        report: told the discretisation being solved.
     """
+    scene = solver.scene
     tolerance = scene.accuracy.tolerance
     coarse: Solution | None = None
     failures = 0
     for modes, nodes in _levels(scene):
-        turn = 0.0 if coarse is None else largest_turn(coarse)
+        # Intervals that a scene fixes are those of its answer.
+        turn = 0.0 if scene.accuracy.fixed else solver.unloaded_turn
+        if coarse is not None:
+            turn = max(turn, largest_turn(coarse))
         chosen = discretise(scene, modes, max(nodes, nodes_for_turn(_most(modes), turn)), transport)
-        if report is not None:
-            report(f"{modes} modes")
+        if solver.report is not None:
+            solver.report(f"{modes} modes")
         start = coarse if coarse is not None and coarse.converged else None
         # Modes that a scene fixes are all that there are.
         unmet = 0.0 if scene.accuracy.fixed else _unmet(start)
-        fine = solve_contact(scene, Grids(chosen), values, start=start, progress=progress, unmet_before=unmet)
+        fine = solve_contact(
+            scene, Grids(chosen), solver.values, start=start, progress=solver.progress, unmet_before=unmet
+        )
         failures += not fine.converged
         if failures > MOST_FAILURES:
             return fine
@@ -99,7 +91,9 @@ def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:
     """Modes, and the least intervals, to solve one after the other."""
     accuracy = scene.accuracy
     if not accuracy.fixed:
-        return [(modes, nodes_for(modes)) for modes in LEVELS]
+        needed = max(wave_modes(scene, rod.name) for rod in scene.rods)
+        first = Level.first(FIRST_LEVELS[0][0], needed)
+        return [(modes, nodes_for(modes)) for modes in REFERENCE_MODES[first.index : first.finest + 1]]
     modes = DEFAULT_MODES if accuracy.modes is None else accuracy.modes
     nodes = nodes_for(_most(modes)) if accuracy.nodes is None else accuracy.nodes
     finer = modes + FINER_MODES if isinstance(modes, int) else tuple(count + FINER_MODES for count in modes)

@@ -29,7 +29,7 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.model.input_bounds import limits_of, narrowed, physical_range
 from cosserat_casadi.model.inputs import Input
-from cosserat_casadi.model.load_cases import CaseLayout, case_layout, no_column
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout, fault_of_ends, no_column
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.strain import DiscreteRod
 
@@ -191,22 +191,12 @@ def _entries(layout: CaseLayout, given: Given, origin: Origin, where: str) -> En
             continue
         # Modes may have been chosen for a single value of an entry; the reader of scenes has judged all else.
         if origin is not Origin.CHOSEN_FOR:
-            problems.extend(_faults_of_ends(where, name, pairs))
+            faults = [fault_of_ends(where, name, low, high) for low, high in pairs.tolist()]
+            problems.extend(fault for fault in faults if fault is not None)
         for k, (low, high) in enumerate(np.broadcast_to(pairs, (size, 2)).tolist()):
             entries[span.start + k] = (low, high, origin)
     refuse(problems)
     return entries
-
-
-def _faults_of_ends(where: str, name: str, pairs: FloatArray) -> Iterator[Problem]:
-    """Faults of pairs of ends, shape (k, 2)."""
-    for low, high in pairs.tolist():
-        if not (np.isfinite(low) and np.isfinite(high)):
-            yield Problem(where, f"the range of {name} must have two finite ends, got {low:g}:{high:g}")
-        elif low == high:
-            yield Problem(where, f"the range of {name} must have two different ends, got {low:g} twice")
-        elif low > high:
-            yield Problem(where, f"the range of {name} must have the lower end first, got {low:g}:{high:g}")
 
 
 def _bounded(scene: scenes.Scene, layout: CaseLayout) -> Entries:

@@ -206,7 +206,7 @@ def solve_rods(
     solver = SceneSolver(scene, values, stable, progress, report)
     if scene.touches_exactly:
         transport = scene.accuracy.rotation or solver.reference_transport
-        in_contact = with_notes(solve_contact_scene(scene, values, transport, progress, report))
+        in_contact = with_notes(solve_contact_scene(solver, transport))
         return noted_unstable(in_contact) if stable else in_contact
     solution = with_notes(_with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver))
     # The last correction alone may need no step: a user asks what the search has cost.

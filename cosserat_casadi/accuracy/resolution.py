@@ -20,7 +20,7 @@ from math import ceil, log
 import numpy as np
 
 from cosserat_casadi.accuracy.preview import FinerShift, Preview
-from cosserat_casadi.equilibrium.answer_error import FASTEST, SLOWEST
+from cosserat_casadi.equilibrium.answer_error import SLOWEST
 from cosserat_casadi.maths.pose_change import change_size
 from cosserat_casadi.model.required_modes import WAVES_FACTOR
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -33,6 +33,9 @@ GRID_SAFETY = 1.5
 
 SUM_SAFETY = 2.0
 """Factor on the change by finer sums of layers, whose stiffness changes with them."""
+
+FASTEST = 0.02
+"""Smallest ratio of the errors with and without two more modes that is believed."""
 
 FURTHER_MODES = 4
 """Modes and intervals added for a look at rods without waves, more than one uneven step of their error."""

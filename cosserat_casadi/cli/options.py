@@ -34,12 +34,13 @@ Ranges = Annotated[
 
 
 def asked_ranges(ranges: list[str] | None, scene: Scene) -> dict[str, tuple[float, float]]:
-    """Lower and upper end by column of what ``--range`` asks for.
+    """Lower and upper end by column of what ``--range`` asks for; in exact contact counted ranges are grids.
 
     Raises:
-        SceneError: with every fault: a name that is unknown or stands twice; a range without two finite ends.
+        SceneError: with every fault: a name that is unknown or stands twice; a range without two finite ends, the lower
+            one first.
     """
-    return ends_by_column(ranges, case_layout(scene)) if ranges else {}
+    return ends_by_column(ranges, case_layout(scene), grids=scene.touches_exactly) if ranges else {}
 
 
 def asked_cases(over: Path | None, ranges: list[str] | None, scene: Scene) -> FloatArray | None:

@@ -102,6 +102,7 @@ ROLES = {
     "solver_path.c": "growing loads, and one input after another",
     "solver_sensitivity.c": "derivatives of a solution",
     "solver_track.c": "a turn of a control loop",
+    "blind_turns.c": "whether modes see the waves of what loads roll up",
     "solver_error.c": "the error of an answer, from modes that the model lacks",
     "solver_recover.c": "a turn of its way back",
     "passages.c": "whether a step leads through something thin",

@@ -55,11 +55,8 @@ CONTRACTING = 0.5
 SHORTEST = 1e-10
 """Length of a step of the missing modes, as strain times length, below which it is rounding: ten times Newton's."""
 
-FASTEST = 0.02
-"""Smallest ratio of the errors with and without two more modes that is believed."""
-
 SLOWEST = 0.7
-"""Largest ratio of the errors with and without two more modes that is believed."""
+"""Largest ratio of errors, or of the coefficients of a strain, with and without two more modes that is believed."""
 
 UNKNOWN = 1.0
 """Error of an answer that no correction settles near: the whole length."""
@@ -428,27 +425,20 @@ def _corrected(solution: Solution, known: FloatArray, missing: FloatArray) -> Co
 
 
 def _rest_of_series(solution: Solution, correction: Correction) -> float:
-    """Change by modes beyond the modes of the richer model: the rest of a geometric series.
-
-    The two highest degrees carry e and all missing ones E; what follows is e r + e r² + … with r = e / E. A first look
-    does not know the highest degrees well enough to tell e.
-    """
+    """Change by modes beyond those of the richer model, whose highest degrees a first look does not know enough."""
     if not correction.settled or correction.change <= ROUNDING:
         return 0.0
-    whole = richer_balance(solution, correction.known, correction.missing).poses
-    fewer = richer_balance(solution, correction.known, _without_last(solution, correction).missing).poses
-    return _rest(change_size(whole.change_from(fewer)), correction.change)
+    both = (correction, _without_last(solution, correction))
+    whole, fewer = (richer_balance(solution, own.known, own.missing).poses for own in both)
+    return change_size(whole.change_from(fewer)) * _sum_beyond(solution, correction)
 
 
 def _share_beyond(solution: Solution, correction: Correction, corrected: Solution, change: float) -> float:
-    """Share of a change of the shape that modes beyond the modes of the richer model add; none after a first look.
-
-    Between watched sections a shape may wave with the missing modes where these hardly move a tip.
-    """
+    """Share of a change of the shape, which waves between watched sections too, that modes beyond those would add."""
     if not correction.settled or change <= ROUNDING:
         return 0.0
     fewer = _richer_answer(solution, _without_last(solution, correction))
-    return _rest(_shape_change(fewer, corrected), change) / change
+    return _shape_change(fewer, corrected) * _sum_beyond(solution, correction) / change
 
 
 def _without_last(solution: Solution, correction: Correction) -> Correction:
@@ -457,10 +447,18 @@ def _without_last(solution: Solution, correction: Correction) -> Correction:
     return replace(correction, missing=np.where(is_last, 0.0, correction.missing))
 
 
-def _rest(last: float, change: float) -> float:
-    """The rest of a geometric series of which the two highest degrees give the last part of a change."""
-    ratio = float(np.clip(last / change, FASTEST, SLOWEST))
-    return last * ratio / (1 - ratio)
+def _sum_beyond(solution: Solution, correction: Correction) -> float:
+    """Sum r + r² + … of what degrees beyond those of the richer model give, over what its two highest degrees give.
+
+    The coefficients of each strain fall from two degrees to the next two as its highest four do: of two degrees one may
+    be empty by symmetry. r is what the next two degrees of all strains would be, over what the highest two are.
+    """
+    richer = solution.model.discrete.richer
+    squares = richer_unknowns(solution, correction.known, correction.missing) ** 2
+    last, before = np.bincount(richer.degree_pairs, squares, 2 * richer.strain_count + 2)[:-2].reshape(-1, 2).T
+    fall = np.divide(last, before, out=np.full(len(last), SLOWEST**2), where=last < SLOWEST**2 * before)
+    ratio = float(np.sqrt(last @ fall / last.sum())) if last.any() else 0.0
+    return ratio / (1 - ratio)
 
 
 def _richer_answer(solution: Solution, correction: Correction) -> Solution:

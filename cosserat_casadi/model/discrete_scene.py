@@ -613,16 +613,34 @@ class Richer:
         """Number of strain coordinates that the coarse scene lacks."""
         return self.discrete.size - self.coarse.size
 
+    @property
+    def strain_count(self) -> int:
+        """Number of the strains of all rods."""
+        return sum(len(rod.columns) for rod in self.discrete.rods.values())
+
     @cached_property
-    def is_among_last(self) -> npt.NDArray[np.bool_]:
-        """Whether each missing coordinate is of one of the two highest degrees of its strain, shape (missing,)."""
-        last = np.zeros(self.discrete.size, dtype=bool)
+    def degree_pairs(self) -> npt.NDArray[np.int64]:
+        """Number of the pair of degrees that each coordinate of the richer scene is of, shape (richer size,).
+
+        The two highest degrees of strain k, counted over all rods, have number 2k, and the two below these 2k + 1. All
+        other coordinates have one number more than twice the strains.
+        """
+        pairs = np.full(self.discrete.size, 2 * self.strain_count + 1)
+        strain = 0
         for name, rich_rod in self.discrete.rods.items():
             first = self.discrete.unknowns.strain(name).start
             for component, columns in rich_rod.columns.items():
                 degrees = rich_rod.degrees(component)
-                last[first + columns.start : first + columns.stop] = degrees > degrees.max() - 2
-        return last[~self.known]
+                own = pairs[first + columns.start : first + columns.stop]
+                own[degrees > degrees.max() - 4] = 2 * strain + 1
+                own[degrees > degrees.max() - 2] = 2 * strain
+                strain += 1
+        return pairs
+
+    @cached_property
+    def is_among_last(self) -> npt.NDArray[np.bool_]:
+        """Whether each missing coordinate is of one of the two highest degrees of its strain, shape (missing,)."""
+        return np.asarray(self.degree_pairs[~self.known] % 2 == 0)
 
     def joined(self, x: Matrix, missing: Matrix) -> Matrix:
         """Unknowns of the richer scene from the unknowns of the coarse one and the missing ones."""

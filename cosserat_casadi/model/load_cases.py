@@ -125,8 +125,8 @@ def read_range(text: str) -> AskedRange:
     if low is None or high is None:
         raise SceneError(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
     # At most nine digits: Python refuses to read integers of thousands.
-    if colon and not re.fullmatch(r"[0-9]{1,9}", values):
-        problem = f"{text!r} has no whole number of values below 10⁹"
+    if colon and not re.fullmatch(r"[1-9][0-9]{0,8}", values):
+        problem = f"{text!r} has no whole number of values above 0 and below 10⁹"
         raise SceneError(Problem("--range", problem, "such as push.force.x=-1:1:21"))
     return AskedRange(name.strip(), low, high, int(values) if colon else None)
 
@@ -159,8 +159,13 @@ def read_ranges(texts: Sequence[str], fault: Callable[[str, AskedRange], Problem
     return ranges
 
 
-def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple[float, float]]:
-    """Lower and upper end by column of ``column=low:high``; a count of values, which a grid has, changes nothing.
+def ends_by_column(ranges: Sequence[str], layout: CaseLayout, *, grids: bool = False) -> dict[str, tuple[float, float]]:
+    """Lower and upper end by column of ``column=low:high``, with a count of values or without.
+
+    Args:
+        ranges: texts of the ranges.
+        layout: the inputs and the parameters.
+        grids: whether a range with a count is a grid, whose ends have any order.
 
     Raises:
         SceneError: with every fault.
@@ -169,9 +174,22 @@ def ends_by_column(ranges: Sequence[str], layout: CaseLayout) -> dict[str, tuple
     def fault(text: str, asked: AskedRange) -> Problem | None:
         if asked.column not in layout.columns:
             return no_column("--range", asked.column, layout.columns)
-        return None
+        if grids and asked.count is not None:
+            return None
+        return fault_of_ends("--range", asked.column, asked.low, asked.high)
 
     return {column: (asked.low, asked.high) for column, asked in read_ranges(ranges, fault).items()}
+
+
+def fault_of_ends(where: str, name: str, low: float, high: float) -> Problem | None:
+    """Why two ends of an input or a parameter are no range; None where they are one."""
+    if not (np.isfinite(low) and np.isfinite(high)):
+        return Problem(where, f"the range of {name} must have two finite ends, got {low:g}:{high:g}")
+    if low == high:
+        return Problem(where, f"the range of {name} must have two different ends, got {low:g} twice")
+    if low > high:
+        return Problem(where, f"the range of {name} must have the lower end first, got {low:g}:{high:g}")
+    return None
 
 
 def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:

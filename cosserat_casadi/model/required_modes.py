@@ -128,16 +128,24 @@ def _projection(actuator: scenes.Actuator, discrete_rod: DiscreteRod) -> FloatAr
 
 
 def seeing_modes(scene: scenes.Scene, rod: str) -> int:
-    """Modes of every strain of a rod from which on a richer model sees what its scene and its own turns put along it.
+    """Modes of every strain of a rod from which on a richer model sees waves along it, and products of waves.
+
+    Bending multiplies waves, and puts some at twice the degree.
+    """
+    waves = wave_modes(scene, rod)
+    return waves if waves <= SLOW_MODES else WAVES_FACTOR * waves
+
+
+def wave_modes(scene: scenes.Scene, rod: str) -> int:
+    """Modes of every strain of a rod that see what its scene and its own turns put along it.
 
     Over an element that turns by T a force of fixed direction puts waves into the strains, whose coefficients are small
-    up to about the degree T/2. Bending multiplies waves, and puts some at twice the degree.
+    up to about the degree T/2.
     """
     record = next(record for record in scene.rods if record.name == rod)
     turn = max(unloaded_turns(record, element_ends(scene, rod)))
     of_turn = ceil(turn / 2) + BEYOND if turn > 2 * np.pi else 0
-    waves = max(signal_modes(scene), of_turn)
-    return waves if waves <= SLOW_MODES else WAVES_FACTOR * waves
+    return max(signal_modes(scene), of_turn)
 
 
 @lru_cache(maxsize=64)

@@ -450,7 +450,8 @@ class ExactContacts:
         self, kind: str, time: float, touch: MovingContact, energy: float = 0.0, impulse: float = 0.0
     ) -> ContactEvent:
         facing = self.facings[touch.facing]
-        return ContactEvent(kind, time, facing.owner, facing.touched, touch.place, energy, impulse, facing.of_body)
+        numbers = float(touch.place), float(energy), float(impulse)
+        return ContactEvent(kind, time, facing.owner, facing.touched, *numbers, facing.of_body)
 
 
 @dataclass(frozen=True)

@@ -278,9 +278,8 @@ class OneSided:
         """A pair that closes or opens, with the energy that its impact took, J, and its impulse without unit."""
         pair = self.pairs[number]
         words = ("stop_hit", "stop_left") if pair.side else ("taut", "slack")
-        return ContactEvent(
-            words[0] if closes else words[1], time, pair.name, pair.side, 0.0, lost, pair.unit * impulse
-        )
+        kind = words[0] if closes else words[1]
+        return ContactEvent(kind, time, pair.name, pair.side, 0.0, float(lost), float(pair.unit * impulse))
 
     def _after_impact(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Closed, guard: int, interval: float

@@ -243,8 +243,8 @@ class _Told:
                 return one_sided.event(
                     facing.number, time, closes=closes, lost=energy, impulse=impulse / facing.force_unit
                 )
-            place = min(max(own.place, 0.0), 1.0)
-            return ContactEvent(kind, time, facing.owner, facing.touched, place, energy, impulse, facing.of_body)
+            numbers = min(max(float(own.place), 0.0), 1.0), float(energy), float(impulse)
+            return ContactEvent(kind, time, facing.owner, facing.touched, *numbers, facing.of_body)
 
         for own in struck:
             yield event("impact", own, stretch.taken * own.impulse / total, own.impulse)

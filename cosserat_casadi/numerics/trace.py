@@ -39,13 +39,13 @@ Guard = Callable[[Arc, ArcPoint], ArcPoint | None]
 class PathOutcome(Enum):
     """Every way a path can end. Only CONVERGED has reached factor 1."""
 
-    CONVERGED = "The path reached factor 1."
+    CONVERGED = "The path reached its end, factor 1."
     NO_START = "No path: at factor 0 there is no equilibrium to start from."
     LOAD_STALLED = "The path could not be followed further: the step fell below its limit."
     MAX_STEPS = "The path was not followed further: the steps ran out before factor 1."
     TURNED_BACK = "The path led back: its factor fell below -1."
     CLOSED = "The path is closed: it came back to its start without reaching factor 1."
-    NO_BIFURCATION = "No branch: the path reached factor 1 before the bifurcation to leave at."
+    NO_BIFURCATION = "No branch: the path reached its end before the bifurcation to leave at."
     NO_BRANCH = "No branch: none was found at the bifurcation."
     CONTACT_UNSETTLED = "The path could not be followed further: no arrangement of contacts was found to go on with."
     UNRESOLVED = (

@@ -84,22 +84,41 @@ static solver_status within_limits(solver_status end, const real *x, const real 
 #define is_beyond(x, inputs, next, next_inputs, work) ((void)(inputs), 0)
 #define is_barred(path, now, work) ((void)(path), 0)
 
-/* Which missing coordinates are of one of the two highest degrees of their strain. */
-static const int IS_AMONG_LAST[SOLVER_MISSING] = {0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1, 1};
+static const real ERROR_SAFETY = (real)1.2;
+static const real ERROR_FIRST_LOOK = (real)2.0;
+static const real ERROR_SETTLED = (real)0.2;
+static const real ERROR_FOLLOWED = (real)0.5;
+static const real ERROR_CONTRACTING = (real)0.5;
+static const real ERROR_ENOUGH = (real)5e-05;
+static const real ERROR_SLOWEST = (real)0.7;
+static const real ERROR_WHOLE_TURN = (real)6.283185307179586;
+static const real ERROR_UNSEEN = (real)1e-05;
+static const real ERROR_FLOOR = (real)2e-14;
+enum {
+  ERROR_SWEEPS = 4,
+  ERROR_BEYOND_TURN = 3,
+  MISSING = SOLVER_MISSING,
+  STRAINS = 6,
+  WATCHED_POSES = 1,
+  WATCHED_CABLES = 0,
+  WATCHED = POSE_SIZE * WATCHED_POSES + WATCHED_CABLES
+};
 
-/* Element that each unknown turns, -1 of unknowns that turn none, and the turn of that element by a unit of it, rad. */
-static const int ELEMENT_OF_UNKNOWN[N] = {0, 0, 0, 0, 0, 0, 0, 0, 0, -1, -1, -1, -1};
-static const real TURN_BY_UNKNOWN[N] = {
+#include "blind_turns.c"
+
+/* Pairs of degrees: 2 k of strain k for the two highest, 2 k + 1 for the two below; else 2 STRAINS + 1. */
+static const int PAIR_OF_UNKNOWN[N] = {13, 13, 13, 1, 13, 13, 13, 3, 5, 13, 7, 9, 11};
+static const int PAIR_OF_MISSING[MISSING] = {1, 0, 0, 3, 2, 2, 5, 4, 4, 7, 6, 6, 9, 8, 8, 11, 10, 10};
+
+static const int TURNED_OF_UNKNOWN[] = {0, 0, 0, 0, 0, 0, 0, 0, 0, -1, -1, -1, -1};
+static const real TURNED_BY_UNKNOWN[] = {
   (real)0.8192319205190404, (real)0.472983769840402, (real)0.3663716527236558, (real)0.30964056111131616,
   (real)0.8192319205190404, (real)0.472983769840402, (real)0.3663716527236558, (real)0.30964056111131616,
   (real)0.9999999999999999, (real)0.0, (real)0.0, (real)0.0, (real)0.0};
-
-/* Angle through which sections turn along each unloaded element, rad. */
-static const real UNLOADED_TURNS[SOLVER_ELEMENTS] = {(real)0.0};
-
-/* Element of each missing coordinate, and how many modes the richer model has of its strain. */
-static const int ELEMENT_OF_MISSING[SOLVER_MISSING] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-static const int MODES_OF_MISSING[SOLVER_MISSING] = {7, 7, 7, 7, 7, 7, 4, 4, 4, 5, 5, 5, 4, 4, 4, 4, 4, 4};
+static const real TURNED_UNLOADED[] = {(real)0.0};
+static const int TURNED_OF_MISSING[] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const int TURNED_MODES[] = {7, 7, 7, 7, 7, 7, 4, 4, 4, 5, 5, 5, 4, 4, 4, 4, 4, 4};
+static const turned_elements TURNED = {.elements = 1, .unknowns = 13, .missing = 18, .of_unknown = TURNED_OF_UNKNOWN, .by_unknown = TURNED_BY_UNKNOWN, .unloaded = TURNED_UNLOADED, .of_missing = TURNED_OF_MISSING, .modes = TURNED_MODES};
 
 /* Elastic steps of unknowns and missing coordinates at a corrected answer, the residual in the unknowns, and what is
    watched, one behind the other. */

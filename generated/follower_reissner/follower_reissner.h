@@ -159,7 +159,6 @@ typedef struct {
   follower_reissner_real d_pose_d_x[7 * FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real known_correction[FOLLOWER_REISSNER_UNKNOWNS];
   follower_reissner_real missing[18];
-  follower_reissner_real fewer[18];
   follower_reissner_real balance[2 * FOLLOWER_REISSNER_UNKNOWNS + 18 + 7];
   follower_reissner_real watched[7];
   follower_reissner_real watched_after[7];

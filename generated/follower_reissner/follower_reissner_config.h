@@ -66,19 +66,3 @@ static const follower_reissner_real FIRST_STEP = (follower_reissner_real)1.0;
 static const follower_reissner_real SAME_BRANCH = (follower_reissner_real)0.5;
 #define solver_error_estimate follower_reissner_error_estimate
 #define SOLVER_MISSING 18
-#define SOLVER_WATCHED_POSES 1
-#define SOLVER_WATCHED_CABLES 0
-#define SOLVER_ELEMENTS 1
-enum { ERROR_SWEEPS = 4 };
-static const follower_reissner_real ERROR_SAFETY = (follower_reissner_real)1.2;
-static const follower_reissner_real ERROR_FIRST_LOOK = (follower_reissner_real)2.0;
-static const follower_reissner_real ERROR_SETTLED = (follower_reissner_real)0.2;
-static const follower_reissner_real ERROR_FOLLOWED = (follower_reissner_real)0.5;
-static const follower_reissner_real ERROR_CONTRACTING = (follower_reissner_real)0.5;
-static const follower_reissner_real ERROR_ENOUGH = (follower_reissner_real)5e-05;
-static const follower_reissner_real ERROR_FASTEST = (follower_reissner_real)0.02;
-static const follower_reissner_real ERROR_SLOWEST = (follower_reissner_real)0.7;
-static const follower_reissner_real ERROR_WHOLE_TURN = (follower_reissner_real)6.283185307179586;
-static const follower_reissner_real ERROR_BEYOND_TURN = (follower_reissner_real)3;
-static const follower_reissner_real ERROR_UNSEEN = (follower_reissner_real)1e-05;
-static const follower_reissner_real ERROR_FLOOR = (follower_reissner_real)2e-14;

@@ -156,7 +156,6 @@ typedef struct {
   nitinol_wire_real d_pose_d_x[7 * NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real known_correction[NITINOL_WIRE_UNKNOWNS];
   nitinol_wire_real missing[9];
-  nitinol_wire_real fewer[9];
   nitinol_wire_real balance[2 * NITINOL_WIRE_UNKNOWNS + 9 + 7];
   nitinol_wire_real watched[7];
   nitinol_wire_real watched_after[7];

@@ -66,19 +66,3 @@ static const nitinol_wire_real FIRST_STEP = (nitinol_wire_real)1.0;
 static const nitinol_wire_real SAME_BRANCH = (nitinol_wire_real)0.5;
 #define solver_error_estimate nitinol_wire_error_estimate
 #define SOLVER_MISSING 9
-#define SOLVER_WATCHED_POSES 1
-#define SOLVER_WATCHED_CABLES 0
-#define SOLVER_ELEMENTS 1
-enum { ERROR_SWEEPS = 4 };
-static const nitinol_wire_real ERROR_SAFETY = (nitinol_wire_real)1.2;
-static const nitinol_wire_real ERROR_FIRST_LOOK = (nitinol_wire_real)2.0;
-static const nitinol_wire_real ERROR_SETTLED = (nitinol_wire_real)0.2;
-static const nitinol_wire_real ERROR_FOLLOWED = (nitinol_wire_real)0.5;
-static const nitinol_wire_real ERROR_CONTRACTING = (nitinol_wire_real)0.5;
-static const nitinol_wire_real ERROR_ENOUGH = (nitinol_wire_real)5e-05;
-static const nitinol_wire_real ERROR_FASTEST = (nitinol_wire_real)0.02;
-static const nitinol_wire_real ERROR_SLOWEST = (nitinol_wire_real)0.7;
-static const nitinol_wire_real ERROR_WHOLE_TURN = (nitinol_wire_real)6.283185307179586;
-static const nitinol_wire_real ERROR_BEYOND_TURN = (nitinol_wire_real)3;
-static const nitinol_wire_real ERROR_UNSEEN = (nitinol_wire_real)1e-05;
-static const nitinol_wire_real ERROR_FLOOR = (nitinol_wire_real)2e-14;

@@ -154,7 +154,6 @@ typedef struct {
   planar_strip_real d_pose_d_x[7 * PLANAR_STRIP_UNKNOWNS];
   planar_strip_real known_correction[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real missing[3];
-  planar_strip_real fewer[3];
   planar_strip_real balance[2 * PLANAR_STRIP_UNKNOWNS + 3 + 7];
   planar_strip_real watched[7];
   planar_strip_real watched_after[7];

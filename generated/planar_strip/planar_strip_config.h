@@ -66,19 +66,3 @@ static const planar_strip_real FIRST_STEP = (planar_strip_real)1.0;
 static const planar_strip_real SAME_BRANCH = (planar_strip_real)0.5;
 #define solver_error_estimate planar_strip_error_estimate
 #define SOLVER_MISSING 3
-#define SOLVER_WATCHED_POSES 1
-#define SOLVER_WATCHED_CABLES 0
-#define SOLVER_ELEMENTS 1
-enum { ERROR_SWEEPS = 4 };
-static const planar_strip_real ERROR_SAFETY = (planar_strip_real)1.2;
-static const planar_strip_real ERROR_FIRST_LOOK = (planar_strip_real)2.0;
-static const planar_strip_real ERROR_SETTLED = (planar_strip_real)0.2;
-static const planar_strip_real ERROR_FOLLOWED = (planar_strip_real)0.5;
-static const planar_strip_real ERROR_CONTRACTING = (planar_strip_real)0.5;
-static const planar_strip_real ERROR_ENOUGH = (planar_strip_real)5e-05;
-static const planar_strip_real ERROR_FASTEST = (planar_strip_real)0.02;
-static const planar_strip_real ERROR_SLOWEST = (planar_strip_real)0.7;
-static const planar_strip_real ERROR_WHOLE_TURN = (planar_strip_real)6.283185307179586;
-static const planar_strip_real ERROR_BEYOND_TURN = (planar_strip_real)3;
-static const planar_strip_real ERROR_UNSEEN = (planar_strip_real)1e-05;
-static const planar_strip_real ERROR_FLOOR = (planar_strip_real)2e-14;

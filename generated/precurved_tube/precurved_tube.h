@@ -156,7 +156,6 @@ typedef struct {
   precurved_tube_real d_pose_d_x[7 * PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real known_correction[PRECURVED_TUBE_UNKNOWNS];
   precurved_tube_real missing[9];
-  precurved_tube_real fewer[9];
   precurved_tube_real balance[2 * PRECURVED_TUBE_UNKNOWNS + 9 + 7];
   precurved_tube_real watched[7];
   precurved_tube_real watched_after[7];

@@ -66,19 +66,3 @@ static const precurved_tube_real FIRST_STEP = (precurved_tube_real)1.0;
 static const precurved_tube_real SAME_BRANCH = (precurved_tube_real)0.5;
 #define solver_error_estimate precurved_tube_error_estimate
 #define SOLVER_MISSING 9
-#define SOLVER_WATCHED_POSES 1
-#define SOLVER_WATCHED_CABLES 0
-#define SOLVER_ELEMENTS 1
-enum { ERROR_SWEEPS = 4 };
-static const precurved_tube_real ERROR_SAFETY = (precurved_tube_real)1.2;
-static const precurved_tube_real ERROR_FIRST_LOOK = (precurved_tube_real)2.0;
-static const precurved_tube_real ERROR_SETTLED = (precurved_tube_real)0.2;
-static const precurved_tube_real ERROR_FOLLOWED = (precurved_tube_real)0.5;
-static const precurved_tube_real ERROR_CONTRACTING = (precurved_tube_real)0.5;
-static const precurved_tube_real ERROR_ENOUGH = (precurved_tube_real)5e-05;
-static const precurved_tube_real ERROR_FASTEST = (precurved_tube_real)0.02;
-static const precurved_tube_real ERROR_SLOWEST = (precurved_tube_real)0.7;
-static const precurved_tube_real ERROR_WHOLE_TURN = (precurved_tube_real)6.283185307179586;
-static const precurved_tube_real ERROR_BEYOND_TURN = (precurved_tube_real)3;
-static const precurved_tube_real ERROR_UNSEEN = (precurved_tube_real)1e-05;
-static const precurved_tube_real ERROR_FLOOR = (precurved_tube_real)2e-14;

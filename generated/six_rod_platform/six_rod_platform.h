@@ -232,7 +232,6 @@ typedef struct {
   six_rod_platform_real interface_values[7];
   six_rod_platform_real known_correction[SIX_ROD_PLATFORM_UNKNOWNS];
   six_rod_platform_real missing[108];
-  six_rod_platform_real fewer[108];
   six_rod_platform_real balance[2 * SIX_ROD_PLATFORM_UNKNOWNS + 108 + 175];
   six_rod_platform_real watched[175];
   six_rod_platform_real watched_after[175];

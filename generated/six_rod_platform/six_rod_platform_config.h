@@ -71,19 +71,3 @@ static const six_rod_platform_real FIRST_STEP = (six_rod_platform_real)0.25;
 static const six_rod_platform_real SAME_BRANCH = (six_rod_platform_real)0.5;
 #define solver_error_estimate six_rod_platform_error_estimate
 #define SOLVER_MISSING 108
-#define SOLVER_WATCHED_POSES 25
-#define SOLVER_WATCHED_CABLES 0
-#define SOLVER_ELEMENTS 6
-enum { ERROR_SWEEPS = 4 };
-static const six_rod_platform_real ERROR_SAFETY = (six_rod_platform_real)1.2;
-static const six_rod_platform_real ERROR_FIRST_LOOK = (six_rod_platform_real)2.0;
-static const six_rod_platform_real ERROR_SETTLED = (six_rod_platform_real)0.2;
-static const six_rod_platform_real ERROR_FOLLOWED = (six_rod_platform_real)0.5;
-static const six_rod_platform_real ERROR_CONTRACTING = (six_rod_platform_real)0.5;
-static const six_rod_platform_real ERROR_ENOUGH = (six_rod_platform_real)0.0005;
-static const six_rod_platform_real ERROR_FASTEST = (six_rod_platform_real)0.02;
-static const six_rod_platform_real ERROR_SLOWEST = (six_rod_platform_real)0.7;
-static const six_rod_platform_real ERROR_WHOLE_TURN = (six_rod_platform_real)6.283185307179586;
-static const six_rod_platform_real ERROR_BEYOND_TURN = (six_rod_platform_real)3;
-static const six_rod_platform_real ERROR_UNSEEN = (six_rod_platform_real)0.0001;
-static const six_rod_platform_real ERROR_FLOOR = (six_rod_platform_real)2e-14;

@@ -176,7 +176,6 @@ typedef struct {
   tendon_robot_real d_pose_d_x[7 * TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real known_correction[TENDON_ROBOT_UNKNOWNS];
   tendon_robot_real missing[18];
-  tendon_robot_real fewer[18];
   tendon_robot_real balance[2 * TENDON_ROBOT_UNKNOWNS + 18 + 11];
   tendon_robot_real watched[11];
   tendon_robot_real watched_after[11];

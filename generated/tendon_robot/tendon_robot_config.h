@@ -66,19 +66,3 @@ static const tendon_robot_real FIRST_STEP = (tendon_robot_real)1.0;
 static const tendon_robot_real SAME_BRANCH = (tendon_robot_real)0.5;
 #define solver_error_estimate tendon_robot_error_estimate
 #define SOLVER_MISSING 18
-#define SOLVER_WATCHED_POSES 1
-#define SOLVER_WATCHED_CABLES 4
-#define SOLVER_ELEMENTS 2
-enum { ERROR_SWEEPS = 4 };
-static const tendon_robot_real ERROR_SAFETY = (tendon_robot_real)1.2;
-static const tendon_robot_real ERROR_FIRST_LOOK = (tendon_robot_real)2.0;
-static const tendon_robot_real ERROR_SETTLED = (tendon_robot_real)0.2;
-static const tendon_robot_real ERROR_FOLLOWED = (tendon_robot_real)0.5;
-static const tendon_robot_real ERROR_CONTRACTING = (tendon_robot_real)0.5;
-static const tendon_robot_real ERROR_ENOUGH = (tendon_robot_real)5e-05;
-static const tendon_robot_real ERROR_FASTEST = (tendon_robot_real)0.02;
-static const tendon_robot_real ERROR_SLOWEST = (tendon_robot_real)0.7;
-static const tendon_robot_real ERROR_WHOLE_TURN = (tendon_robot_real)6.283185307179586;
-static const tendon_robot_real ERROR_BEYOND_TURN = (tendon_robot_real)3;
-static const tendon_robot_real ERROR_UNSEEN = (tendon_robot_real)1e-05;
-static const tendon_robot_real ERROR_FLOOR = (tendon_robot_real)2e-14;

@@ -586,10 +586,11 @@ def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> No
 def test_export_refuses_every_fault_at_once(wire: Path) -> None:
     (wire / "thesis").mkdir()
     (wire / "thesis" / "chapter.tex").write_text("mine")
-    options = ["--mjcf", "no/wire.xml", "--period", "-1", "--range", "push.force.x=1"]
+    ranges = [f"--range=push.force.{text}" for text in ("x=1", "y=3:1", "z=0:1:0")]
+    options = ["--mjcf", "no/wire.xml", "--period", "-1", "--over", "no.csv", *ranges]
     done = cosserat("export", "wire.toml", "--output", "thesis", "--name", "2fast", *options, cwd=wire)
     assert done.returncode == 2
-    assert "Refused: 5 problems." in done.stderr
+    assert "Refused: 8 problems." in done.stderr
     for words in (
         "--name: '2fast' is no name for a C library",
         "--output: ",
@@ -598,6 +599,9 @@ def test_export_refuses_every_fault_at_once(wire: Path) -> None:
         "--mjcf: the folder no does not exist",
         "--period: must be a positive number of seconds, got -1",
         "--range: 'push.force.x=1' has no two finite numbers",
+        "--range: the range of push.force.y must have the lower end first, got 3:1",
+        "--range: 'push.force.z=0:1:0' has no whole number of values above 0",
+        "--over: load cases say which contacts are exported",
     ):
         assert words in done.stderr
     assert "Traceback" not in done.stderr + done.stdout

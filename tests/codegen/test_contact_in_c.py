@@ -17,6 +17,8 @@ from cosserat_casadi import ExportError, Solution, build, discretise, export, li
 from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen.contact.checks import check_contact
 from cosserat_casadi.codegen.contact.compiled import CompiledContact
+from cosserat_casadi.equilibrium import blindness
+from cosserat_casadi.equilibrium.answer_error import UNKNOWN
 from cosserat_casadi.equilibrium.contact.contact_equations import Grids, richer
 from cosserat_casadi.equilibrium.contact.contact_solve import solve_contact
 from cosserat_casadi.equilibrium.metrics import SAFETY
@@ -36,7 +38,7 @@ from tests.codegen.contact_libraries import (
 )
 from tests.codegen.libraries import C99, QUICK, attempt, compile_quickly, gcc
 from tests.families import mostly_slow
-from tests.scenes import rod, scene
+from tests.scenes import push, rod, scene
 
 LINT = (*C99, "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
 
@@ -354,6 +356,56 @@ def test_where_other_contacts_hold_on_richer_modes_the_error_is_not_known(tmp_pa
     assert found.converged and not found.contacts
     assert found.error_estimate == 1.0
     assert found.within_tolerance is False
+
+
+BENDING_1 = {
+    "material": {"youngs_modulus": 4e8 / np.pi, "poisson_ratio": 0.4},
+    "section": {"shape": "circle", "radius": 1e-2},
+}
+"""Material and section of a rod whose bending stiffness is 1 N m²."""
+
+
+def test_richer_modes_that_are_blind_to_what_loads_roll_up_do_not_know_the_error(tmp_path: Path) -> None:
+    """Three turns on four modes, far from an obstacle: a force puts waves along them, and a circle has none."""
+    far = {"name": "far", "kind": "sphere", "centre": [0.0, 0.0, 9.0], "radius": 0.1}
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", **BENDING_1}
+    rolling = push(force=[1.0, 0, 0], moment=[0, 6 * np.pi, 0])
+    rolled = scene(rolling, rods=[straight], obstacles=[far], inputs=["push.force"], accuracy={"tolerance": 1e-3})
+    library = exported_contact(rolled, tmp_path / "rolled", np.zeros((0, 3)), 4, 24)
+    assert library.loaded.solve().error_estimate == UNKNOWN
+    circle_alone = library.loaded.solve({"push.force": [0.0, 0.0, 0.0]}).error_estimate
+    assert circle_alone is not None and circle_alone < 1e-10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("exported_at", [-0.3, 0.3])
+def test_an_element_that_contact_lengthens_turns_by_more(
+    exported_at: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A coil that its base rolls along a wall: the element behind the contact turns by 5.0 to 5.6."""
+    monkeypatch.setattr(blindness, "WHOLE_TURN", 5.3)
+    monkeypatch.setattr(blindness, "BEYOND", 10)
+
+    def base_turned_by(angle: float) -> list[float]:
+        return [np.cos(angle / 2), 0.0, np.sin(angle / 2), 0.0]
+
+    base = {"position": [0, 0, 0], "quaternion": base_turned_by(exported_at)}
+    coil = {"name": "rod", "length": 1.0, "strain": "planar", **BENDING_1, "base": base}
+    coil["intrinsic"] = {"curvature": [0, 8.4, 0]}
+    wall = {"name": "wall", "kind": "plane", "point": [2 / 8.4 - 0.002, 0, 0], "normal": [-1, 0, 0]}
+    rolling = scene(
+        push(force=[0.2, 0, 0.1]),
+        rods=[coil],
+        obstacles=[wall],
+        inputs=["rod.base.quaternion"],
+        accuracy={"tolerance": 1e-3},
+    )
+    library = exported_contact(rolling, tmp_path / "coil", np.zeros((0, 4)), 3, 24)
+    for angle in (-0.3, 0.3):
+        values = {"rod.base.quaternion": base_turned_by(angle)}
+        found, wanted = library.loaded.solve(values), solve(library.model, values)
+        assert [contact.kind for contact in found.contacts] == ["point"]
+        assert (found.error_estimate == UNKNOWN) == (wanted.error_estimate == UNKNOWN) == (angle > 0)
 
 
 @pytest.mark.slow

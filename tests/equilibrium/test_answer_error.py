@@ -108,27 +108,17 @@ def test_robot_of_six_tendons(seed: int) -> None:
     assert away.within_tolerance is False
 
 
-@pytest.fixture(scope="module")
-def locked_platform() -> Model:
-    read = read_scene(AWAY / "platform_locks.toml")
-    return build(read, discretise(read, (2, 2, 1), 4, "magnus4"))
-
-
 @pytest.mark.slow
-def test_platform_that_its_modes_lock(locked_platform: Model) -> None:
+def test_platform_that_its_modes_lock() -> None:
+    read = read_scene(AWAY / "platform_locks.toml")
+    locked_platform = build(read, discretise(read, (2, 2, 1), 4, "magnus4"))
     pushed = solve(locked_platform, {"load.force": [3.0, 2.0, 0.0]})
     still = solve(locked_platform, estimate_error=False)
     # As many constraints as coordinates that move: it stays where it is.
     assert_allclose(pushed.body().position, still.body().position, rtol=0, atol=1e-10)
     assert pushed.error_estimate is not None
-    assert pushed.error_estimate > true_error(pushed)
+    assert 1.0 < pushed.error_estimate / true_error(pushed) < 1.5
     assert pushed.within_tolerance is False
-
-
-@pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="one degree has nearly all of the change: the rest of the series is a guess")
-def test_platform_that_its_modes_lock_is_told_no_more_than_thrice_its_error(locked_platform: Model) -> None:
-    assert_estimated(solve(locked_platform, {"load.force": [3.0, 2.0, 0.0]}))
 
 
 @pytest.mark.parametrize(("tension", "height"), [(11.3, -0.0703), (5.17, -0.0356)])
@@ -264,6 +254,24 @@ def test_levels_in_contact_are_blind_to_what_loads_roll_up_as_well() -> None:
     )
     assert found.error_estimate is not None
     assert pose_distance(found, alone) < found.error_estimate <= 1e-3
+
+
+def test_levels_in_contact_go_as_far_as_coils_ask() -> None:
+    """Five and seven modes of ten turns have no equilibrium; the obstacle is far off."""
+    far = {"name": "far", "kind": "sphere", "centre": [0.0, 0.0, 9.0], "radius": 0.1}
+    round_one = {
+        "material": {"youngs_modulus": 2e11, "poisson_ratio": 0.29},
+        "section": {"shape": "circle", "radius": 1e-3},
+    }
+    coiled = {"intrinsic": {"curvature": [0, 49.6, 4.34]}}
+    wire = {"name": "rod", "length": 1.26, "strain": "kirchhoff", **round_one, **coiled}
+    drawn = push(force=[0.3, 0.0, 0.0])
+    found, alone = (
+        solve(scene(drawn, rods=[wire], obstacles=obstacles, accuracy={"tolerance": tolerance}))
+        for obstacles, tolerance in (([far], 1e-3), ([], 1e-5))
+    )
+    assert found.error_estimate is not None
+    assert pose_distance(found, alone) < found.error_estimate + 1e-5 < 1e-3
 
 
 @pytest.mark.parametrize(

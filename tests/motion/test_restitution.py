@@ -25,6 +25,7 @@ def test_the_first_blow_takes_what_the_closed_form_says() -> None:
     dead, elastic = struck(0.0), struck(SHARE)
     first, rebound = dead.events[0], elastic.events[0]
     assert first.kind == rebound.kind == "impact"
+    assert "float64" not in repr(first)
     assert_allclose(rebound.time, first.time, rtol=1e-5, atol=0)
     assert_allclose(rebound.energy / first.energy, 1.0 - SHARE**2, rtol=1e-3, atol=0)
     assert_allclose(rebound.impulse / first.impulse, 1.0 + SHARE, rtol=1e-3, atol=0)

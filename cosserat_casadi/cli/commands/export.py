@@ -217,7 +217,7 @@ def export(
     parts = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability, "batches": batches, "cuda": cuda}
     asked = Asked(name, output, page, fmu, mjcf, parts, over, period, estimate_errors)
     # All that can be refused is refused before the solve, which may take a minute.
-    read, given_ranges = _checked(asked, scene, settings, ranges)
+    read, given_ranges, given_cases = _checked(asked, scene, settings, ranges)
     if read.tubes:
         assert output is not None
         _export_tubes(read, output, name, batches=batches)
@@ -227,12 +227,9 @@ def export(
     if output is None and page is None and fmu is None:
         _write_mjcf(of_links, mjcf)
         return
-    # Without exact contact a file is refused, and modes are chosen all over ranges whether they count values or not.
-    given_cases = asked_cases(over, ranges, read) if over is not None or read.touches_exactly else None
     cases = given_cases
     if cases is None and ranges and read.touches_exactly:
         cases = spread(ranges, samples or LOAD_CASES, case_layout(read))
-    check_load_cases(read, cases)
     exported_scene = _checked_scene(read, asked)
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
@@ -260,12 +257,12 @@ def export(
 
 def _checked(
     asked: Asked, scene_file: Path, settings: list[str] | None, ranges: list[str] | None
-) -> tuple[Scene, Given]:
-    """The scene of a file, and the ranges that the command asks for, by column.
+) -> tuple[Scene, Given, FloatArray | None]:
+    """The scene of a file, the ranges that the command asks for, by column, and its load cases.
 
     Raises:
         ExportError: with every fault of options, files, scene and ranges, where an option or a file has one.
-        SceneError: with every fault of the scene and its ranges.
+        SceneError: with every fault of the scene, its ranges and its load cases.
     """
     problems: list[Problem] = []
     with collect_problems(problems):
@@ -274,8 +271,9 @@ def _checked(
         check_inputs_stay(asked.written, scene_file, settings, asked.over)
     scene: Scene | None = None
     given_ranges: Given = {}
+    given_cases: FloatArray | None = None
     # A page of help on the scene is named where nothing else is wrong.
-    kind = ExportError if problems else SceneError
+    kind = ExportError if problems or asked.over is not None else SceneError
     with collect_problems(problems):
         scene = read_scene(scene_file, tuple(settings or ()))
         if scene.tubes:
@@ -283,10 +281,17 @@ def _checked(
         else:
             with collect_problems(problems):
                 check_period(scene, asked.period)
-            given_ranges = asked_ranges(ranges, scene)
+            with collect_problems(problems):
+                given_ranges = asked_ranges(ranges, scene)
+            # Without exact contact a file is refused, and modes are chosen all over ranges with a count or without.
+            if asked.over is not None:
+                check_load_cases(scene, case_layout(scene).default[None])
+            if scene.touches_exactly:
+                given_cases = asked_cases(asked.over, ranges, scene)
     if problems or scene is None:
-        raise kind(*problems)
-    return scene, given_ranges
+        # A range of an unknown input has one fault, as a range and as a grid.
+        raise kind(*dict.fromkeys(problems))
+    return scene, given_ranges, given_cases
 
 
 def _checked_scene(scene: Scene, asked: Asked) -> Scene:

@@ -21,13 +21,14 @@ from cosserat_casadi.cli.options import (
     Settings,
     asked_cases,
     asked_ranges,
-    check_file,
-    check_inputs_stay,
+    check_files,
 )
 from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.model import discretisation_table, print_choice
 from cosserat_casadi.cli.terminal import Console
+from cosserat_casadi.errors import Problem, SceneError, collect_problems
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
@@ -54,14 +55,21 @@ def tune(
 
     Inputs without --range take theirs of the scene, its [ranges] or [[bounds]], or a range of their scale.
     """
-    tuned_scene = read_scene(scene, tuple(settings or ()))
+    problems: list[Problem] = []
+    check_files({"--output": output}, scene, settings, problems, over, output_suffix=".toml")
+    tuned_scene: Scene | None = None
+    cases: FloatArray | None = None
+    given_ranges: Given = {}
+    with collect_problems(problems):
+        tuned_scene = read_scene(scene, tuple(settings or ()))
+        cases = asked_cases(over, ranges, tuned_scene)
+        given_ranges = {} if cases is not None else asked_ranges(ranges, tuned_scene)
+    if problems or tuned_scene is None:
+        raise SceneError(*problems)
     layout = case_layout(tuned_scene)
-    check_file(output, "--output", ".toml")
-    check_inputs_stay({"--output": output}, scene, settings, over)
-    cases = asked_cases(over, ranges, tuned_scene)
     free = unfixed(tuned_scene, tuned_scene.accuracy.tolerance if tolerance is None else tolerance)
     if cases is None:
-        choice = choose_with_progress(free, asked_ranges(ranges, tuned_scene), samples)
+        choice = choose_with_progress(free, given_ranges, samples)
     else:
         choice = choose_with_progress(free, cases=[layout.unpack(case) for case in cases])
     Console().print(discretisation_table(choice.model))

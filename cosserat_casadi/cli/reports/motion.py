@@ -67,7 +67,7 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
         yield f"estimated error of the paths: {metres:.1e} m, {error}"
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
-        yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
+        yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest energy"
     for words, kinds in OF_PAIRS.items():
         changes = [event for event in motion.events if event.kind in kinds]
         hits = [event for event in changes if event.kind == kinds[0]]

@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.contact.kernels import (
     words_of,
 )
 from cosserat_casadi.codegen.contact.tables import Tables, described
+from cosserat_casadi.codegen.error_sources import BLINDNESS, blindness_words
 from cosserat_casadi.codegen.kernel_files import derivative_source, kernel_sources
 from cosserat_casadi.codegen.library import (
     ONE_BY_ONE,
@@ -73,7 +74,7 @@ VERBATIM = (
 TEMPLATES = ("contact.h.in", "contact_library.c.in", "contact_config.h.in", "contact_demo.c.in")
 """Templates of header, source, configuration and demo."""
 
-ERROR_FILES = ("contact_error.c",)
+ERROR_FILES = (BLINDNESS, "contact_error.c")
 """Further files of a library that estimates errors, which its own source includes, as they are."""
 
 STABILITY_FILES = ("contact_stability.c", SECOND_VARIATION)
@@ -187,6 +188,7 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "estimates_errors": int(bool(chosen.richer)),
         "error_safety": SAFETY,
         "error_floor": ROUNDING,
+        **blindness_words(chosen.scene.accuracy.tolerance),
         "watched_poses": tables.watched_counts[0],
         "watched_cables": tables.watched_counts[1],
         "shallow": contact_search.SHALLOW,

@@ -10,13 +10,16 @@ import numpy as np
 
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import RICHER_WORDS, touches_bodies, words_of
+from cosserat_casadi.codegen.error_sources import turned_tables
 from cosserat_casadi.compiling.c_tables import numbers, reals, record, record_table
+from cosserat_casadi.equilibrium.blindness import TurnedElements
 from cosserat_casadi.equilibrium.contact.contact_equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import ball_radius, body_pairs, pairs
 from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discrete_scene import Richer
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.model.watched import watched_cables, watched_sections
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -267,6 +270,9 @@ class Tables:
         lines.append(record_table("rod_elements", f"ELEMENTS_{level.prefix}{number}", "RODS", elements))
         if self.chosen.judges_stability and not level.prefix:
             lines.append(reals(f"ROOTS_{number}", self.roots(equations)))
+        if self.chosen.richer and not level.prefix:
+            both = Richer(model.discrete, self.chosen.richer[number].nominal.model.discrete)
+            lines.append(turned_tables(f"TURNED_{number}", TurnedElements(both), among_all=True))
         if equations.state.touches:
             lines.append(record_table("contact_entry", f"TOUCHES_{level.prefix}{number}", "", self._touches(equations)))
         return "\n".join(lines)
@@ -326,6 +332,8 @@ class Tables:
         }
         if self.chosen.judges_stability and not level.prefix:
             fields["roots"] = f"ROOTS_{number}"
+        if self.chosen.richer and not level.prefix:
+            fields["turned"] = f"&TURNED_{number}"
         for word in level.words:
             fields[word] = f"{self.name}_k_{level.prefix.lower()}{number}_{word}"
         return record(fields)

@@ -3,8 +3,8 @@
 
    The library's own source includes, in this order: its configuration, its kernels, this header, its tables, then
    square_systems.c, contact_newton.c, contact_shape.c, contact_faults.c, contact_settle.c and contact.c, which includes
-   contact_error.c where errors are estimated. All is one translation unit, so that nothing but the functions of the
-   library's header is visible to a linker.
+   contact_error.c where errors are estimated, as this header includes blind_turns.c. All is one translation unit, so that
+   nothing but the functions of the library's header is visible to a linker.
 
    An arrangement says who touches what, at points or along lines. Its unknowns are z = (x, f, p): the unknowns of the rods,
    the forces of the contacts, and the abscissae of contact that are not at a tip. */
@@ -73,6 +73,10 @@ typedef struct {
   const real *barycentric; /* weights of the interpolation between nodes */
 } rod_modes;
 
+#if CONTACT_ESTIMATES_ERRORS
+#include "blind_turns.c"
+#endif
+
 typedef struct {
   int size; /* of z */
   int unknowns;
@@ -93,6 +97,7 @@ typedef struct {
   kernel contacts; /* forces of the contacts in world axes, and at their ends */
 #if CONTACT_ESTIMATES_ERRORS
   kernel watched; /* positions over lengths, quaternions, and lengths of cables over those of their rods */
+  const turned_elements *turned; /* beside the richer modes */
 #endif
 #if CONTACT_ACTUATORS
   kernel actuators; /* efforts, and what they work on */

@@ -94,7 +94,22 @@ static real contact_distance(const arrangement *at, const real *z, const arrange
   return at->touches ? larger(places, difference / unit) : 0;
 }
 
-/* Estimated error of an equilibrium; the whole length, 1, where the same contacts do not hold on the richer modes. */
+/* Whether waves along an element do not show in the missing modes of a richer solution, which are not empty. Where
+   the ends of an element move, its unloaded turn goes with its width; coordinates count the turn that loads add. */
+static int is_blind(const arrangement *at, const real *z, const real *fine) {
+  int blind = 0;
+  int number = 0;
+  for (int rod = 0; rod < RODS; rod++) {
+    for (int e = 0; e < at->rods[rod].elements; e++) {
+      const real width = end_of_element(at, z, rod, e + 1) - end_of_element(at, z, rod, e);
+      blind |= hides_waves(at->turned, number++, width / nominal_width(at->rods + rod, e), z, fine);
+    }
+  }
+  return blind;
+}
+
+/* Estimated error of an equilibrium; the whole length, 1, where the same contacts do not hold on the richer modes,
+   or these are blind to what loads roll up. */
 static real estimated_error(int number, const real *z, const real *inputs, workspace *work) {
   const arrangement *at = ARRANGEMENT + number;
   const arrangement *richer = at + ARRANGEMENTS;
@@ -110,6 +125,7 @@ static real estimated_error(int number, const real *z, const real *inputs, works
   if (newton(richer, inputs, fine, MAX_ITERATIONS, work, &info).status != CONTACT_CONVERGED) return 1;
   call(richer->nodes, fine, inputs, work->nodes, index, work);
   if (find_faults(richer, fine, changes, &depth_of_lines, work) > 0) return 1;
+  if (is_blind(at, z, fine)) return 1;
   const real of_poses = larger(unmet(richer, fine, work), watched_distance(at, z, richer, fine, inputs, work));
   const real distance = larger(of_poses, contact_distance(at, z, richer, fine, inputs, work));
   return isfinite(distance) ? ERROR_SAFETY * distance + ERROR_FLOOR : 1;

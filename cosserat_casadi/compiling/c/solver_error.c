@@ -2,16 +2,7 @@
    a richer model lacks in it, as elasticity alone would have it; the Jacobian of the answer tells how its own unknowns
    follow. A few such sweeps are Newton's corrections with the richer model.
 
-   cosserat_casadi/equilibrium/answer_error.py holds the same in Python, docs/theory.md, section 10, derives it.
-
-   Uses of the equations: richer_balance_at, watched_at, tables of elements and missing coordinates. */
-
-enum {
-  MISSING = SOLVER_MISSING,
-  WATCHED_POSES = SOLVER_WATCHED_POSES,
-  WATCHED_CABLES = SOLVER_WATCHED_CABLES,
-  WATCHED = POSE_SIZE * WATCHED_POSES + WATCHED_CABLES
-};
+   cosserat_casadi/equilibrium/answer_error.py holds the same in Python, docs/theory.md, section 10, derives it. */
 
 static real larger_or_none(real one, real largest) {
   /* Written so that a number which is none is the larger one. */
@@ -29,14 +20,13 @@ static real angle_between(const real *a, const real *b) {
 
 /* The largest change of what is watched: displacements over the length, angles in rad, lengthenings over the length. */
 static real largest_change(const real *before, const real *after) {
-  const real *turned_before = before + 3 * WATCHED_POSES;
-  const real *turned_after = after + 3 * WATCHED_POSES;
   real largest = 0;
   for (int i = 0; i < WATCHED_POSES; i++) {
+    const int turned = 3 * WATCHED_POSES + 4 * i;
     real square = 0;
     for (int j = 3 * i; j < 3 * i + 3; j++) square += (after[j] - before[j]) * (after[j] - before[j]);
     largest = larger_or_none(SQUARE_ROOT(square), largest);
-    largest = larger_or_none(angle_between(turned_before + 4 * i, turned_after + 4 * i), largest);
+    largest = larger_or_none(angle_between(before + turned, after + turned), largest);
   }
   for (int i = WATCHED - WATCHED_CABLES; i < WATCHED; i++) {
     largest = larger_or_none(ABSOLUTE(after[i] - before[i]), largest);
@@ -44,8 +34,8 @@ static real largest_change(const real *before, const real *after) {
   return largest;
 }
 
-/* What every estimate is at least. In float Newton's method leaves a residual, and rounding another one, that move poses by
-   more than modes often do: by up to 2.3 tolerances of the residual in 1200 random answers. */
+/* What every estimate is at least. In float what Newton's method and rounding leave moves poses by more than modes often do:
+   by up to 2.3 tolerances of the residual in 1200 random answers. */
 static real least_error(const real *x) {
 #ifdef SOLVER_SINGLE
   real sum = 0;
@@ -69,27 +59,6 @@ static int contracts(real before, real step) {
   return step <= ERROR_CONTRACTING * before || step <= 10 * TOLERANCE;
 }
 
-/* Whether an element turns so far that waves along it do not show in missing modes, which are not empty. No turn is more
-   than that of the unloaded element and the root mean square of what loads add. */
-static int hides_waves(const real *x, const real *missing) {
-  for (int element = 0; element < SOLVER_ELEMENTS; element++) {
-    real square = 0;
-    for (int i = 0; i < N; i++) {
-      const real turned = ELEMENT_OF_UNKNOWN[i] == element ? TURN_BY_UNKNOWN[i] * x[i] : 0;
-      square += turned * turned;
-    }
-    const real turn = UNLOADED_TURNS[element] + SQUARE_ROOT(square);
-    if (!(turn > ERROR_WHOLE_TURN)) continue;
-    real unseen = 0;
-    for (int i = 0; i < MISSING; i++) {
-      const int is_blind = ELEMENT_OF_MISSING[i] == element && MODES_OF_MISSING[i] < turn / 2 + ERROR_BEYOND_TURN;
-      unseen += is_blind ? missing[i] * missing[i] : 0;
-    }
-    if (!(SQUARE_ROOT(unseen) <= ERROR_UNSEEN)) return 1;
-  }
-  return 0;
-}
-
 /* The balance at the corrections in the workspace, which stays there. Returns the length of the step of the missing
    modes that it calls for. */
 static real balance(const real *x, const real *missing, const real *inputs, workspace *work) {
@@ -97,16 +66,14 @@ static real balance(const real *x, const real *missing, const real *inputs, work
   return norm_of_missing(work->balance + N);
 }
 
-/* Ends the updates of the Jacobian that Newton has left: no step has followed the last one. A step of infinite length makes
-   no update, and steps that come behind it begin anew. */
+/* Ends the updates of the Jacobian that Newton has left, by a step of infinite length: no step has followed the last one. */
 static void end_updates(updated_jacobian *jacobian) {
   if (jacobian->count > 0) jacobian->squares[jacobian->count - 1] = INFINITY;
 }
 
 /* Lets the unknowns of the answer follow the missing modes, which leave this residual: by a step with the Jacobian at hand,
-   and a second one from what the equations of the answer say after the first. What both do to a tip nearly cancels what the
-   missing modes do, and one step with an old Jacobian is not exact enough. Leaves both steps as the correction. Returns the
-   length of the second step over that of the first. */
+   and by one from the equations of the answer behind it, for both nearly cancel what the missing modes do to a tip. Leaves
+   their sum as the correction. Returns the length of the second over that of the first. */
 static real follow_missing(const real *x, const loads *at, const real *residual, updated_jacobian *jacobian,
                            workspace *work) {
   real *first = place_of_step(jacobian);
@@ -127,27 +94,24 @@ static real follow_missing(const real *x, const loads *at, const real *residual,
   return SQUARE_ROOT(second_square / first_square);
 }
 
-/* The change of what is watched by the corrections in the workspace, whose balance is there, and the step that the
-   unknowns of the answer make. What the step moves is that on the answer's own modes: the difference is of second order. */
+/* The change of what is watched by the corrections in the workspace, whose balance is there, and by a step of the unknowns
+   of the answer: on its own modes, which differ in second order. */
 static real change_with_following(const real *x, const real *inputs, workspace *work) {
   const real *richer = work->balance + 2 * N + MISSING;
   real *after = work->watched_after;
   for (int i = 0; i < N; i++) work->trial[i] = x[i] + work->correction[i];
   watched_at(work->trial, inputs, after, work);
-  for (int i = 0; i < WATCHED; i++) after[i] = richer[i] + (after[i] - work->watched[i]);
+  for (int i = 0; i < WATCHED; i++) after[i] += richer[i] - work->watched[i];
   return largest_change(work->watched, after);
 }
 
-/* One sweep of the corrections in the workspace, from the elastic steps that are there. Returns the change of what is
-   watched, and sets next to the length of the step that the missing modes would make before the unknowns of the answer
-   follow. */
+/* One sweep of the corrections, by the elastic steps in the workspace. Returns the change of what is watched; sets next to
+   the length of the step that the missing modes would make before the unknowns of the answer follow. */
 static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian, real *next, real *shortening,
                   workspace *work) {
   const loads at = full_load(inputs);
-  const real *elastic_step = work->balance;
-  const real *missing_step = elastic_step + N;
-  for (int i = 0; i < N; i++) work->known_correction[i] += elastic_step[i];
-  for (int i = 0; i < MISSING; i++) work->missing[i] += missing_step[i];
+  for (int i = 0; i < N; i++) work->known_correction[i] += work->balance[i];
+  for (int i = 0; i < MISSING; i++) work->missing[i] += work->balance[N + i];
   *next = balance(x, work->missing, inputs, work);
   *shortening = follow_missing(x, &at, work->balance + N + MISSING, jacobian, work);
   const real change = change_with_following(x, inputs, work);
@@ -155,28 +119,44 @@ static real sweep(const real *x, const real *inputs, updated_jacobian *jacobian,
   return change;
 }
 
-/* What modes beyond those of the richer model would add: the rest of a geometric series whose ratio is what the two highest
-   degrees move over the whole change. */
+/* Sum r + r^2 + ... of what degrees beyond those of the richer model give, over what its two highest give: coefficients of
+   each strain go on to fall as over its highest four. */
+static real sum_beyond(const real *x, const workspace *work) {
+  real sums[2 * STRAINS + 2] = {0};
+  real squares = 0, next = 0;
+  for (int i = 0; i < N; i++) {
+    const real coefficient = x[i] + work->known_correction[i];
+    sums[PAIR_OF_UNKNOWN[i]] += coefficient * coefficient;
+  }
+  for (int i = 0; i < MISSING; i++) sums[PAIR_OF_MISSING[i]] += work->missing[i] * work->missing[i];
+  for (const real *last = sums; last < sums + 2 * STRAINS; last += 2) {
+    const real slowest = ERROR_SLOWEST * ERROR_SLOWEST;
+    squares += last[0];
+    next += last[0] * (last[0] < slowest * last[1] ? last[0] / last[1] : slowest);
+  }
+  const real ratio = squares > 0 ? SQUARE_ROOT(next / squares) : 0;
+  return ratio / (1 - ratio);
+}
+
+/* What modes beyond those of the richer model would add to what is watched: the rest of a series. Leaves the missing modes
+   without the two highest degrees. */
 static real rest_of_series(const real *x, const real *inputs, real change, workspace *work) {
   if (change <= ERROR_FLOOR) return 0;
   const real *richer = work->balance + 2 * N + MISSING;
-  for (int i = 0; i < MISSING; i++) work->fewer[i] = IS_AMONG_LAST[i] ? 0 : work->missing[i];
+  const real beyond = sum_beyond(x, work);
   (void)balance(x, work->missing, inputs, work);
   memcpy(work->watched_after, richer, sizeof work->watched_after);
-  (void)balance(x, work->fewer, inputs, work);
-  const real last = largest_change(richer, work->watched_after);
-  real ratio = last / change;
-  if (ratio < ERROR_FASTEST) ratio = ERROR_FASTEST;
-  if (!(ratio <= ERROR_SLOWEST)) ratio = ERROR_SLOWEST;
-  return last * ratio / (1 - ratio);
+  for (int i = 0; i < MISSING; i++) work->missing[i] *= (real)(PAIR_OF_MISSING[i] % 2);
+  (void)balance(x, work->missing, inputs, work);
+  return beyond * largest_change(richer, work->watched_after);
 }
 
 /* Estimated error of an equilibrium; the whole length, 1, where the corrections do not settle. */
 static real estimated_error(const real *x, const real *inputs, updated_jacobian *jacobian, workspace *work) {
   const loads at = full_load(inputs);
   const int is_old = jacobian != 0;
-  real change_before = -1;
-  real step_before = -1;
+  real change_before = INFINITY;
+  real step_before = INFINITY;
   int bounced = 0;
   if (is_old) {
     end_updates(jacobian);
@@ -191,26 +171,25 @@ static real estimated_error(const real *x, const real *inputs, updated_jacobian 
   for (int k = 0; k < ERROR_SWEEPS; k++) {
     real next;
     real shortening;
-    const int is_first = k == 0;
     const real step = balance(x, work->missing, inputs, work);
-    if (!is_first && !contracts(step_before, step)) break;
+    if (!contracts(step_before, step)) break;
     const real change = sweep(x, inputs, jacobian, &next, &shortening, work);
     /* An old Jacobian that is far from that of the answer tells nothing. */
     if (is_old && !(shortening <= ERROR_FOLLOWED)) return estimated_error(x, inputs, 0, work);
     if (!isfinite(change)) break;
     /* Where the first step bounces the next one may be short by chance: neither is believed. */
-    const int bounces = is_first && !contracts(step, next);
-    const int believed = !bounces && !bounced;
+    if (k == 0) bounced = !contracts(step, next);
+    const int believed = !bounced || k > 1;
     const int rests = step <= ERROR_SETTLED * norm_of_missing(work->missing) || step <= 10 * TOLERANCE;
-    const int settled = !is_first && rests && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
-    const int is_enough = change <= ERROR_ENOUGH;
-    if (believed && (settled || is_enough) && hides_waves(x, work->missing)) return 1;
-    if (believed && settled) {
-      return ERROR_SAFETY * (change + rest_of_series(x, inputs, change, work)) + least_error(x);
-    }
+    const int settled = rests && ABSOLUTE(change - change_before) <= ERROR_SETTLED * change;
     /* A look that leaves the answer within its tolerance need not be repeated. */
-    if (believed && is_enough) return ERROR_FIRST_LOOK * change + least_error(x);
-    bounced = bounces;
+    if (believed && (settled || change <= ERROR_ENOUGH)) {
+      for (int e = 0; e < TURNED.elements; e++) {
+        if (hides_waves(&TURNED, e, 1, x, work->missing)) return 1;
+      }
+      const real rest = settled ? rest_of_series(x, inputs, change, work) : 0;
+      return (settled ? ERROR_SAFETY : ERROR_FIRST_LOOK) * (change + rest) + least_error(x);
+    }
     change_before = change;
     step_before = step;
   }
