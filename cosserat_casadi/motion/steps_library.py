@@ -48,8 +48,9 @@ class StepsRecord(ctypes.Structure):
         *((name, ctypes.c_int) for name in ("refused", "linearised", "kept", "fresh", "singular_steps", "reason")),
         *((name, ctypes.c_int) for name in ("steps", "tries", "rejected", "iterations", "jacobians")),
         *((name, ctypes.c_int) for name in ("factorisations", "interrupted")),
-        *((name, POINTER) for name in ("inverses", "stage_inputs", "iterate", "stage_residuals")),
-        *((name, POINTER) for name in ("stage_corrections", "stage_changes", "transformed", "solutions", "vectors")),
+        *((name, POINTER) for name in ("inverses", "pair_rows", "pair_columns", "pair_pivots")),
+        *((name, POINTER) for name in ("stage_inputs", "iterate", "stage_residuals", "stage_corrections")),
+        *((name, POINTER) for name in ("stage_changes", "transformed", "solutions", "vectors")),
         *((name, POINTER * step_control.MOST_ITERATIONS) for name in ("taken", "duals")),
     ]
 
