@@ -267,12 +267,10 @@ class History:
                 x[rows], v[rows], a[rows] = np.reshape(instants, (-1, 3, self.model.size)).swapaxes(0, 1)
             if held is None or not len(self._closing.rows):
                 continue
-            equations = leg.equations or equations_of(self.model, leg.piece)
             for first in range(0, np.count_nonzero(rows), CLOSED_AT_ONCE):
                 part = slice(first, first + CLOSED_AT_ONCE)
                 some = np.flatnonzero(rows)[part]
-                states = x[some], v[some], a[some]
-                x[some] = self._closing.closed(times[some], states, inputs[some], equations, held.numbers[part])
+                x[some] = self._closing.closed(x[some], inputs[some], held.numbers[part])
         return MotionState(x, v, a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
@@ -372,9 +370,11 @@ class History:
     @cached_property
     def _closing(self) -> Closing:
         equations = self.legs[0].equations
-        residual = None if equations is None else equations.residual
-        library = residual.call.library if isinstance(residual, KernelResidual) else None
-        return Closing(self.model, library)
+        if equations is None:
+            return Closing(self.model)
+        calls = equations.residual, equations.jacobians
+        of_kernels = [one.call.library if isinstance(one, KernelResidual | KernelJacobians) else None for one in calls]
+        return Closing(self.model, Libraries(*of_kernels))
 
     @cached_property
     def end_times(self) -> list[float]:

@@ -28,7 +28,7 @@ AT_ONCE = (
 
 def is_sudden(history: History, start: Start, moving: MovingInputs, duration: float) -> bool:
     """Whether loads act at once at the start of a motion, or jump; arguments as of ``warnings``."""
-    return bool(moving.jumps(duration)) or _starts_at_once(history, start, moving)
+    return bool(moving.jumps(duration)) or _starts_at_once(history, start, moving, duration)
 
 
 def warnings(history: History, start: Start, moving: MovingInputs, duration: float) -> list[str]:
@@ -40,20 +40,24 @@ def warnings(history: History, start: Start, moving: MovingInputs, duration: flo
         moving: the inputs over time.
         duration: of the motion, s.
     """
-    at_start = [AT_ONCE] if _starts_at_once(history, start, moving) else []
+    at_start = [AT_ONCE] if _starts_at_once(history, start, moving, duration) else []
     jumps: dict[str, list[float]] = {}
     for jump in moving.jumps(duration):
         jumps.setdefault(jump.input, []).append(jump.time)
     return at_start + [_jumping(name, times) for name, times in jumps.items()]
 
 
-def _starts_at_once(history: History, start: Start, moving: MovingInputs) -> bool:
+def _starts_at_once(history: History, start: Start, moving: MovingInputs, duration: float) -> bool:
     """Whether loads that were not there act from the start on, and deform a rod."""
     # What a motion that goes on sets out with has been under way already.
     if start.resume is not None:
         return False
     accelerations = history.of_model(history.legs[0].start.instant).a
-    return _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations)
+    return history.once(
+        "starts at once",
+        duration,
+        lambda: _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations),
+    )
 
 
 def _jumping(name: str, times: list[float]) -> str:
@@ -76,7 +80,7 @@ def _loaded_at_once(history: History, start: Start, moving: MovingInputs) -> boo
     if start.phases is not None and start.phases.touches:
         # Obstacles hold the rods.
         return False
-    inputs = moving.at(0.0).value
+    inputs = moving.at_start.value
     still, unmoved = np.zeros(len(start.x)), np.zeros(len(inputs))
     # The residual of statics, by the function that the steps have called.
     equations = history.legs[0].equations
