@@ -943,6 +943,41 @@ static steps_outcome try_step(real end, workspace *work) {
   return GOES_ON;
 }
 
+/* Positions and algebraic entries of so many unknowns at some times, each in one of some steps: HeldTimes.positions. */
+void steps_positions(int times, int unknowns, const real *at, const long long *numbers, const real *facts,
+                     const real *begins, const real *ends, const real *stages, const unsigned char *differential,
+                     real *positions) {
+  enum { KNOWN = 7 }; /* facts of a step: times at its begin and its end, size; and others */
+  for (int row = 0; row < times; row++) {
+    const long long step = numbers[row];
+    const real *fact = facts + KNOWN * step;
+    const real *begin = begins + ORDERS * unknowns * step;
+    const real *of_stages = stages + STAGES * unknowns * step;
+    real *x = positions + row * unknowns;
+    if (at[row] == fact[1]) {
+      memcpy(x, ends + ORDERS * unknowns * step, (size_t)unknowns * sizeof *x);
+      continue;
+    }
+    const real size = fact[2];
+    const real share = (at[row] - fact[0]) / size;
+    real values[STAGES];
+    real twice[STAGES];
+    for (int j = 0; j < STAGES; j++) {
+      values[j] = twice[j] = 0;
+      for (int power = STAGES - 1; power >= 0; power--) {
+        values[j] = values[j] * share + STAGE_POLYNOMIALS[power][j];
+        twice[j] = twice[j] * share + STAGE_POLYNOMIALS[power][j] / ((power + 1) * (power + 2));
+      }
+      twice[j] *= share * share * size * size;
+    }
+    for (int i = 0; i < unknowns; i++) {
+      real moved = 0;
+      for (int j = 0; j < STAGES; j++) moved += (differential[i] ? twice[j] : values[j]) * of_stages[j * unknowns + i];
+      x[i] = differential[i] ? begin[i] + share * size * begin[unknowns + i] + moved : moved;
+    }
+  }
+}
+
 /* Numbers that the room has to hold. */
 int steps_room(int unknowns, int inputs) {
   const int n = unknowns;
