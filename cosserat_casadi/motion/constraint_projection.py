@@ -93,8 +93,9 @@ class Closing:
                 answers = self._answers(best[firsts], inputs[firsts])[of_step]
             else:
                 here = left[leads_away | (largest > CONTRACTED * before[left])]
-                answers[here] = self._answers(best[here], inputs[here])
-                is_here[here] = True
+                if len(here):
+                    answers[here] = self._answers(best[here], inputs[here])
+                    is_here[here] = True
             before[left] = np.abs(gaps).max(axis=1)
             x[left] = best[left] - np.einsum("tnm,tm->tn", answers[left], gaps)
         return x
@@ -120,7 +121,7 @@ class Closing:
             part = slice(first, first + LINEARISED_AT_ONCE)
             # The constraints depend on positions alone.
             still, held = np.zeros_like(x[part]), np.zeros_like(inputs[part])
-            stiffness, *_ = evaluated(function, x[part], still, still, inputs[part], held, held)
+            (stiffness,) = evaluated(function, x[part], still, still, inputs[part], held, held, results=1)
             answers[part] = self._answered(np.where(moves, stiffness[:, self.rows] / self._sizes, 0.0))
         return answers
 
