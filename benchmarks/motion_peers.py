@@ -55,7 +55,7 @@ ROWS_OF_OTHERS = 22
 
 
 def released(tolerance: float, strain: str = "reissner") -> Scene:
-    """The scene, with a tolerance of its motion and a strain model, from tables in Python: no other model has a file."""
+    """The scene, with a tolerance of its motion and a strain model, from tables: other models have no file."""
     (rod,) = TABLES["rods"]
     simulation = {**TABLES["simulation"], "tolerance": tolerance, "times": TIMES.tolist()}
     return scene_from_dict({**TABLES, "rods": [{**rod, "strain": strain}], "simulation": simulation})

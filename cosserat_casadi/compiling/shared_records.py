@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
-from math import prod
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-
-from cosserat_casadi.maths.typing import FloatArray
 
 POINTER = ctypes.c_void_p
 
@@ -30,19 +27,6 @@ def address_of(function: Any) -> int:
     address = ctypes.cast(function, POINTER).value
     assert address is not None, "a function has an address"
     return address
-
-
-def side_by_side(shapes: Sequence[tuple[int, ...]]) -> tuple[list[FloatArray], list[int]]:
-    """Zeros of these shapes, one behind the other in memory, and the address of each.
-
-    NumPy takes longer for the address of an array than for several arrays.
-    """
-    ends = np.cumsum([prod(shape) for shape in shapes]).tolist()
-    room = np.zeros(ends[-1])
-    begin = room.ctypes.data
-    firsts = [0, *ends[:-1]]
-    arrays = [room[first:end].reshape(shape) for first, end, shape in zip(firsts, ends, shapes, strict=True)]
-    return arrays, [begin + first * room.itemsize for first in firsts]
 
 
 class Held:
@@ -66,20 +50,12 @@ class Held:
         self._kept.append(array)
         setattr(self.record, name, array.ctypes.data)
 
-    def zeros(self, **shapes: tuple[int, ...]) -> list[FloatArray]:
-        """Have members of the record point at zeros of these shapes, which are returned."""
-        arrays, addresses = side_by_side(list(shapes.values()))
-        self._kept.append(arrays)
-        for name, address in zip(shapes, addresses, strict=True):
-            setattr(self.record, name, address)
-        return arrays
-
     def point(self, name: str, held: Held) -> None:
         """Have a member of the record point at another record."""
         self._kept.append(held)
         setattr(self.record, name, held.address)
 
-    def call_back(self, name: str, kind: Callable[..., Any], function: Callable[..., object]) -> None:
+    def call_back(self, name: str, kind: Callable[..., Any], function: Callable[..., None]) -> None:
         """Have a member of the record be a function of Python, whose exception :func:`raise_what_was_raised` raises.
 
         Args:

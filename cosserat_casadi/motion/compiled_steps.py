@@ -73,16 +73,15 @@ class CompiledSteps:
         record = StepsRecord(unknowns=n, stop=run.stop, newton=run.bounds.error, shortest=shortest)
         self._record = record
         self._held = Held(record)
-        state = (ORDERS, n)
-        self._matrices, self._now, self._linearised_at, self._kept_at, self._before, _ = self._held.zeros(
-            matrices=(ORDERS, n, n),
-            now=state,
-            linearised_at=state,
-            kept_at=state,
-            before=(STAGES, n),
-            stage_times=(STAGES,),
-        )
+        self._matrices = np.zeros((ORDERS, n, n))
+        self._now, self._linearised_at, self._kept_at = np.zeros((3, ORDERS, n))
+        self._before = np.zeros((STAGES, n))
         self._rows: list[FloatArray] = []
+        self._held.share("matrices", self._matrices)
+        self._held.share("now", self._now)
+        self._held.share("before", self._before)
+        self._held.share("linearised_at", self._linearised_at)
+        self._held.share("kept_at", self._kept_at)
         self._held.share("differential", run.equations.differential.astype(np.intc))
         self._held.share("weights", np.ascontiguousarray(run.bounds.weights, dtype=float))
         kinks = np.array(run.equations.kinks, dtype=float)
@@ -98,7 +97,8 @@ class CompiledSteps:
             self._share_function()
         if not record.derivatives:
             self._held.call_back("jacobians_at", CALL, self._linearise)
-        self._held.zeros(room=(self._library.steps_room(n, record.inputs),))
+        self._held.share("stage_times", np.zeros(STAGES))
+        self._held.share("room", np.zeros(self._library.steps_room(n, record.inputs)))
         record.lasting = run.settings.lasting
         record.drifting = run.settings.drifting
         record.longest_allowed = control.longest
@@ -121,9 +121,10 @@ class CompiledSteps:
         # Behind the unknowns of the model C has the forces of contacts.
         state = [np.zeros(record.unknowns) if record.touch_count else array for array in call.arguments[:ORDERS]]
         rows = np.zeros(record.unknowns) if record.touch_count else call.results[0]
-        inputs = call.arguments[ORDERS:]
-        for name, array in zip((*names, "residual"), (*state, *inputs, rows), strict=True):
+        for name, array in zip(names, (*state, *call.arguments[ORDERS:]), strict=True):
             self._held.share(name, array)
+        inputs = call.arguments[3:]
+        self._held.share("residual", rows)
         record.inputs = len(inputs[0])
         record.moving = int(residual.moves)
 
@@ -143,17 +144,15 @@ class CompiledSteps:
             self._share_program(call.program)
             return
         arguments, results = call.code.arguments.copy(), call.code.results.copy()
-        arguments[:ORDERS] = [record.x, record.v, record.a]
-        results[0] = record.residual
+        arguments[:ORDERS] = [array.ctypes.data for array in state]
+        results[0] = rows.ctypes.data
         self._share_code("kernel", call.code, arguments, results)
         jacobians = self._run.equations.jacobians
         if isinstance(jacobians, KernelJacobians) and jacobians.call.code is not None:
             code = jacobians.call.code
             read, written = code.arguments.copy(), code.results.copy()
-            strides = np.arange(ORDERS, dtype=np.uintp)
-            read[:ORDERS] = record.linearised_at + strides * np.uintp(self._linearised_at[0].nbytes)
-            read[ORDERS : len(names)] = [record.input_values, record.input_rates, record.input_accelerations]
-            written[:ORDERS] = record.matrices + strides * np.uintp(self._matrices[0].nbytes)
+            read[: len(names)] = [array.ctypes.data for array in (*self._linearised_at, *inputs)]
+            written[: len(self._matrices)] = [matrix.ctypes.data for matrix in self._matrices]
             self._share_code("derivatives", code, read, written)
 
     def _share_code(
@@ -228,9 +227,10 @@ class CompiledSteps:
         record.most_steps, record.most_tries = 1 if one else tries, tries
         if not self._rows:
             most = 1 if one else MOST_TRIES
-            self._rows = self._held.zeros(
-                facts=(most, FACTS), ends=(most, ORDERS, n), stages=(most, STAGES, n), tried_at=(MOST_TRIES,)
-            )
+            shapes = {"facts": (most, FACTS), "ends": (most, ORDERS, n), "stages": (most, STAGES, n)}
+            for name, shape in {**shapes, "tried_at": (MOST_TRIES,)}.items():
+                self._rows.append(np.zeros(shape))
+                self._held.share(name, self._rows[-1])
         now = run.now
         self._now[:] = now.x, now.v, now.a
         record.time = now.time

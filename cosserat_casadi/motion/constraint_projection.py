@@ -113,10 +113,8 @@ class Closing:
         """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (T, size, rows)."""
         answers = np.empty((*x.shape, len(self.rows)))
         moves = self.model.discrete.unknowns.differential
-        if self.libraries.jacobians is None:
-            function = interpreted_derivatives(self.model)
-        else:
-            function = external(JACOBIANS, self.libraries.jacobians)
+        library = self.libraries.jacobians
+        function = interpreted_derivatives(self.model) if library is None else external(JACOBIANS, library)
         for first in range(0, len(x), LINEARISED_AT_ONCE):
             part = slice(first, first + LINEARISED_AT_ONCE)
             # The constraints depend on positions alone.

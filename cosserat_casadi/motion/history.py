@@ -375,9 +375,7 @@ class History:
     @cached_property
     def _closing(self) -> Closing:
         equations = self.legs[0].equations
-        if equations is None:
-            return Closing(self.model)
-        calls = equations.residual, equations.jacobians
+        calls = () if equations is None else (equations.residual, equations.jacobians)
         of_kernels = [one.call.library if isinstance(one, KernelResidual | KernelJacobians) else None for one in calls]
         return Closing(self.model, Libraries(*of_kernels))
 

@@ -501,12 +501,7 @@ def _finer(discretisation: Discretisation) -> Discretisation:
 
 
 def _with_tolerance(search: _Search, first: Model) -> Motion:
-    """The motion on more and more modes, until the tolerance is met or no further modes are tried.
-
-    Args:
-        search: without levels.
-        first: the model on the fewest modes.
-    """
+    """The motion on more and more modes, from those of a model, until the tolerance is met or no more are tried."""
     ladder = search.ladder
     rung: int | None = 1 if search.tolerance < FINE else 0
     without_start = 0

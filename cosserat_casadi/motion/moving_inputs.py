@@ -201,20 +201,14 @@ class MovingInputs:
 
     def breaks(self, duration: float) -> list[Break]:
         """Breaks of the inputs from 0 to the duration (s), in the order of time: the inputs rest before 0."""
-        return sorted([*self._breaks_at_start(), *self._breaks_after(duration)], key=_when)
+        found = self._breaks_at_start()
+        for motion, path in zip(self._motions, self._paths, strict=True):
+            found += [Break(motion.input, time, order) for time, order in path.breaks if 0.0 < time < duration]
+        return sorted(found, key=lambda entry: (entry.time, entry.order))
 
     def jumps(self, duration: float) -> list[Break]:
         """Times from 0 to the duration (s) at which the value of an input itself jumps: loads that act suddenly."""
-        return sorted([entry for entry in self._breaks_after(duration) if entry.order == 0], key=_when)
-
-    def _breaks_after(self, duration: float) -> list[Break]:
-        """Breaks of the paths after 0 and before the duration, s."""
-        return [
-            Break(motion.input, time, order)
-            for motion, path in zip(self._motions, self._paths, strict=True)
-            for time, order in path.breaks
-            if 0.0 < time < duration
-        ]
+        return [entry for entry in self.breaks(duration) if entry.order == 0]
 
     def _breaks_at_start(self) -> list[Break]:
         """Inputs that begin to move at once, or to accelerate at once."""
@@ -234,10 +228,6 @@ class MovingInputs:
             span = self._slices[motion.input]
             paths.append((span, path.within(start + slack, end - slack)))
         return Piece(start, end, (), self._constant, tuple(paths))
-
-
-def _when(found: Break) -> tuple[float, int]:
-    return found.time, found.order
 
 
 def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None:

@@ -9,7 +9,7 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -17,15 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.compiling.scalar_program import ScalarProgram
-from cosserat_casadi.compiling.shared_records import POINTER, address_of, side_by_side
 from cosserat_casadi.maths.calls import chooses
 from cosserat_casadi.maths.typing import FloatArray
 
 MOST_LOADED = 256
 """Functions of shared objects that a process keeps loaded."""
-
-KERNEL = ctypes.CFUNCTYPE(ctypes.c_int, POINTER, POINTER, POINTER, POINTER, ctypes.c_int)
-"""A function as CasADi writes it in C: of addresses of arguments, results, whole and real numbers, and a memory."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +30,6 @@ class MachineCode:
 
     Attributes:
         address: of the function.
-        evaluate: calls it.
         arguments: addresses of its arguments.
         results: addresses of its results.
         integers: memory of the function for whole numbers.
@@ -44,7 +39,6 @@ class MachineCode:
     """
 
     address: int
-    evaluate: Callable[[], object]
     arguments: npt.NDArray[np.uintp]
     results: npt.NDArray[np.uintp]
     integers: npt.NDArray[np.longlong]
@@ -80,24 +74,19 @@ class RepeatedCall:
         for sparsity in (*arguments, *wanted):
             if not sparsity.is_dense():
                 raise ValueError(f"{function.name()} has an argument or a result that is not dense")
-        shapes = [*((sparsity.nnz(),) for sparsity in arguments), *(sparsity.shape[::-1] for sparsity in wanted)]
-        arrays, addresses = side_by_side(shapes)
-        self.arguments = arrays[: len(arguments)]
+        buffer, self.evaluate = function.buffer()
+        self.arguments = [np.zeros(sparsity.nnz()) for sparsity in arguments]
         # CasADi stores column by column.
-        self.results = [array.T for array in arrays[len(arguments) :]]
+        self.results = [np.zeros(sparsity.shape, order="F") for sparsity in wanted]
+        for number, argument in enumerate(self.arguments):
+            buffer.set_arg(number, argument.data)
+        for number, result in enumerate(self.results):
+            buffer.set_res(number, result.ravel(order="K").data)
+        # The evaluation reads and writes the buffer's memory: it has to live as long.
+        self._buffer = buffer
         self.program: ScalarProgram | None = None
         self.program_after: Callable[[int], ScalarProgram | None] | None = None
-        self.code: MachineCode | None = None
-        if library is not None:
-            self.code = _machine_code(function, os.fspath(library), addresses, len(arguments))
-            self.evaluate = self.code.evaluate
-            return
-        # The evaluation reads and writes the buffer's memory: it has to live as long.
-        self._buffer, self.evaluate = function.buffer()
-        for number, argument in enumerate(self.arguments):
-            self._buffer.set_arg(number, argument.data)
-        for number, result in enumerate(self.results):
-            self._buffer.set_res(number, result.ravel(order="K").data)
+        self.code = None if library is None else self._machine_code(function, os.fspath(library))
 
     @property
     def library(self) -> str | None:
@@ -120,18 +109,15 @@ class RepeatedCall:
             argument[:] = value
         self.evaluate()
 
-
-def _machine_code(function: ca.Function, library: str, addresses: Sequence[int], count: int) -> MachineCode:
-    """A function in a shared object with the addresses of so many arguments, and of results behind them."""
-    loaded = _loaded(library)
-    address = address_of(getattr(loaded, function.name()))
-    arguments, results = (np.zeros(size, dtype=np.uintp) for size in (function.sz_arg(), function.sz_res()))
-    arguments[:count] = addresses[:count]
-    results[: len(addresses) - count] = addresses[count:]
-    integers, scratch = np.zeros(max(function.sz_iw(), 1), dtype=np.longlong), np.zeros(max(function.sz_w(), 1))
-    memory = [array.ctypes.data for array in (arguments, results, integers, scratch)]
-    evaluate = partial(KERNEL(address), *memory, 0)
-    return MachineCode(address, evaluate, arguments, results, integers, scratch, loaded, library)
+    def _machine_code(self, function: ca.Function, library: str) -> MachineCode:
+        loaded = _loaded(library)
+        address = ctypes.cast(getattr(loaded, function.name()), ctypes.c_void_p).value
+        assert address is not None, "a function has an address"
+        arguments, results = (np.zeros(size, dtype=np.uintp) for size in (function.sz_arg(), function.sz_res()))
+        arguments[: len(self.arguments)] = [array.ctypes.data for array in self.arguments]
+        results[: len(self.results)] = [array.ctypes.data for array in self.results]
+        integers, scratch = np.zeros(max(function.sz_iw(), 1), dtype=np.longlong), np.zeros(max(function.sz_w(), 1))
+        return MachineCode(address, arguments, results, integers, scratch, loaded, library)
 
 
 class Libraries(NamedTuple):

@@ -62,7 +62,7 @@ class StepsRecord(ctypes.Structure):
 def positions_at(held: HeldTimes) -> FloatArray:
     """The positions of :meth:`HeldTimes.positions`, by C where this process has the loop and it takes such steps."""
     steps = held.steps
-    if steps.method is not radau(STAGES) or not steps_are_loaded():
+    if steps.method.name != radau(STAGES).name or not steps_are_loaded():
         return held.positions()
     count, unknowns = len(held.times), len(steps.differential)
     positions = np.empty((count, unknowns))

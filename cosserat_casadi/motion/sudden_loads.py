@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
@@ -52,12 +50,7 @@ def _starts_at_once(history: History, start: Start, moving: MovingInputs, durati
     # What a motion that goes on sets out with has been under way already.
     if start.resume is not None:
         return False
-    accelerations = history.of_model(history.legs[0].start.instant).a
-    return history.once(
-        "starts at once",
-        duration,
-        lambda: _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations),
-    )
+    return history.once("stirred", duration, lambda: _loaded_at_once(history, start, moving) and _deforms(history))
 
 
 def _jumping(name: str, times: list[float]) -> str:
@@ -68,10 +61,11 @@ def _jumping(name: str, times: list[float]) -> str:
     return f"{name} jumps {when}: waves of all lengths run along the rods, which modes resolve slowly."
 
 
-def _deforms(model: Model, accelerations: FloatArray) -> bool:
+def _deforms(history: History) -> bool:
     """Whether the strains begin to move: a rod that merely falls has no waves."""
-    moved = np.abs(accelerations) * displacements(model)
-    strains = [moved[entries].max(initial=0.0) for _, entries in model.discrete.unknowns.of_kind(BlockKind.STRAIN)]
+    unknowns = history.model.discrete.unknowns
+    moved = np.abs(history.of_model(history.legs[0].start.instant).a) * displacements(history.model)
+    strains = [moved[entries].max(initial=0.0) for _, entries in unknowns.of_kind(BlockKind.STRAIN)]
     return bool(max(strains, default=0.0) > STIRRED * moved.max(initial=0.0))
 
 

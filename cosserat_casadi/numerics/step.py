@@ -11,7 +11,6 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -182,15 +181,9 @@ class StepRows(Sequence[TimeStep]):
         return TimeStep(self.method, self.differential, start, size, unknowns, end, error, int(iterations), *last)
 
 
+@dataclass(frozen=True, eq=False)
 class HeldTimes:
-    """T times in the steps that hold them, with the motion there by the polynomials of these steps.
-
-    :meth:`TimeStep.at` computes the same numbers for one time.
-
-    Args:
-        steps: of n unknowns.
-        numbers: which of the steps holds each time, shape (T,).
-        times: shape (T,), s.
+    """T times in the steps that hold them, with the motion there by their polynomials, as of :meth:`TimeStep.at`.
 
     Attributes:
         steps: of n unknowns.
@@ -198,26 +191,27 @@ class HeldTimes:
         times: shape (T,), s.
     """
 
-    def __init__(self, steps: StepRows, numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
-        self.steps, self.numbers, self.times = steps, numbers, times
-        self._sizes = steps.facts[numbers, 2]
+    steps: StepRows
+    numbers: npt.NDArray[np.intp]
+    times: FloatArray
 
-    @cached_property
+    @property
     def _shares(self) -> FloatArray:
-        return np.asarray((self.times - self.steps.facts[self.numbers, 0]) / self._sizes)
+        return np.asarray((self.times - self.steps.facts[self.numbers, 0]) / self.steps.facts[self.numbers, 2])
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
         x, v = self.steps.begins[self.numbers, :2].swapaxes(0, 1)
+        sizes = self.steps.facts[self.numbers, 2, None]
         moved = self._summed(self.steps.method.double_integrals_at)
-        x = x + (self._shares * self._sizes)[:, None] * v + self._sizes[:, None] ** 2 * moved
+        x = x + self._shares[:, None] * sizes * v + sizes**2 * moved
         if not np.all(self.steps.differential):
             x = np.where(self.steps.differential, x, self._summed(self.steps.method.values_at))
         return self._with_ends(x, 0)
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
-        gained = self._sizes[:, None] * self._summed(self.steps.method.integrals_at)
+        gained = self.steps.facts[self.numbers, 2, None] * self._summed(self.steps.method.integrals_at)
         rates = self.steps.begins[self.numbers, 1] + gained, self._summed(self.steps.method.values_at)
         v, a = (np.where(self.steps.differential, each, 0.0) for each in rates)
         return self._with_ends(v, 1), self._with_ends(a, 2)
