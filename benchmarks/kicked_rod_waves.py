@@ -134,8 +134,8 @@ class KickedRod:
             if (number + 1) % steps == 0:
                 rows.append(state[2])
         found = np.stack(rows)
-        axes = Rotation.from_quat(found[:, 0, 3:], scalar_first=True).as_matrix()[:, None, :, :2]
-        return Paths(found[:, :, :3] / LENGTH, axes)
+        rotation = Rotation.from_quat(found[:, 0, 3:], scalar_first=True).as_matrix()
+        return Paths(found[:, :, :3] / LENGTH, rotation.swapaxes(1, 2)[:, None, :2])
 
     def _stepped(self, time: float, size: float, state: list[FloatArray]) -> list[FloatArray]:
         first = self.rates(time, state)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import tomllib
 from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from itertools import chain
@@ -24,7 +25,7 @@ from doc_tables import put, rows_of, table
 from motion_rivals import INTERVAL, LENGTH, LIMITS, REPEATS, TIMES, Paths, Rival, Run, prepared, rivals
 from rich.progress import Progress
 
-from cosserat_casadi import Compiled, Model, Scene, export, load, read_scene, simulate
+from cosserat_casadi import Compiled, Model, Scene, export, load, scene_from_dict, simulate
 from cosserat_casadi.compiling.cache import VARIABLE
 from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.pose_series import poses_of
@@ -33,6 +34,7 @@ from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.figure import figure_class, write_figure
 
 REFERENCE = Path(__file__).parent / "reference"
+TABLES = tomllib.loads((REFERENCE / "release_planar.toml").read_text())
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- rivals: written by benchmarks/motion_peers.py -->", "<!-- end of rivals -->"
 FIGURE = "figures/motion_peers.png"
@@ -53,9 +55,10 @@ ROWS_OF_OTHERS = 22
 
 
 def released(tolerance: float, strain: str = "reissner") -> Scene:
-    """The scene, with a tolerance of its motion and a strain model."""
-    settings = [f"simulation.tolerance={tolerance}", f'rods.0.strain="{strain}"', f"simulation.times={TIMES.tolist()}"]
-    return read_scene(REFERENCE / "release_planar.toml", settings)
+    """The scene, with a tolerance of its motion and a strain model, from tables: other models have no file."""
+    (rod,) = TABLES["rods"]
+    simulation = {**TABLES["simulation"], "tolerance": tolerance, "times": TIMES.tolist()}
+    return scene_from_dict({**TABLES, "rods": [{**rod, "strain": strain}], "simulation": simulation})
 
 
 def ours(packages: Collection[str]) -> Iterator[Rival]:

@@ -86,28 +86,29 @@ def chooses(function: ca.Function) -> bool:
     return any(called.class_name() == "Switch" for called in functions_within(function))
 
 
-def evaluated(function: ca.Function, *arguments: FloatArray) -> list[FloatArray]:
+def evaluated(function: ca.Function, *arguments: FloatArray, results: int | None = None) -> list[FloatArray]:
     """Outputs of a function of dense vectors at T arguments, of shape (T, rows, columns) each.
 
     Args:
         function: the function.
         arguments: in their order, shape (T, entries) each.
+        results: how many of the first outputs are wanted; None for all.
     """
     count = len(arguments[0])
-    patterns = _patterns(function)
+    patterns = _patterns(function)[:results]
     # CasADi maps over one argument at least; a motion that never started has none.
     if count == 0:
         return [np.zeros((0, *shape)) for shape, _, _ in patterns]
     # CasADi makes its matrices of arrays, and arrays of its matrices, entry by entry: that takes longer than the calls.
     buffer, evaluate = _mapped(function, count).buffer()
     given = [np.ascontiguousarray(values, dtype=float).ravel() for values in arguments]
-    results = [np.zeros(count * len(rows)) for _, rows, _ in patterns]
+    made = [np.zeros(count * len(rows)) for _, rows, _ in patterns]
     for number, array in enumerate(given):
         buffer.set_arg(number, array.data)
-    for number, array in enumerate(results):
+    for number, array in enumerate(made):
         buffer.set_res(number, array.data)
     evaluate()
-    return [_dense(entries.reshape(count, -1), *pattern) for entries, pattern in zip(results, patterns, strict=True)]
+    return [_dense(entries.reshape(count, -1), *pattern) for entries, pattern in zip(made, patterns, strict=True)]
 
 
 @lru_cache(maxsize=MOST_MAPPED)

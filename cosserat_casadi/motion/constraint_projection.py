@@ -6,7 +6,6 @@ is far below the tolerance of the motion.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,9 +19,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
-from cosserat_casadi.motion.repeated_call import external
+from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, external
+from cosserat_casadi.motion.step_kernels import JACOBIANS, interpreted_derivatives
 from cosserat_casadi.numerics.consistent_start import regular_inverse
-from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 CLOSED = 1e-12
 """Largest row of a constraint, without unit, that counts as closed."""
@@ -32,6 +31,9 @@ MOST_CORRECTIONS = 12
 
 INDEPENDENT = 1e-8
 """Eigenvalue of the normal equations of constraints, over the largest, from which they are clearly independent."""
+
+LINEARISED_AT_ONCE = 32
+"""States whose derivatives are computed together: each has three matrices in memory."""
 
 CONTRACTED = 0.2
 """Share of the gaps that a correction may leave before the next one has a new Jacobian."""
@@ -47,45 +49,31 @@ class Closing:
 
     Attributes:
         model: the model.
-        library: shared object that has :func:`functions_of_closing`; None without one.
+        libraries: shared objects that have :func:`functions_of_closing`, and the derivatives of inverse dynamics.
     """
 
     model: Model
-    library: str | None = None
+    libraries: Libraries = INTERPRETED
 
     @cached_property
     def rows(self) -> npt.NDArray[np.int64]:
         """Rows of the residual that are constraints on positions alone."""
         return constraint_rows(self.model)
 
-    def closed(
-        self,
-        times: FloatArray,
-        states: Sequence[FloatArray],
-        inputs: FloatArray,
-        equations: MotionEquations,
-        steps: npt.NDArray[np.intp],
-    ) -> FloatArray:
+    def closed(self, x: FloatArray, inputs: FloatArray, steps: npt.NDArray[np.intp]) -> FloatArray:
         """Unknowns at T times, moved by the smallest displacements that close the constraints, shape (T, size).
 
         Args:
-            times: of the motion, shape (T,), s.
-            states: x, v and a at these times, in the unknowns of the model, shape (T, size) each.
+            x: unknowns of the model at these times, shape (T, size).
             inputs: inputs at these times, shape (T, model.inputs.size).
-            equations: of motion, of which some rows are the constraints.
             steps: number of the step that holds each time, shape (T,); one Jacobian serves a step at first.
         """
-        x = np.array(states[0])
+        x = np.array(x)
         best = x.copy()
         before = np.full(len(x), np.inf)
         is_here = np.zeros(len(x), dtype=bool)
         answers: FloatArray | None = None
         left = np.arange(len(x))
-
-        def answer_at(row: int) -> FloatArray:
-            instant = Instant(float(times[row]), best[row], states[1][row], states[2][row])
-            return self._answer(equations.linearised(instant).stiffness)
-
         for _ in range(MOST_CORRECTIONS):
             gaps = self._gaps(x[left], inputs[left])
             largest = np.abs(gaps).max(axis=1)
@@ -102,39 +90,52 @@ class Closing:
             best[left[~leads_away]] = x[left[~leads_away]]
             if answers is None:
                 _, firsts, of_step = np.unique(steps, return_index=True, return_inverse=True)
-                answers = np.array([answer_at(row) for row in firsts.tolist()])[of_step]
+                answers = self._answers(best[firsts], inputs[firsts])[of_step]
             else:
-                for row in left[leads_away | (largest > CONTRACTED * before[left])].tolist():
-                    answers[row] = answer_at(row)
-                    is_here[row] = True
+                here = left[leads_away | (largest > CONTRACTED * before[left])]
+                if len(here):
+                    answers[here] = self._answers(best[here], inputs[here])
+                    is_here[here] = True
             before[left] = np.abs(gaps).max(axis=1)
             x[left] = best[left] - np.einsum("tnm,tm->tn", answers[left], gaps)
         return x
 
     def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """The rows of the constraints at T states, shape (T, rows): the rest of the equations is not computed."""
-        if self.library is None:
+        if self.libraries.residual is None:
             function = kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
         else:
-            function = external(GAPS, self.library)
+            function = external(GAPS, self.libraries.residual)
         (gaps,) = evaluated(function, x, inputs)
         return gaps[:, :, 0].copy()
 
-    def _answer(self, stiffness: FloatArray) -> FloatArray:
-        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
+    def _answers(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (T, size, rows)."""
+        answers = np.empty((*x.shape, len(self.rows)))
         moves = self.model.discrete.unknowns.differential
-        weighted = np.where(moves, stiffness[self.rows] / self._sizes, 0.0)
+        library = self.libraries.jacobians
+        function = interpreted_derivatives(self.model) if library is None else external(JACOBIANS, library)
+        for first in range(0, len(x), LINEARISED_AT_ONCE):
+            part = slice(first, first + LINEARISED_AT_ONCE)
+            # The constraints depend on positions alone.
+            still, held = np.zeros_like(x[part]), np.zeros_like(inputs[part])
+            (stiffness,) = evaluated(function, x[part], still, still, inputs[part], held, held, results=1)
+            answers[part] = self._answered(np.where(moves, stiffness[:, self.rows] / self._sizes, 0.0))
+        return answers
+
+    def _answered(self, weighted: FloatArray) -> FloatArray:
+        """The changes by gradients of the gaps over displacements, shape (T, rows, size)."""
         # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
-        regular = regular_inverse(weighted @ weighted.T, INDEPENDENT)
+        regular = regular_inverse(weighted @ weighted.swapaxes(1, 2), INDEPENDENT)
         if regular is not None:
-            return np.asarray(weighted.T @ regular / self._sizes[:, None])
+            return np.asarray(weighted.swapaxes(1, 2) @ regular / self._sizes[:, None])
         # Constraints that repeat each other have singular values of that size, over the largest.
-        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape)
+        rounding = float(np.finfo(np.float64).eps) * max(weighted.shape[1:])
         return np.asarray(np.linalg.pinv(weighted, rcond=rounding) / self._sizes[:, None])
 
     @cached_property
     def _sizes(self) -> FloatArray:
-        return displacements(self.model, self.library)
+        return displacements(self.model, self.libraries.residual)
 
 
 def constraint_rows(model: Model) -> npt.NDArray[np.int64]:

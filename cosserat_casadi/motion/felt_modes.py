@@ -236,8 +236,10 @@ def at_fronts(history: History, duration: float) -> dict[str, list[float]]:
     or place has a kink, which any polynomials meet with the first power of their number: what two motions differ by
     there says little, for their kinks err at different times.
     """
-    moved_by = felt(history, duration)
-    model = history.model
+    return history.once("fronts", duration, lambda: _at_fronts(history.model, felt(history, duration)))
+
+
+def _at_fronts(model: Model, moved_by: ByStrain) -> dict[str, list[float]]:
     return {
         name: [
             0.0

@@ -32,6 +32,7 @@ from cosserat_casadi.motion.repeated_call import INTERPRETED, Libraries, Repeate
 from cosserat_casadi.motion.sided_contacts import SidedContacts
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
 from cosserat_casadi.motion.step_words import CONSISTENT
+from cosserat_casadi.motion.steps_library import positions_at
 from cosserat_casadi.motion.time_between_events import time_between_events
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
@@ -260,19 +261,18 @@ class History:
         for leg, rows, held in self._held(times):
             inputs[rows] = leg.piece.values_at(times[rows])
             if held is not None and self.flight.coordinates is None:
-                parts = held.positions(), *held.rates()
+                parts = positions_at(held), *held.rates()
                 x[rows], v[rows], a[rows] = (part[:, : self.model.size] for part in parts)
             else:
                 instants = [(at.x, at.v, at.a) for _, at in map(self.locate, times[rows].tolist())]
                 x[rows], v[rows], a[rows] = np.reshape(instants, (-1, 3, self.model.size)).swapaxes(0, 1)
             if held is None or not len(self._closing.rows):
                 continue
-            equations = leg.equations or equations_of(self.model, leg.piece)
-            for first in range(0, np.count_nonzero(rows), CLOSED_AT_ONCE):
+            held_rows = np.arange(len(times))[rows]
+            for first in range(0, len(held_rows), CLOSED_AT_ONCE):
                 part = slice(first, first + CLOSED_AT_ONCE)
-                some = np.flatnonzero(rows)[part]
-                states = x[some], v[some], a[some]
-                x[some] = self._closing.closed(times[some], states, inputs[some], equations, held.numbers[part])
+                some = held_rows[part]
+                x[some] = self._closing.closed(x[some], inputs[some], held.numbers[part])
         return MotionState(x, v, a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
@@ -320,24 +320,27 @@ class History:
 
         Between the ends of steps constraints are open there by less than the error of the motion.
         """
-        x = np.zeros((len(times), self.model.size))
-        inputs = np.zeros((len(times), self.model.inputs.size))
+        x = np.empty((len(times), self.model.size))
+        inputs = np.empty((len(times), self.model.inputs.size))
         for leg, rows, held in self._held(times):
             inputs[rows] = leg.piece.values_at(times[rows])
             if held is None:
                 x[rows] = self.of_model(leg.start.instant).x
                 continue
-            own = held.positions()[:, : self.model.size]
+            own = positions_at(held)[:, : self.model.size]
             coordinates = self.flight.coordinates
             x[rows] = own if coordinates is None else coordinates.positions_of_model(own)
         return x, inputs
 
-    def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
+    def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_] | slice, HeldTimes | None]]:
         """Legs that hold some of T times, which ones, shape (T,), and these in their steps; None without a step."""
         if not self.end_times:
-            yield self.legs[0], np.ones(len(times), dtype=bool), None
+            yield self.legs[0], slice(None), None
             return
         numbers = np.minimum(np.searchsorted(self.end_times, times), len(self.end_times) - 1)
+        if len(self.legs) == 1:
+            yield self.legs[0], slice(None), HeldTimes(self.rows[0], numbers, times)
+            return
         first = 0
         for leg in self.legs:
             steps = leg.integration.steps
@@ -372,9 +375,9 @@ class History:
     @cached_property
     def _closing(self) -> Closing:
         equations = self.legs[0].equations
-        residual = None if equations is None else equations.residual
-        library = residual.call.library if isinstance(residual, KernelResidual) else None
-        return Closing(self.model, library)
+        calls = () if equations is None else (equations.residual, equations.jacobians)
+        of_kernels = [one.call.library if isinstance(one, KernelResidual | KernelJacobians) else None for one in calls]
+        return Closing(self.model, Libraries(*of_kernels))
 
     @cached_property
     def end_times(self) -> list[float]:

@@ -34,6 +34,7 @@ from cosserat_casadi.motion.history import derivatives_of_flight, functions_of_f
 from cosserat_casadi.motion.moving_points import MovingPoints
 from cosserat_casadi.motion.repeated_call import RepeatedCall, external
 from cosserat_casadi.motion.step_kernels import (
+    JACOBIANS,
     MATRICES,
     StepKernels,
     dense_jacobians,
@@ -49,8 +50,7 @@ from cosserat_casadi.numerics.collocation import STAGES
 from cosserat_casadi.numerics.time_steps import Stepper
 
 RESIDUAL = "motion_residual"
-JACOBIANS = "motion_jacobians"
-"""Names of the functions in C, and of their files in the cache."""
+"""Name of inverse dynamics in C, and of its files in the cache."""
 
 MARGINS = "motion_margins"
 RESOLUTION = "motion_resolution"

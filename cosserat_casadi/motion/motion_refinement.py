@@ -447,8 +447,8 @@ def _simulated(
     search = _Search(moving_scene, simulation, start, progress, source, events, tolerance, ladder)
     try:
         if scene.accuracy.fixed:
-            return _with_fixed(search)
-        return _with_tolerance(search)
+            return _with_fixed(search, first)
+        return _with_tolerance(search, first)
     except KeyboardInterrupt:
         # A motion that was computed to its end, if less exactly than asked, is what whoever stopped it wants to see.
         if not search.levels:
@@ -456,10 +456,9 @@ def _simulated(
         return _interrupted(search)
 
 
-def _with_fixed(search: _Search) -> Motion:
-    """The motion on the modes and nodes of the user, with an error from a few modes more."""
+def _with_fixed(search: _Search, model: Model) -> Motion:
+    """The motion on the modes and nodes of the user, of a model, with an error from a few modes more."""
     scene = search.scene
-    model = moving_model(scene, discretise(scene))
     simulator = _simulator(search, model, "on the scene's own modes")
     if not simulator.start.found:
         return not_started(model, simulator.start, asked_of(scene, search.simulation))
@@ -501,8 +500,8 @@ def _finer(discretisation: Discretisation) -> Discretisation:
     return replace(discretisation, modes=modes, nodes=discretisation.nodes + 2 * FINER_MODES)
 
 
-def _with_tolerance(search: _Search) -> Motion:
-    """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
+def _with_tolerance(search: _Search, first: Model) -> Motion:
+    """The motion on more and more modes, from those of a model, until the tolerance is met or no more are tried."""
     ladder = search.ladder
     rung: int | None = 1 if search.tolerance < FINE else 0
     without_start = 0
@@ -515,7 +514,7 @@ def _with_tolerance(search: _Search) -> Motion:
             if timed is None:
                 continue
             break
-        model = moving_model(search.scene, chosen)
+        model = first if chosen == first.discretisation else moving_model(search.scene, chosen)
         simulator = _simulator(search, model, f"with up to {modes} modes")
         if not simulator.start.found:
             # Sections of a few modes may not carry a rod that lies on them: more modes have more sections.

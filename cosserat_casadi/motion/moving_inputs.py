@@ -135,6 +135,10 @@ class Piece:
 
     def values_at(self, times: FloatArray) -> FloatArray:
         """The values alone at T times, shape (T, inputs)."""
+        if self._polynomial is not None:
+            powers = np.vander(times - self.start, 4, increasing=True)
+            # No product of matrices: it rounds a row by its place among the others.
+            return np.asarray(np.einsum("tk,kn->tn", powers, self._polynomial[:, : len(self._constant)]))
         values = np.tile(self._constant, (len(times), 1))
         for span, path in self._paths:
             values[:, span] += path.values_at(times)
@@ -163,6 +167,11 @@ class MovingInputs:
         for motion in motions:
             if motion.is_table:
                 self._constant[self._slices[motion.input]] = 0.0
+
+    @cached_property
+    def at_start(self) -> InputState:
+        """The inputs at time 0, at a jump after it."""
+        return self.at(0.0)
 
     def at(self, t: float) -> InputState:
         """The inputs at a time; where they jump, their limits from later times."""
@@ -203,7 +212,7 @@ class MovingInputs:
 
     def _breaks_at_start(self) -> list[Break]:
         """Inputs that begin to move at once, or to accelerate at once."""
-        state = self.at(0.0)
+        state = self.at_start
         found = []
         for name in dict.fromkeys(motion.input for motion in self._motions):
             span = self._slices[name]

@@ -28,18 +28,6 @@ class Poses(NamedTuple):
     quaternion: FloatArray
 
 
-class Frames(NamedTuple):
-    """Frames over T times in the world frame.
-
-    Attributes:
-        position: shape (T, 3), m.
-        rotation: world_R_frame, shape (T, 3, 3).
-    """
-
-    position: FloatArray
-    rotation: FloatArray
-
-
 class ActuatorStates(NamedTuple):
     """Effort and conjugate of an actuator or a joint over T times.
 

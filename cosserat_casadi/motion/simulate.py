@@ -632,14 +632,15 @@ def started(
         source: as in :class:`Simulator`.
     """
     moving = moving_inputs(model)
+    inputs = moving.at_start
     if solution is not None:
         start = given_start(model, solution)
     elif model.scene.model_copy(update={"simulation": simulation}).starts_unloaded:
-        start = unloaded_start(model, moving.at(0.0).value)
+        start = unloaded_start(model, inputs.value)
     else:
         kernels = interpreted(model) if source is None else source.kernels(model)
-        start = equilibrium_start(model, moving.at(0.0).value, near, kernels.residual)
-    return _along(model, with_velocities(model, start, moving.pieces(simulation.duration)[0]), moving.at(0.0).rate)
+        start = equilibrium_start(model, inputs.value, near, kernels.residual)
+    return _along(model, with_velocities(model, start, moving.pieces(simulation.duration)[0]), inputs.rate)
 
 
 def _along(model: Model, start: Start, rates: FloatArray) -> Start:

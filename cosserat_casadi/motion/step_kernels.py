@@ -19,6 +19,9 @@ from cosserat_casadi.numerics.time_steps import Stepper, StepperAfter
 MATRICES = 3
 """Derivatives of inverse dynamics: stiffness, damping, mass."""
 
+JACOBIANS = "motion_jacobians"
+"""Name of these derivatives in C, and of their files in the cache."""
+
 
 @dataclass(frozen=True)
 class StepKernels:
@@ -54,12 +57,18 @@ def interpreted_residual(model: Model) -> RepeatedCall:
     return RepeatedCall(model.inverse_dynamics_in_scalars)
 
 
-def dense_jacobians(model: Model, name: str = "motion_jacobians") -> ca.Function:
+def dense_jacobians(model: Model, name: str = JACOBIANS) -> ca.Function:
     """Stiffness, damping and mass with all their entries, in the arguments of inverse dynamics."""
     function = model.dynamics_jacobian
     arguments = function.mx_in()
     matrices = [ca.densify(matrix) for matrix in function.call(arguments)[:MATRICES]]
     return ca.Function(name, arguments, matrices, function.name_in(), function.name_out()[:MATRICES])
+
+
+def interpreted_derivatives(model: Model) -> ca.Function:
+    """The function of :func:`dense_jacobians` for CasADi's virtual machine, written once."""
+    function: ca.Function = kept_with(model, "_dense_jacobians", lambda: dense_jacobians(model))
+    return function
 
 
 def interpreted_jacobians(model: Model) -> Callable[..., list[FloatArray]]:
@@ -71,8 +80,7 @@ def interpreted_jacobians(model: Model) -> Callable[..., list[FloatArray]]:
 
     def jacobians(*arguments: FloatArray) -> list[FloatArray]:
         if not calls:
-            dense = kept_with(model, "_dense_jacobians", lambda: dense_jacobians(model))
-            calls.append(RepeatedCall(dense, MATRICES))
+            calls.append(RepeatedCall(interpreted_derivatives(model), MATRICES))
         return calls[0].matrices(*arguments)
 
     return jacobians

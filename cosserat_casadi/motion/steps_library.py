@@ -7,13 +7,17 @@ import hashlib
 from functools import cache, lru_cache
 from typing import Any
 
+import numpy as np
+
 from cosserat_casadi.compiling.c_tables import initialiser, method_words, pairs
 from cosserat_casadi.compiling.compiler import compiled_from, compiled_texts, find_compiler, flags_of_machine
 from cosserat_casadi.compiling.scalar_program import cases_in_c
 from cosserat_casadi.compiling.shared_records import POINTER
 from cosserat_casadi.compiling.texts import render, resource
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics import stage_newton, step_control, step_matrices, step_run, time_steps
 from cosserat_casadi.numerics.collocation import STAGES, radau
+from cosserat_casadi.numerics.step import HeldTimes
 
 NAME = "controlled_steps"
 """Name of the library in the cache."""
@@ -48,10 +52,24 @@ class StepsRecord(ctypes.Structure):
         *((name, ctypes.c_int) for name in ("refused", "linearised", "kept", "fresh", "singular_steps", "reason")),
         *((name, ctypes.c_int) for name in ("steps", "tries", "rejected", "iterations", "jacobians")),
         *((name, ctypes.c_int) for name in ("factorisations", "interrupted")),
-        *((name, POINTER) for name in ("inverses", "stage_inputs", "iterate", "stage_residuals")),
-        *((name, POINTER) for name in ("stage_corrections", "stage_changes", "transformed", "solutions", "vectors")),
+        *((name, POINTER) for name in ("inverses", "pair_rows", "pair_columns", "pair_pivots")),
+        *((name, POINTER) for name in ("stage_inputs", "iterate", "stage_residuals", "stage_corrections")),
+        *((name, POINTER) for name in ("stage_changes", "transformed", "solutions", "vectors")),
         *((name, POINTER * step_control.MOST_ITERATIONS) for name in ("taken", "duals")),
     ]
+
+
+def positions_at(held: HeldTimes) -> FloatArray:
+    """The positions of :meth:`HeldTimes.positions`, by C where this process has the loop and it takes such steps."""
+    steps = held.steps
+    if steps.method.name != radau(STAGES).name or not steps_are_loaded():
+        return held.positions()
+    count, unknowns = len(held.times), len(steps.differential)
+    positions = np.empty((count, unknowns))
+    known = (steps.facts, steps.begins, steps.ends, steps.unknowns, steps.differential, positions)
+    arrays = [np.ascontiguousarray(array) for array in (held.times, held.numbers, *known)]
+    steps_library().steps_positions(count, unknowns, *(array.ctypes.data for array in arrays))
+    return positions
 
 
 @lru_cache(maxsize=1)
@@ -66,6 +84,8 @@ def steps_library() -> ctypes.CDLL:
     library = ctypes.CDLL(str(path))
     assert library.steps_record() == ctypes.sizeof(StepsRecord), "the record differs from that of the C"
     library.steps_taken.argtypes = [ctypes.POINTER(StepsRecord)]
+    library.steps_positions.argtypes = [ctypes.c_int, ctypes.c_int, *[POINTER] * 8]
+    library.steps_positions.restype = None
     return library
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
@@ -28,7 +26,7 @@ AT_ONCE = (
 
 def is_sudden(history: History, start: Start, moving: MovingInputs, duration: float) -> bool:
     """Whether loads act at once at the start of a motion, or jump; arguments as of ``warnings``."""
-    return bool(moving.jumps(duration)) or _starts_at_once(history, start, moving)
+    return bool(moving.jumps(duration)) or _starts_at_once(history, start, moving, duration)
 
 
 def warnings(history: History, start: Start, moving: MovingInputs, duration: float) -> list[str]:
@@ -40,20 +38,19 @@ def warnings(history: History, start: Start, moving: MovingInputs, duration: flo
         moving: the inputs over time.
         duration: of the motion, s.
     """
-    at_start = [AT_ONCE] if _starts_at_once(history, start, moving) else []
+    at_start = [AT_ONCE] if _starts_at_once(history, start, moving, duration) else []
     jumps: dict[str, list[float]] = {}
     for jump in moving.jumps(duration):
         jumps.setdefault(jump.input, []).append(jump.time)
     return at_start + [_jumping(name, times) for name, times in jumps.items()]
 
 
-def _starts_at_once(history: History, start: Start, moving: MovingInputs) -> bool:
+def _starts_at_once(history: History, start: Start, moving: MovingInputs, duration: float) -> bool:
     """Whether loads that were not there act from the start on, and deform a rod."""
     # What a motion that goes on sets out with has been under way already.
     if start.resume is not None:
         return False
-    accelerations = history.of_model(history.legs[0].start.instant).a
-    return _loaded_at_once(history, start, moving) and _deforms(history.model, accelerations)
+    return history.once("stirred", duration, lambda: _loaded_at_once(history, start, moving) and _deforms(history))
 
 
 def _jumping(name: str, times: list[float]) -> str:
@@ -64,10 +61,11 @@ def _jumping(name: str, times: list[float]) -> str:
     return f"{name} jumps {when}: waves of all lengths run along the rods, which modes resolve slowly."
 
 
-def _deforms(model: Model, accelerations: FloatArray) -> bool:
+def _deforms(history: History) -> bool:
     """Whether the strains begin to move: a rod that merely falls has no waves."""
-    moved = np.abs(accelerations) * displacements(model)
-    strains = [moved[entries].max(initial=0.0) for _, entries in model.discrete.unknowns.of_kind(BlockKind.STRAIN)]
+    unknowns = history.model.discrete.unknowns
+    moved = np.abs(history.of_model(history.legs[0].start.instant).a) * displacements(history.model)
+    strains = [moved[entries].max(initial=0.0) for _, entries in unknowns.of_kind(BlockKind.STRAIN)]
     return bool(max(strains, default=0.0) > STIRRED * moved.max(initial=0.0))
 
 
@@ -76,7 +74,7 @@ def _loaded_at_once(history: History, start: Start, moving: MovingInputs) -> boo
     if start.phases is not None and start.phases.touches:
         # Obstacles hold the rods.
         return False
-    inputs = moving.at(0.0).value
+    inputs = moving.at_start.value
     still, unmoved = np.zeros(len(start.x)), np.zeros(len(inputs))
     # The residual of statics, by the function that the steps have called.
     equations = history.legs[0].equations

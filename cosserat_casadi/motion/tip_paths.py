@@ -13,8 +13,8 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.calls import chooses, evaluated
+from cosserat_casadi.maths.rotation import directors
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import kept_with
@@ -23,7 +23,6 @@ from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.watched import watched_sections
 from cosserat_casadi.motion.displacement import LEVER
 from cosserat_casadi.motion.history import History
-from cosserat_casadi.motion.pose_series import Frames
 from cosserat_casadi.motion.repeated_call import external
 from cosserat_casadi.scene.constraint_records import Body
 
@@ -43,7 +42,7 @@ class Paths:
     Attributes:
         points: positions of sections, of bases that have unknowns and of points of bodies over the length,
             shape (T, points, 3), without unit.
-        section_axes: x and y axes of the sections in world axes, shape (T, sections, 3, 2), an axis a column.
+        section_axes: x and y axes of the sections in world axes, shape (T, sections, 2, 3).
     """
 
     points: FloatArray
@@ -76,11 +75,7 @@ def watched_states(history: History, duration: float) -> WatchedStates:
 
 
 def function_of_paths(model: Model) -> ca.Function:
-    """The function (x, inputs) ↦ all that moves along the watched paths.
-
-    Of every rod the position and the rotation of its tip, then positions, 3×k, and quaternions, 4×k, of its k watched
-    sections before the tip, if any; then position and rotation of every body. Terms that they share are computed once.
-    """
+    """The function (x, inputs) ↦ points over the length, 3×points, and axes of sections, 3×(2 sections), as Paths."""
     function: ca.Function = kept_with(model, "_paths", lambda: _written(model))
     return function
 
@@ -88,17 +83,32 @@ def function_of_paths(model: Model) -> ca.Function:
 def _written(model: Model) -> ca.Function:
     arguments = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
     system = System(model.discrete, arguments)
-    results: list[Matrix] = []
+    points: list[Matrix] = []
+    section_axes: list[Matrix] = []
+    lengths = _lengths(model, arguments.inputs)
     for name, tip in model.tip.items():
-        results += _frame(tip, arguments)
+        position, rotation = _frame(tip, arguments)
+        points.append(position / lengths[name])
+        section_axes.append(rotation[:, :2])
         places = _places_between(model, name)
         if places:
             poses = SectionPoses(system, name, section_weights(model.discrete, name, places))
-            results += [poses.positions, poses.quaternions]
+            points.append(poses.positions / lengths[name])
+            x_axes, y_axes, _ = map(ca.horzsplit, directors(poses.quaternions))
+            section_axes += [axis for both in zip(x_axes, y_axes, strict=True) for axis in both]
+        base = model.discrete.unloaded.floating_base(name)
+        if base is not None:
+            frame = model.discrete.frames[base]
+            moved = frame.length * arguments.x[model.discrete.deviation(base)][:3]
+            points.append((moved + frame.start.position) / lengths[name])
+    longest = reduce(ca.fmax, lengths.values())
+    in_scene = max(model.length(name, model.pack()) for name in model.discrete.rods)
     for body in model.scene.bodies:
-        results += _frame(model.body[body.name], arguments)
-    dense = [ca.densify(result) for result in results]
-    return ca.Function(PATHS, [arguments.x, arguments.inputs], ca.cse(dense))
+        position, rotation = _frame(model.body[body.name], arguments)
+        arms = watched_arms(body, in_scene).T
+        points.append((ca.repmat(position, 1, arms.shape[1]) + rotation @ arms) / longest)
+    results = [ca.densify(ca.horzcat(*columns)) for columns in (points, section_axes)]
+    return ca.Function(PATHS, [arguments.x, arguments.inputs], ca.cse(results))
 
 
 def _frame(function: ca.Function, arguments: Arguments) -> list[Matrix]:
@@ -117,43 +127,17 @@ def paths(model: Model, x: FloatArray, inputs: FloatArray, library: str | None =
         library: shared object that has :func:`function_of_paths`; None without one.
     """
     function = _in_scalars(model) if library is None else external(PATHS, library)
-    found = iter(evaluated(function, x, inputs))
-    points = []
-    section_axes = []
-    lengths = _lengths(model, inputs)
-    for name in model.discrete.rods:
-        length = lengths[name]
-        tip = Frames(next(found)[:, :, 0], next(found))
-        points.append(tip.position / length)
-        section_axes.append(tip.rotation[:, :, :2])
-        if _places_between(model, name):
-            positions, quaternions = next(found), next(found)
-            points += list(np.moveaxis(positions / length[..., None], 2, 0))
-            of_sections = rotations(np.moveaxis(quaternions, 2, 0).reshape(-1, 4))
-            section_axes += list(of_sections[:, :, :2].reshape(-1, len(x), 3, 2))
-        base = model.discrete.unloaded.floating_base(name)
-        if base is not None:
-            frame = model.discrete.frames[base]
-            start = np.asarray(frame.start.position, dtype=float).ravel()
-            moved = frame.length * x[:, model.discrete.deviation(base)][:, :3]
-            points.append((moved + start) / length)
-    longest = reduce(np.maximum, lengths.values())
-    for body in model.scene.bodies:
-        frames = Frames(next(found)[:, :, 0], next(found))
-        points += list(_moved_with(frames, watched_arms(body, longest.max())) / longest)
-    return Paths(np.stack(points, axis=1), np.stack(section_axes, axis=1))
+    points, axes = evaluated(function, x, inputs)
+    return Paths(points.swapaxes(1, 2), axes.swapaxes(1, 2).reshape(len(x), -1, 2, 3))
 
 
-def _lengths(model: Model, inputs: FloatArray) -> dict[str, FloatArray]:
-    """Length of each rod, m: at every time where it is an input, shape (T, 1), else shape (1, 1)."""
-    in_scene: dict[str, float] = kept_with(
-        model, "_lengths_in_scene", lambda: {name: model.length(name, model.pack()) for name in model.discrete.rods}
-    )
-    lengths = {}
-    for name, length in in_scene.items():
-        entries = model.inputs.of_rod(name, "length")
-        lengths[name] = inputs[:, entries] if entries is not None else np.array([[length]])
-    return lengths
+def _lengths(model: Model, inputs: Matrix) -> dict[str, Matrix]:
+    """Length of each rod, m: an entry of the inputs, or a number."""
+    in_scene = model.pack()
+    entries = {name: model.inputs.of_rod(name, "length") for name in model.discrete.rods}
+    return {
+        name: ca.DM(model.length(name, in_scene)) if span is None else inputs[span] for name, span in entries.items()
+    }
 
 
 def _in_scalars(model: Model) -> ca.Function:
@@ -205,22 +189,15 @@ def watched_arms(body: Body, longest: float) -> FloatArray:
     return points
 
 
-def _moved_with(frames: Frames, arms: FloatArray) -> FloatArray:
-    """Positions of k points of a body, shape (k, T, 3), m."""
-    # One product of flat matrices takes a tenth of the time of T small ones.
-    turned = frames.rotation.reshape(-1, 3) @ arms.T
-    return np.asarray(frames.position + turned.T.reshape(len(arms), -1, 3))
-
-
 def _rolls(first: FloatArray, second: FloatArray) -> FloatArray:
     """Turns about the tangent from one set of sections to another that lies close, shape (T, sections), rad.
 
     Args:
-        first: x and y axes of sections, shape (T, sections, 3, 2).
-        second: x and y axes of the other sections, shape (T, sections, 3, 2).
+        first: x and y axes of sections, shape (T, sections, 2, 3).
+        second: x and y axes of the other sections, shape (T, sections, 2, 3).
     """
     # cos and sin of the turn, twice: what the tangents are apart enters by its square alone.
-    aligned = np.einsum("trja,trja->tr", first, second)
-    turned = np.einsum("trj,trj->tr", first[..., 1], second[..., 0])
-    turned -= np.einsum("trj,trj->tr", first[..., 0], second[..., 1])
+    aligned = np.einsum("traj,traj->tr", first, second)
+    turned = np.einsum("trj,trj->tr", first[:, :, 1], second[:, :, 0])
+    turned -= np.einsum("trj,trj->tr", first[:, :, 0], second[:, :, 1])
     return np.asarray(np.arctan2(turned, aligned))

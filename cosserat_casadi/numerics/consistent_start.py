@@ -334,24 +334,24 @@ def _scale(sizes: FloatArray) -> FloatArray:
 
 
 def regular_inverse(matrix: FloatArray, rank: float) -> FloatArray | None:
-    """Inverse of a matrix whose singular values are all above a share of the largest; None where they may not be.
+    """Inverses of matrices whose singular values are all above a share of the largest; None where some may not be.
 
     It takes a tenth of the time of the singular values. The condition in the norm of sums of columns, times the number
     of columns, bounds the ratio of the singular values.
 
     Args:
-        matrix: square.
+        matrix: square, or several, shape (…, n, n).
         rank: the share.
     """
     try:
         inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
     except np.linalg.LinAlgError:
         return None
-    condition = len(matrix) * _largest_column(matrix) * _largest_column(inverse)
+    conditions = matrix.shape[-1] * _largest_column(matrix) * _largest_column(inverse)
     # A condition that is not a number is not below the bound.
-    return inverse if condition * rank < 1.0 else None
+    return inverse if np.all(conditions * rank < 1.0) else None
 
 
-def _largest_column(matrix: npt.NDArray[Any]) -> float:
-    """Norm of a small matrix by its columns: NumPy's own takes as long as the inverse."""
-    return float(np.abs(matrix).sum(axis=0).max())
+def _largest_column(matrix: npt.NDArray[Any]) -> FloatArray:
+    """Norms of small matrices by their columns: NumPy's own takes as long as the inverse."""
+    return np.asarray(np.abs(matrix).sum(axis=-2).max(axis=-1))

@@ -181,49 +181,48 @@ class StepRows(Sequence[TimeStep]):
         return TimeStep(self.method, self.differential, start, size, unknowns, end, error, int(iterations), *last)
 
 
+@dataclass(frozen=True, eq=False)
 class HeldTimes:
-    """T times in the steps that hold them, with the motion there by the polynomials of these steps.
+    """T times in the steps that hold them, with the motion there by their polynomials, as of :meth:`TimeStep.at`.
 
-    :meth:`TimeStep.at` computes the same numbers for one time.
-
-    Args:
+    Attributes:
         steps: of n unknowns.
         numbers: which of the steps holds each time, shape (T,).
         times: shape (T,), s.
-
-    Attributes:
-        numbers: which of the steps holds each time, shape (T,).
     """
 
-    def __init__(self, steps: StepRows, numbers: npt.NDArray[np.intp], times: FloatArray) -> None:
-        self._steps, self.numbers = steps, numbers
-        begun, ended, self._sizes = steps.facts[numbers, :3].T
-        self._shares = (times - begun) / self._sizes
-        self._at_end = np.flatnonzero(times == ended)
-        self._unknowns = steps.unknowns[numbers]
+    steps: StepRows
+    numbers: npt.NDArray[np.intp]
+    times: FloatArray
+
+    @property
+    def _shares(self) -> FloatArray:
+        return np.asarray((self.times - self.steps.facts[self.numbers, 0]) / self.steps.facts[self.numbers, 2])
 
     def positions(self) -> FloatArray:
         """Positions and algebraic entries, shape (T, n)."""
-        x, v = self._steps.begins[self.numbers, :2].swapaxes(0, 1)
-        moved = self._summed(self._steps.method.double_integrals_at)
-        x = x + (self._shares * self._sizes)[:, None] * v + self._sizes[:, None] ** 2 * moved
-        if not np.all(self._steps.differential):
-            x = np.where(self._steps.differential, x, self._summed(self._steps.method.values_at))
+        x, v = self.steps.begins[self.numbers, :2].swapaxes(0, 1)
+        sizes = self.steps.facts[self.numbers, 2, None]
+        moved = self._summed(self.steps.method.double_integrals_at)
+        x = x + self._shares[:, None] * sizes * v + sizes**2 * moved
+        if not np.all(self.steps.differential):
+            x = np.where(self.steps.differential, x, self._summed(self.steps.method.values_at))
         return self._with_ends(x, 0)
 
     def rates(self) -> tuple[FloatArray, FloatArray]:
         """Velocities, 1/s, and accelerations, 1/s², zero of algebraic entries, shape (T, n) each."""
-        gained = self._sizes[:, None] * self._summed(self._steps.method.integrals_at)
-        rates = self._steps.begins[self.numbers, 1] + gained, self._summed(self._steps.method.values_at)
-        v, a = (np.where(self._steps.differential, each, 0.0) for each in rates)
+        gained = self.steps.facts[self.numbers, 2, None] * self._summed(self.steps.method.integrals_at)
+        rates = self.steps.begins[self.numbers, 1] + gained, self._summed(self.steps.method.values_at)
+        v, a = (np.where(self.steps.differential, each, 0.0) for each in rates)
         return self._with_ends(v, 1), self._with_ends(a, 2)
 
     def _summed(self, weights: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        return np.asarray(np.einsum("ts,tsn->tn", weights(self._shares), self._unknowns))
+        return np.asarray(np.einsum("ts,tsn->tn", weights(self._shares), self.steps.unknowns[self.numbers]))
 
     def _with_ends(self, values: FloatArray, order: int) -> FloatArray:
         # The end of a step may have been put right.
-        values[self._at_end] = self._steps.ends[self.numbers[self._at_end], order]
+        at_end = np.flatnonzero(self.times == self.steps.facts[self.numbers, 1])
+        values[at_end] = self.steps.ends[self.numbers[at_end], order]
         return values
 
 

@@ -44,7 +44,7 @@ class StepMatrices:
     """The factorised linear systems of a step.
 
     Inverses, not factors: NumPy keeps no factors, and what rounding adds by them is less than what one Jacobian for
-    all stages leaves to the next iteration.
+    all stages leaves to the next iteration. Steps in C factorise the complex matrix, which takes a third of the time.
 
     Attributes:
         method: the collocation method.

@@ -6,7 +6,6 @@ import itertools
 import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
@@ -79,8 +78,8 @@ class SceneTables:
     def __init__(self, given: Table) -> None:
         self._given = given
         # A rule asks for the same list once for each entry of another.
-        self.tables = cache(self._tables)
-        self.named = cache(self._named)
+        self._tables: dict[str, list[tuple[int, Table]]] = {}
+        self._named: dict[str, dict[str, tuple[int, Table]]] = {}
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -91,19 +90,22 @@ class SceneTables:
         """The value of a key; None where it is left out."""
         return self._given.get(key)
 
-    def _tables(self, key: str) -> list[tuple[int, Table]]:
+    def tables(self, key: str) -> list[tuple[int, Table]]:
         """The tables of a list with their indices; entries that are no tables are left out."""
-        entries = list_of(self._given.get(key))
-        return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, Mapping)]
+        if key not in self._tables:
+            entries = enumerate(list_of(self._given.get(key)))
+            self._tables[key] = [(i, entry) for i, entry in entries if isinstance(entry, Mapping)]
+        return self._tables[key]
 
-    def _named(self, key: str) -> dict[str, tuple[int, Table]]:
+    def named(self, key: str) -> dict[str, tuple[int, Table]]:
         """The first table of every name in a list, with its index."""
-        first: dict[str, tuple[int, Table]] = {}
-        for i, table in self.tables(key):
-            name = table.get("name")
-            if isinstance(name, str):
-                first.setdefault(name, (i, table))
-        return first
+        if key not in self._named:
+            first = self._named[key] = {}
+            for i, table in self.tables(key):
+                name = table.get("name")
+                if isinstance(name, str):
+                    first.setdefault(name, (i, table))
+        return self._named[key]
 
     def table_named(self, key: str, name: Any) -> Table:
         """The first table of a name in a list; an empty one where there is none."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import MotionOutcome, build, read_scene, scene_from_dict, simulate
 from cosserat_casadi.compiling.scalar_program import scalar_program
@@ -19,11 +19,13 @@ from cosserat_casadi.motion.motion_compiler import MotionCompiler
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.motion.step_kernels import StepKernels, interpreted
+from cosserat_casadi.motion.steps_library import positions_at, steps_are_loaded
 from cosserat_casadi.motion.trajectory import StepStatistics
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.consistent_start import consistent_start
 from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.step import HeldTimes, StepRows
 from cosserat_casadi.numerics.time_steps import Stepper, integrate
 from tests.codegen.test_load import needs_compiler
 from tests.motion.test_motion_compiler import arm, moving
@@ -111,6 +113,32 @@ def test_multipliers_and_directions_without_mass() -> None:
     assert_same(run_of(top.equations, [1.0, 0.0, 0.0, 0.0], turning, 2.0))
     light = TurningPair(light=1e-4).equations
     assert_same(run_of(light, [0.0, 0.0, 0.0, 0.02, 0.01], [0.0, 0.0, 4.0, 0.0, 0.0], 0.3, 1e-4), atol=1e-7)
+
+
+def test_positions_over_time_are_read_by_c() -> None:
+    """At ends of steps they are the ends, which may have been put right."""
+    taken = StepRows.of(run_of(PENDULUM, *pendulum_state(1.0, 0.5), 3.0)(CompiledSteps).steps)
+    moved = replace(taken, ends=taken.ends + 1.0)
+    times = np.concatenate([np.linspace(0.0, 2.99, 50), taken.end_times])
+    held = HeldTimes(moved, np.searchsorted(taken.end_times, times), times)
+    assert steps_are_loaded()
+    assert_allclose(positions_at(held), held.positions(), rtol=1e-13, atol=1e-13)
+    assert_array_equal(positions_at(held)[50:], moved.ends[:, 0])
+
+
+def test_a_step_whose_complex_matrix_alone_is_singular_is_tried_shorter() -> None:
+    """Of one of two oscillators p is a root of K + p C + p² M at the first size; rotated, no row is zero."""
+    first = 0.1
+    rate = complex(radau(3).eigenvalues[1]) ** -1 / first
+    turned = np.array([[0.8, -0.6], [0.6, 0.8]])
+    stiffness = turned @ np.diag([abs(rate) ** 2, 1.0]) @ turned.T
+    damping = turned @ np.diag([-2.0 * rate.real, 0.1]) @ turned.T
+    grows = explicit(
+        lambda t, x, v: -stiffness @ x - damping @ v, lambda t, x, v: -stiffness, lambda t, x, v: -damping, size=2
+    )
+    taken = assert_same(run_of(grows, [1e-3, 1e-3], [0.0, 0.0], 0.3, 1e-2, settings={"first": first}), atol=1e-7)
+    assert taken.statistics.rejected > 0
+    assert taken.steps[0].size < 0.2 * first
 
 
 def test_kinks_are_seen() -> None:

@@ -27,14 +27,13 @@ def test_a_jacobian_of_elsewhere_that_leads_away_is_replaced(monkeypatch: pytest
     assert np.abs(equations.residual_at(opened)[closing.rows]).max() > 1e3 * CLOSED
     answered = []
 
-    def backwards_at_first(own: Closing, stiffness: FloatArray) -> FloatArray:
-        answered.append(plainly(own, stiffness))
+    def backwards_at_first(own: Closing, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        answered.append(plainly(own, x, inputs))
         return -3.0 * answered[0] if len(answered) == 1 else answered[-1]
 
-    plainly = Closing._answer
-    monkeypatch.setattr(Closing, "_answer", backwards_at_first)
-    states = [part[None] for part in (opened.x, opened.v, opened.a)]
+    plainly = Closing._answers
+    monkeypatch.setattr(Closing, "_answers", backwards_at_first)
     inputs = leg.piece.at(instant.time).value[None]
-    (x,) = closing.closed(np.array([instant.time]), states, inputs, equations, np.zeros(1, dtype=int))
+    (x,) = closing.closed(opened.x[None], inputs, np.zeros(1, dtype=int))
     assert len(answered) > 1
     assert np.abs(equations.residual_at(replace(opened, x=x))[closing.rows]).max() <= CLOSED

@@ -257,7 +257,7 @@ def test_the_last_level_is_told_by_the_level_before(steps: int, power: float) ->
 
     def level(steps: int, tolerance: float, place: float) -> ResolvedMotion:
         history = SimpleNamespace(events=[], statistics=SimpleNamespace(steps=steps))
-        found = Paths(np.full((3, 1, 3), [place, 0.0, 0.0]), np.tile(np.eye(3)[:, :2], (3, 1, 1, 1)))
+        found = Paths(np.full((3, 1, 3), [place, 0.0, 0.0]), np.tile(np.eye(3)[:2], (3, 1, 1, 1)))
         return ResolvedMotion(cast(Simulator, None), cast(History, history), found, step_tolerance=tolerance)
 
     levels = [level(100, 1e-3, 0.0), level(steps, 1e-3 / TIGHTER, 2e-3)]

@@ -196,7 +196,7 @@ def test_a_turn_about_the_tangent_is_all_that_axes_are_compared_by() -> None:
 
 def _still(rotation: Rotation) -> Paths:
     """The tip of one rod at one time, at the origin."""
-    return Paths(np.zeros((1, 1, 3)), rotation.as_matrix()[None, None, :, :2])
+    return Paths(np.zeros((1, 1, 3)), rotation.as_matrix().T[None, None, :2])
 
 
 def test_points_of_bodies_that_are_followed() -> None:

@@ -144,7 +144,10 @@ typedef struct {
   int factorisations;
   int interrupted;
   /* Parts of the room. */
-  real *inverses; /* real, then real and imaginary parts of the complex one; rows one after the other */
+  real *inverses; /* real, rows one after the other; then real and imaginary parts of the factors of the complex matrix */
+  real *pair_rows; /* numbers that its rows were multiplied with, and its columns; and where its pivots came from */
+  real *pair_columns;
+  int *pair_pivots;
   real *stage_inputs;
   real *iterate;
   real *stage_residuals;
@@ -388,22 +391,32 @@ static void swap(real *a, int stride, real *b, int count) {
   }
 }
 
-/* A row less a multiple of another one. */
-static void subtract_real_row(real *restrict row, real factor, const real *restrict other, int n) {
-  for (int j = 0; j < n; j++) row[j] -= factor * other[j];
+/* Real numbers less a multiple of others. */
+static void subtract_real(real *restrict numbers, real factor, const real *restrict others, int count) {
+  for (int i = 0; i < count; i++) numbers[i] -= factor * others[i];
 }
 
-/* The same of complex numbers, whose imaginary parts are a plane behind. */
-static void subtract_complex_row(real *restrict row, real *restrict imaginary, real factor, real factor_imaginary,
-                                      const real *restrict other, const real *restrict other_imaginary, int n) {
-  for (int j = 0; j < n; j++) {
-    row[j] -= factor * other[j] - factor_imaginary * other_imaginary[j];
-    imaginary[j] -= factor * other_imaginary[j] + factor_imaginary * other[j];
+/* Complex numbers less a multiple of others. */
+static void subtract_complex(real *restrict numbers, real *restrict imaginary, real factor, real factor_imaginary,
+                             const real *restrict others, const real *restrict others_imaginary, int count) {
+  for (int i = 0; i < count; i++) {
+    numbers[i] -= factor * others[i] - factor_imaginary * others_imaginary[i];
+    imaginary[i] -= factor * others_imaginary[i] + factor_imaginary * others[i];
+  }
+}
+
+/* Complex numbers times one. */
+static void multiply_complex(real *restrict numbers, real *restrict imaginary, real factor, real factor_imaginary,
+                             int count) {
+  for (int i = 0; i < count; i++) {
+    const real whole = numbers[i];
+    numbers[i] = whole * factor - imaginary[i] * factor_imaginary;
+    imaginary[i] = whole * factor_imaginary + imaginary[i] * factor;
   }
 }
 
 /* The rows of a matrix less multiples of the row of a pivot, which is the identity's then. */
-static void eliminate_real(real *a, int k, int n) {
+static void eliminate(real *a, int k, int n) {
   real *own = a + k * n;
   const real inverse = 1 / own[k];
   own[k] = 1;
@@ -413,33 +426,7 @@ static void eliminate_real(real *a, int k, int n) {
     const real factor = row[k];
     if (i == k || factor == 0) continue;
     row[k] = 0;
-    subtract_real_row(row, factor, own, n);
-  }
-}
-
-static void eliminate_complex(real *a, int k, int n) {
-  const int plane = n * n;
-  real *own = a + k * n;
-  real *own_imaginary = own + plane;
-  const real square = own[k] * own[k] + own_imaginary[k] * own_imaginary[k];
-  const real inverse = own[k] / square;
-  const real inverse_imaginary = -own_imaginary[k] / square;
-  own[k] = 1;
-  own_imaginary[k] = 0;
-  for (int j = 0; j < n; j++) {
-    const real whole = own[j];
-    own[j] = whole * inverse - own_imaginary[j] * inverse_imaginary;
-    own_imaginary[j] = whole * inverse_imaginary + own_imaginary[j] * inverse;
-  }
-  for (int i = 0; i < n; i++) {
-    real *row = a + i * n;
-    real *imaginary = row + plane;
-    const real factor = row[k];
-    const real factor_imaginary = imaginary[k];
-    if (i == k || (factor == 0 && factor_imaginary == 0)) continue;
-    row[k] = 0;
-    imaginary[k] = 0;
-    subtract_complex_row(row, imaginary, factor, factor_imaginary, own, own_imaginary, n);
+    subtract_real(row, factor, own, n);
   }
 }
 
@@ -467,15 +454,9 @@ static void scale_entries(real *a, int plane, const real *restrict of_rows, cons
   }
 }
 
-/* The inverse of a matrix, in place, by Gauss-Jordan elimination with partial pivoting, of the matrix whose largest entry
-   of every row and column is one. Zero where that one is singular to rounding. */
-static int invert(real *a, int is_complex, workspace *work) {
-  const int n = N;
-  const int plane = is_complex ? n * n : 0;
-  real *rows = work->vectors;
-  real *columns = rows + n;
-  real *sums = columns + n;
-  int *pivots = (int *)(sums + n);
+/* Scales a matrix so that the largest entry of every row and column is one. Returns the largest sum of the sizes of the
+   entries of a column then, zero where a row or a column is zero. */
+static real scale(real *a, int plane, real *rows, real *columns, real *sums, int n) {
   memset(columns, 0, (size_t)n * sizeof *columns);
   for (int i = 0; i < n; i++) {
     rows[i] = 0;
@@ -489,38 +470,108 @@ static int invert(real *a, int is_complex, workspace *work) {
     columns[j] = 1 / columns[j];
   }
   scale_entries(a, plane, rows, columns, n);
-  const real norm = norm_of_columns(a, plane, n, sums);
+  return norm_of_columns(a, plane, n, sums);
+}
+
+/* The largest of some entries that stand so far apart, from one on. */
+static int largest_from(int first, const real *a, int plane, int stride, int n) {
+  int found = first;
+  real largest = size_of(a + first * stride, plane);
+  for (int i = first + 1; i < n; i++) {
+    const real size = size_of(a + i * stride, plane);
+    if (size > largest) {
+      largest = size;
+      found = i;
+    }
+  }
+  return found;
+}
+
+/* The inverse of a real matrix, in place, by Gauss-Jordan elimination with partial pivoting, of the scaled matrix. Zero where
+   that one is singular to rounding. */
+static int invert(real *a, workspace *work) {
+  const int n = N;
+  real *rows = work->vectors;
+  real *columns = rows + n;
+  real *sums = columns + n;
+  int *pivots = (int *)(sums + n);
+  const real norm = scale(a, 0, rows, columns, sums, n);
+  if (!(norm > 0)) return 0;
   for (int k = 0; k < n; k++) {
-    int row = k;
-    real largest = size_of(a + k * n + k, plane);
-    for (int i = k + 1; i < n; i++) {
-      const real size = size_of(a + i * n + k, plane);
-      if (size > largest) {
-        largest = size;
-        row = i;
-      }
-    }
-    if (!(largest > 0)) return 0;
-    pivots[k] = row;
-    if (row != k) {
-      for (int p = 0; p <= plane; p += n * n) swap(a + p + k * n, 1, a + p + row * n, n);
-    }
-    if (is_complex) {
-      eliminate_complex(a, k, n);
-    } else {
-      eliminate_real(a, k, n);
-    }
+    pivots[k] = largest_from(k, a + k, 0, n, n);
+    if (!(fabs(a[pivots[k] * n + k]) > 0)) return 0;
+    if (pivots[k] != k) swap(a + k * n, 1, a + pivots[k] * n, n);
+    eliminate(a, k, n);
   }
   for (int k = n - 1; k >= 0; k--) {
-    if (pivots[k] == k) continue;
-    for (int p = 0; p <= plane; p += n * n) swap(a + p + k, n, a + p + pivots[k], n);
+    if (pivots[k] != k) swap(a + k, n, a + pivots[k], n);
   }
-  if (!(norm * norm_of_columns(a, plane, n, sums) <= SINGULAR_STEP)) return 0;
-  scale_entries(a, plane, columns, rows, n);
+  if (!(norm * norm_of_columns(a, 0, n, sums) <= SINGULAR_STEP)) return 0;
+  scale_entries(a, 0, columns, rows, n);
   return 1;
 }
 
-/* The inverses of K + p C + p^2 M at the real and at the complex eigenvalue of the method. */
+/* The factors of the complex matrix, in place, column after column, by elimination with partial pivoting, of the scaled
+   matrix: its inverse would take three times as long. Zero where that one is singular to rounding. */
+static int factorise_pair(real *a, workspace *work) {
+  const int n = N;
+  const int plane = n * n;
+  const real norm = scale(a, plane, work->pair_columns, work->pair_rows, work->vectors, n);
+  if (!(norm > 0)) return 0;
+  for (int k = 0; k < n; k++) {
+    real *own = a + k * n;
+    real *own_imaginary = own + plane;
+    const int row = work->pair_pivots[k] = largest_from(k, own, plane, 1, n);
+    /* A pivot is no smaller than the inverse allows. */
+    if (!(norm <= SINGULAR_STEP * size_of(own + row, plane))) return 0;
+    if (row != k) {
+      for (int p = 0; p <= plane; p += plane) swap(a + p + k, n, a + p + row, n);
+    }
+    const real square = own[k] * own[k] + own_imaginary[k] * own_imaginary[k];
+    own[k] = own[k] / square;
+    own_imaginary[k] = -own_imaginary[k] / square;
+    const int behind = k + 1;
+    multiply_complex(own + behind, own_imaginary + behind, own[k], own_imaginary[k], n - behind);
+    for (int j = behind; j < n; j++) {
+      real *other = a + j * n;
+      real *other_imaginary = other + plane;
+      if (other[k] == 0 && other_imaginary[k] == 0) continue;
+      subtract_complex(other + behind, other_imaginary + behind, other[k], other_imaginary[k], own + behind,
+                       own_imaginary + behind, n - behind);
+    }
+  }
+  return 1;
+}
+
+/* Solves the complex system by its factors, in place. */
+static void solve_pair(real *rows, real *imaginary, const workspace *work) {
+  const int n = N;
+  const real *factors = work->inverses + n * n;
+  const real *factors_imaginary = factors + n * n;
+  for (int i = 0; i < n; i++) {
+    rows[i] *= work->pair_rows[i];
+    imaginary[i] *= work->pair_rows[i];
+  }
+  for (int k = 0; k < n; k++) {
+    swap(rows + k, 1, rows + work->pair_pivots[k], 1);
+    swap(imaginary + k, 1, imaginary + work->pair_pivots[k], 1);
+  }
+  for (int k = 0; k < n; k++) {
+    const int behind = k + 1;
+    subtract_complex(rows + behind, imaginary + behind, rows[k], imaginary[k], factors + k * n + behind,
+                     factors_imaginary + k * n + behind, n - behind);
+  }
+  for (int k = n - 1; k >= 0; k--) {
+    multiply_complex(rows + k, imaginary + k, factors[k * n + k], factors_imaginary[k * n + k], 1);
+    subtract_complex(rows, imaginary, rows[k], imaginary[k], factors + k * n, factors_imaginary + k * n, k);
+  }
+  for (int j = 0; j < n; j++) {
+    rows[j] *= work->pair_columns[j];
+    imaginary[j] *= work->pair_columns[j];
+  }
+}
+
+/* The inverse of K + p C + p^2 M at the real eigenvalue of the method, and its factors at the complex one. */
 static int factorise_step(real size, workspace *work) {
   const int entries = N * N;
   const real *stiffness = work->matrices;
@@ -536,13 +587,14 @@ static int factorise_step(real size, workspace *work) {
   for (int i = 0; i < N; i++) {
     for (int j = 0; j < N; j++) {
       const int from = j * N + i;
-      const int to = i * N + j;
-      whole[to] = stiffness[from] + rate * damping[from] + rate * rate * mass[from];
-      of_pair[to] = stiffness[from] + pair * damping[from] + square * mass[from];
-      of_pair[entries + to] = pair_imaginary * damping[from] + square_imaginary * mass[from];
+      whole[i * N + j] = stiffness[from] + rate * damping[from] + rate * rate * mass[from];
     }
   }
-  return invert(whole, 0, work) && invert(of_pair, 1, work);
+  for (int i = 0; i < entries; i++) {
+    of_pair[i] = stiffness[i] + pair * damping[i] + square * mass[i];
+    of_pair[entries + i] = pair_imaginary * damping[i] + square_imaginary * mass[i];
+  }
+  return invert(whole, work) && factorise_pair(of_pair, work);
 }
 
 /* Of stage_newton.c, which asks for what stands here. */
@@ -569,25 +621,17 @@ static void corrections_of(const stage_factors *factors, const real *residuals, 
       pair_imaginary[i] += TO_PAIR[stage][1] * residuals[stage * n + i];
     }
   }
-  const real *of_pair = work->inverses + n * n;
-  const real *of_pair_imaginary = of_pair + n * n;
-  real *products = by_whole + n;
   multiply(work->inverses, whole, by_whole, n);
-  multiply(of_pair, pair, products, n);
-  multiply(of_pair_imaginary, pair_imaginary, products + n, n);
-  multiply(of_pair, pair_imaginary, products + 2 * n, n);
-  multiply(of_pair_imaginary, pair, products + 3 * n, n);
+  solve_pair(pair, pair_imaginary, work);
   for (int i = 0; i < n; i++) {
-    const real solved = products[i] - products[n + i];
-    const real solved_imaginary = products[2 * n + i] + products[3 * n + i];
     real own = by_whole[i];
-    real real_part = solved;
-    real imaginary = solved_imaginary;
+    real real_part = pair[i];
+    real imaginary = pair_imaginary[i];
     if (IS_SHAPE[i]) {
       /* A change of position is so many times one of h^2 a. */
       own *= REAL_RATE * REAL_RATE;
-      real_part = PAIR_SHARE[0] * solved - PAIR_SHARE[1] * solved_imaginary;
-      imaginary = PAIR_SHARE[0] * solved_imaginary + PAIR_SHARE[1] * solved;
+      real_part = PAIR_SHARE[0] * pair[i] - PAIR_SHARE[1] * pair_imaginary[i];
+      imaginary = PAIR_SHARE[0] * pair_imaginary[i] + PAIR_SHARE[1] * pair[i];
     }
     for (int stage = 0; stage < STAGES; stage++) {
       const real of_both = FROM_PAIR[stage][0] * real_part - FROM_PAIR[stage][1] * imaginary;
@@ -899,10 +943,45 @@ static steps_outcome try_step(real end, workspace *work) {
   return GOES_ON;
 }
 
+/* Positions and algebraic entries of so many unknowns at some times, each in one of some steps: HeldTimes.positions. */
+void steps_positions(int times, int unknowns, const real *at, const long long *numbers, const real *facts,
+                     const real *begins, const real *ends, const real *stages, const unsigned char *differential,
+                     real *positions) {
+  enum { KNOWN = 7 }; /* facts of a step: times at its begin and its end, size; and others */
+  for (int row = 0; row < times; row++) {
+    const long long step = numbers[row];
+    const real *fact = facts + KNOWN * step;
+    const real *begin = begins + ORDERS * unknowns * step;
+    const real *of_stages = stages + STAGES * unknowns * step;
+    real *x = positions + row * unknowns;
+    if (at[row] == fact[1]) {
+      memcpy(x, ends + ORDERS * unknowns * step, (size_t)unknowns * sizeof *x);
+      continue;
+    }
+    const real size = fact[2];
+    const real share = (at[row] - fact[0]) / size;
+    real values[STAGES];
+    real twice[STAGES];
+    for (int j = 0; j < STAGES; j++) {
+      values[j] = twice[j] = 0;
+      for (int power = STAGES - 1; power >= 0; power--) {
+        values[j] = values[j] * share + STAGE_POLYNOMIALS[power][j];
+        twice[j] = twice[j] * share + STAGE_POLYNOMIALS[power][j] / ((power + 1) * (power + 2));
+      }
+      twice[j] *= share * share * size * size;
+    }
+    for (int i = 0; i < unknowns; i++) {
+      real moved = 0;
+      for (int j = 0; j < STAGES; j++) moved += (differential[i] ? twice[j] : values[j]) * of_stages[j * unknowns + i];
+      x[i] = differential[i] ? begin[i] + share * size * begin[unknowns + i] + moved : moved;
+    }
+  }
+}
+
 /* Numbers that the room has to hold. */
 int steps_room(int unknowns, int inputs) {
   const int n = unknowns;
-  return PLANES * n * n + 3 * STAGES * inputs + 4 * STAGES * n + 3 * n + 5 * n + VECTORS * n + 2 * ITERATIONS * STAGES * n;
+  return PLANES * n * n + 3 * n + 3 * STAGES * inputs + 4 * STAGES * n + 3 * n + n + VECTORS * n + 2 * ITERATIONS * STAGES * n;
 }
 
 int steps_record(void) { return (int)sizeof(workspace); }
@@ -912,6 +991,10 @@ static void divide(workspace *work) {
   real *free = work->room;
   work->inverses = free;
   free += PLANES * N * N;
+  work->pair_rows = free;
+  work->pair_columns = free + N;
+  work->pair_pivots = (int *)(free + 2 * N);
+  free += 3 * N;
   work->stage_inputs = free;
   free += 3 * STAGES * work->inputs;
   real **const of_stages[] = {&work->iterate, &work->stage_residuals, &work->stage_corrections, &work->stage_changes};
@@ -922,7 +1005,7 @@ static void divide(workspace *work) {
   work->transformed = free;
   free += 3 * N;
   work->solutions = free;
-  free += 5 * N;
+  free += N;
   work->vectors = free;
   free += VECTORS * N;
   for (int k = 0; k < ITERATIONS; k++) {
