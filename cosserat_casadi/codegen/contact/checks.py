@@ -12,7 +12,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_pairs
 from cosserat_casadi.errors import ExportError, Problem, refuse
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
-from cosserat_casadi.model.obstacle_checks import exact_rods, held_by_contact, suggested_width
+from cosserat_casadi.model.obstacle_checks import held_by_contact, suggested_width
 from cosserat_casadi.model.parameters import parameter_layout
 
 SENTENCES = {
@@ -73,7 +73,6 @@ def refused_in_motion(scene: scenes.Scene) -> Iterator[Problem]:
     """Problems of exact contact in the steps of a motion in C; none of a scene without."""
     if not scene.touches_exactly:
         return
-    yield from exact_rods(scene, "a motion in C")
     yield from _refused_parameters(scene)
     for obstacle in scene.obstacles:
         if obstacle.is_smooth and np.isfinite(obstacle.thickness):

@@ -104,7 +104,7 @@ static rubbed section_of(const touch *own, const section_gap *gap, const real *x
   memcpy(work->section + gap->first, gap->rows[0], (size_t)gap->nodes * sizeof *work->section);
   work->section[count] = gap->place;
 #ifdef RODS_FACE_RODS
-  put_other_section(FACING + own->facing, work->section);
+  put_other_section(FACING + own->facing, gap, work->section);
 #endif
   return at;
 }

@@ -148,7 +148,9 @@ static real rate_of(const touch *own, const instant *at, const section_gap *gap,
   velocities_of(faces, at->state, at->inputs, at->state + N, at->inputs + INPUTS, work->nodes, work);
   for (int i = 0; i < gap->nodes; i++) rate += gap->rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->first + i));
 #ifdef RODS_FACE_RODS
-  rate += rate_of_other(faces, gap->normal, work->nodes);
+  for (int i = 0; faces->other && i < gap->other.nodes; i++) {
+    rate -= gap->other.rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->other.first + i));
+  }
 #endif
   return rate / faces->length;
 }
