@@ -366,6 +366,7 @@ def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dic
         "contact_rubs": True,
         "has_stops": False,
         "rods_face_rods": True,
+        "what_is_met": "an obstacle or another rod",
         "numbers_moved": 5,
         "most_elements": 1,
         "most_touches": MOST_TOUCHES,

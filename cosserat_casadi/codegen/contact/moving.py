@@ -85,6 +85,8 @@ def contact_words(model: Model, names: Names) -> Words:
         "friction_words": "with Coulomb's friction" if model.scene.rubs_exactly else "without friction",
         "friction_axes": "axes of the body that carries the obstacle, or of the world" if carried else "world axes",
         "rods_face_rods": bool(others),
+        "what_is_met": "an obstacle or another rod" if others else "an obstacle",
+        "met_on_other": ", own->other_end_place" if others else "",
         "facings": len(faces),
         "has_stops": bool(stops),
         "points_share": any(own.shares is not None for own in points),
@@ -147,7 +149,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
     if not words["steps_in_contact"]:
         return 0
     touches = words["most_touches"]
-    of_touch = 11
+    of_touch = 14 if words["rods_face_rods"] else 11
     friction = 0
     if words["contact_rubs"]:
         # Places of touches have forces of friction, and each three rows in place of one.

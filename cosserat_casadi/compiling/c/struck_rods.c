@@ -93,6 +93,9 @@ static void fit_other(const facing *own, const real *nodes, workspace *work) {
 /* Whether a section of the other rod stays at an end of that rod. */
 static int is_at_end(const other_section *other) { return other->place <= AT_END || other->place >= 1 - AT_END; }
 
+/* Abscissa of the other section of a gap; 0 where there is none. */
+static real place_on_other(const facing *own, const section_gap *gap) { return own->other ? gap->other.place : 0; }
+
 /* How the direction from the other section turns as that section slides. */
 static void turned_by_sliding(const other_section *other, real *turned) {
   for (int i = 0; i < 3; i++) turned[i] = inner(other->curvature + 3 * i, other->tangent);
