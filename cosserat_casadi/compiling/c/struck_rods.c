@@ -24,7 +24,7 @@ static real way_between(const real *a, const real *b) {
 /* How far a point is outside of the ball about an element. */
 static real way_to_ball(const facing *rod, int element, const real *point, workspace *work) {
   const real *ball = balls_of(rod, work) + 4 * element;
-  (void)work;
+  (void)rod, (void)work;
   return way_between(ball, point) - ball[3];
 }
 
