@@ -74,7 +74,7 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
             problem = f"{what} knows no contact of rods without a width, which motions alone find"
-            remedy = "leave exact out, for a contact that is smooth; or simulate the scene, or export it with --dynamics"
+            remedy = "leave exact out, for a contact that is smooth; or simulate the scene, or export its motions"
             yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
 
 

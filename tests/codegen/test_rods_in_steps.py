@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.compiled_motion import StepState
 from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import C99, gcc, run
-from tests.codegen.test_steps_in_contact import EXACT, Moving, compare_with_differences
+from tests.codegen.test_steps_in_contact import Moving, compare_with_differences
 from tests.motion.test_rods_that_strike_rods import RADIUS, free_rods, momentum, rod, scene
 
 Tables = dict[str, Any]
@@ -37,9 +37,9 @@ def thrown_steps(made: Moving, v: FloatArray, step: float) -> list[StepState]:
 
 
 def pressed(friction: float, drag: float, damping: float = 0.02) -> Tables:
-    """Two clamped rods that cross: a force presses the upper one down, and drags it over the lower one."""
+    """Two clamped rods that cross askew: a force presses the upper one down, and drags it over the lower one."""
     upper = rod("upper", {"position": [0, 0, 2 * RADIUS + 4e-4], "tangent": [1, 0, 0]}, [6e-3, 4e-3])
-    lower = rod("lower", {"position": [0.2, -0.3, 0], "tangent": [0, 1, 0]}, [4e-3, 6e-3])
+    lower = rod("lower", {"position": [-0.024, -0.168, 0], "tangent": [0.8, 0.6, 0]}, [8e-3, 4e-3])
     damped = [own | {"damping": {"retardation_time": damping}} for own in (upper, lower)]
     push = {"name": "push", "kind": "tip_wrench", "rod": "upper", "force": [0, drag, -0.1]}
     tables = scene(damped, 0.1, loads=[push], inputs=["push.force"])
@@ -105,7 +105,7 @@ def test_steps_converge_to_the_simulators_and_keep_momentum(share: float, tmp_pa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("friction", "drag", "damping"), [(0.0, -0.05, 0.02), (FRICTION, -0.05, 0.02), (0.9, 0.0, 0.2)])
+@pytest.mark.parametrize(("friction", "drag", "damping"), [(0.0, -0.05, 0.02), (0.3, -0.05, 0.02), (0.9, 0.0, 0.2)])
 def test_derivatives_of_a_step_are_those_of_differences(
     friction: float, drag: float, damping: float, tmp_path: Path
 ) -> None:
