@@ -68,14 +68,8 @@ SOLVER_FILES = (
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
 """Files of the folder ``c`` that sources of a library include."""
 
-LINES = r"#ifdef {word}\n(?:(?!#).*\n)*(?:#else\n((?:(?!#).*\n)*))?#endif\n"
-"""Lines in C that are compiled where a word is defined, and in its group the lines in their place."""
-
-SIMULATED = re.compile(LINES.format(word="STRETCHES_ARE_TOLD"))
-"""Lines in C that are compiled in simulated motions alone."""
-
-STRUCK_RODS = re.compile(LINES.format(word="RODS_FACE_RODS"))
-"""Lines in C that are compiled in simulated motions, and where rods may touch rods."""
+LINES = r"#ifdef (?:{words})\n(?:(?!#).*\n)*(?:#else\n((?:(?!#).*\n)*))?#endif\n"
+"""Lines in C that are compiled where one of some words is defined, and in its group the lines in their place."""
 
 TEMPLATES = ("library.h.in", "library.c.in", "config.h.in", "demo.c.in")
 """Templates of header, source, configuration and demo."""
@@ -264,16 +258,15 @@ def rendered(
     """
     header, source, config, demo = (render(template, words) for template in templates)
     name = words["name"]
-    own = {file: resource("c", file, on_device=bool(words.get("on_device"))) for file in verbatim}
-    for left_out in (SIMULATED, *([] if words.get("rods_face_rods") else [STRUCK_RODS])):
-        own = {file: left_out.sub(r"\1", text) for file, text in own.items()}
+    unused = "STRETCHES_ARE_TOLD" if words.get("rods_face_rods") else "STRETCHES_ARE_TOLD|RODS_FACE_RODS"
+    left_out, on_device = re.compile(LINES.format(words=unused)), bool(words.get("on_device"))
     files = {
         f"{name}.h": header,
         f"{name}.c": source,
         f"{name}_config.h": config,
         f"{name}_demo.c": demo,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        **own,
+        **{file: left_out.sub(r"\1", resource("c", file, on_device=on_device)) for file in verbatim},
     }
     files["README.md"] = render("README.md.in", {**words, "file_rows": _file_rows(name, {*files, *beside})})
     return files

@@ -51,9 +51,8 @@ NAME = "rubbing_steps"
 
 INCLUDED = (
     *("solver.h", "motion.h", "python_kernels.c", "facings.c", "elimination.c", "contact_gaps.c", "contact_ways.c"),
-    *("struck_rods.h", "struck_rods.c"),
     *("step.c", "contact_steps.c", "contact_friction.c", "square_systems.c", "least_pushes.c", "stage_newton.c"),
-    "motion.c",
+    *("motion.c", "struck_rods.h", "struck_rods.c"),
 )
 """Files that ``rubbing_steps.c`` includes."""
 

@@ -113,8 +113,8 @@ class SurfaceSliding:
         """(…, axis, change of the section with X, force along both tangents) ↦ derivatives by x, X, inputs and rates.
 
         The first arguments are those of :attr:`function`. Derivatives by x, X and inputs have 4 + n rows: of the
-        velocity, the direction and the generalised force. Those by the rates of the inputs are of the velocity, 2×k. Of
-        two rods the change with both abscissae has a column for each, and so have the derivatives by them.
+        velocity, the direction and the generalised force. Those by the rates of the inputs are of the velocity, 2×k.
+        Both abscissae of two rods have a column each, in the change and in the derivatives by X.
         """
         x, inputs, v, rate, section, _ = self._symbols
         sides = section.shape[0] - self.facing.points.count

@@ -12,7 +12,7 @@ from cosserat_casadi.cli.effect_times import effect_times, motion_costs, print_e
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_ranges, check_figure, check_inputs_stay
 from cosserat_casadi.cli.progress import count_display
 from cosserat_casadi.cli.reports.format import print_written
-from cosserat_casadi.cli.reports.model import THROUGH_EACH_OTHER, print_check, print_locking, print_ranges
+from cosserat_casadi.cli.reports.model import print_check, print_locking, print_ranges
 from cosserat_casadi.cli.reports.tubes import print_tubes_check
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.compiling.compiler import find_compiler
@@ -26,6 +26,9 @@ from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values
 from cosserat_casadi.tubes.robot import robot_of
+
+APART = "The figures are those of rods that pass through each other: contact of rods without a width is of motions."
+"""A sentence on scenes whose rods touch each other exactly."""
 
 
 def check(
@@ -75,7 +78,7 @@ def check(
         locking = _locking(model)
     print_check(Console(), model, varying, cost, of_effects)
     if checked_scene.rods_touch_exactly:
-        Console().print(THROUGH_EACH_OTHER)
+        Console().print(APART)
     print_ranges(Console(), of_inputs)
     print_locking(Console(), locking)
     if plot is not None:

@@ -16,16 +16,11 @@ from cosserat_casadi.accuracy.choose import SAMPLES, Choice
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.ranges import Given
+from cosserat_casadi.cli.commands.check import APART
 from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_inputs_stay
-from cosserat_casadi.cli.reports.model import (
-    THROUGH_EACH_OTHER,
-    print_choice,
-    print_export,
-    print_locking,
-    print_missed,
-)
+from cosserat_casadi.cli.reports.model import print_choice, print_export, print_locking, print_missed
 from cosserat_casadi.cli.reports.tubes import print_tubes_export
 from cosserat_casadi.cli.terminal import Console
 from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
@@ -258,7 +253,7 @@ def export(
     _write_mjcf(of_links, mjcf)
     print_choice(Console(), choice)
     if exported_scene.rods_touch_exactly:
-        Console().print(THROUGH_EACH_OTHER)
+        Console().print(APART)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False
     if missed:

@@ -29,11 +29,6 @@ from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.scene.varying import VaryingValue
 from cosserat_casadi.spelling import counted
 
-THROUGH_EACH_OTHER = (
-    "The figures are those of rods that pass through each other: contact of rods without a width is of motions."
-)
-"""A sentence on scenes whose rods touch each other exactly."""
-
 IDENTITY_TURN = (1.0, 0.0, 0.0, 0.0)
 """Orientation of a joint that has none in the scene."""
 
