@@ -6,6 +6,7 @@ import ctypes
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -64,13 +65,14 @@ class CompiledStep:
 
 @dataclass(frozen=True)
 class StepContact:
-    """A section or a body that presses on an obstacle, or a joint on its rigid stop, at the end of a step.
+    """A section or a body that presses on an obstacle or another rod, or a joint on its rigid stop, at a step's end.
 
     Attributes:
         owner: name of the rod, of the body, or of the joint.
-        obstacle: name of the obstacle; of a joint its key, ``lower_stop`` or ``upper_stop``.
+        obstacle: name of the obstacle, or of the other rod; of a joint its key, ``lower_stop`` or ``upper_stop``.
         of_body: whether a body touches.
         place: abscissa X of the section; 0 of a body or a joint.
+        at_other: abscissa of the section of the other rod, of two rods; else None.
         force: on it along the normal of the obstacle, mean of the last stretch of the step, N; of a stop its push, N or
             N m.
         friction: on it along the surface, mean of the same stretch, in the axes of the body that carries the obstacle,
@@ -85,6 +87,7 @@ class StepContact:
     force: float
     friction: FloatArray
     slips: bool
+    at_other: float | None
 
 
 @dataclass(frozen=True)
@@ -187,12 +190,13 @@ class _Options(ctypes.Structure):
     )
 
 
-class _Contact(ctypes.Structure):
-    _fields_ = (("pair", ctypes.c_int), ("place", ctypes.c_double), ("force", ctypes.c_double))
-
-
-class _RubbingContact(ctypes.Structure):
-    _fields_ = (*_Contact._fields_, ("friction", 3 * ctypes.c_double), ("slips", ctypes.c_int))
+@cache
+def _contact_record(*, of_rods: bool, rubs: bool) -> type[ctypes.Structure]:
+    """The record in C of a contact: of a library in which rods may touch rods, and in which something rubs."""
+    plain = [("pair", ctypes.c_int), ("place", ctypes.c_double), ("force", ctypes.c_double)]
+    on_other = [("other_place", ctypes.c_double)] if of_rods else []
+    rubbing = [("friction", 3 * ctypes.c_double), ("slips", ctypes.c_int)] if rubs else []
+    return type("_Contact", (ctypes.Structure,), {"_fields_": [*plain, *on_other, *rubbing]})
 
 
 class _Info(ctypes.Structure):
@@ -272,7 +276,8 @@ class CompiledMotion(LoadedLibrary):
         function = self._motion_function("step_contacts")
         described = self.manifest["motion"]
         pairs = described["contacts"]
-        record = _RubbingContact if described.get("contacts_rub") else _Contact
+        of_rods = any("other_rod" in pair for pair in pairs)
+        record = _contact_record(of_rods=of_rods, rubs=described.get("contacts_rub", False))
         in_c = (record * described["most_contacts"])()
         count = function(memory.kept, in_c)
         found = []
@@ -281,7 +286,8 @@ class CompiledMotion(LoadedLibrary):
             owner, touched = (pair[word] for word in pair)
             friction = np.array(getattr(own, "friction", (0.0, 0.0, 0.0)))
             slips = bool(getattr(own, "slips", True))
-            found.append(StepContact(owner, touched, "body" in pair, own.place, own.force, friction, slips))
+            at_other = own.other_place if "other_rod" in pair else None
+            found.append(StepContact(owner, touched, "body" in pair, own.place, own.force, friction, slips, at_other))
         return found
 
     def rest(

@@ -16,7 +16,7 @@ from cosserat_casadi.accuracy.verified import Verified
 from cosserat_casadi.codegen import lanes
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words
-from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, FRICTION_FILES, contact_words
+from cosserat_casadi.codegen.contact.moving import CONTACT_FILES, FRICTION_FILES, ROD_FILES, contact_words
 from cosserat_casadi.codegen.error_sources import ERROR_FILES, STEPS_OF_ESTIMATE, error_words, estimates_errors
 from cosserat_casadi.codegen.functions_in_c import public_functions
 from cosserat_casadi.codegen.lanes import InLanes
@@ -63,15 +63,13 @@ LEAST_MISFIT = "least_misfit.c"
 SECOND_VARIATION = "second_variation.c"
 SOLVER_FILES = (
     *(*SHARED, *ERROR_FILES, *PASSAGE_FILES, *CONTACT_FILES, *FRICTION_FILES, *DENSE, *BLOCKS, *MOTION_FILES),
-    *(LEAST_MISFIT, SECOND_VARIATION),
+    *(*ROD_FILES, LEAST_MISFIT, SECOND_VARIATION),
 )
 VERBATIM = frozenset({*SOLVER_FILES, *FOURS, *PROGRAM, *lanes.FILES})
 """Files of the folder ``c`` that sources of a library include."""
 
-SIMULATED = re.compile(
-    r"#ifdef (?:RODS_FACE_RODS|STRETCHES_ARE_TOLD)\n(?:(?!#).*\n)*(?:#else\n((?:(?!#).*\n)*))?#endif\n"
-)
-"""Lines in C that are compiled in simulated motions alone, and in its group the lines in their place."""
+LINES = r"#ifdef (?:{words})\n(?:(?!#).*\n)*(?:#else\n((?:(?!#).*\n)*))?#endif\n"
+"""Lines in C that are compiled where one of some words is defined, and in its group the lines in their place."""
 
 TEMPLATES = ("library.h.in", "library.c.in", "config.h.in", "demo.c.in")
 """Templates of header, source, configuration and demo."""
@@ -108,6 +106,8 @@ ROLES = {
     "passages.c": "whether a step leads through something thin",
     "contact_gaps.c": "gaps to obstacles that are touched exactly",
     "contact_ways.c": "ways that lead into such obstacles",
+    "struck_rods.h": "what they need of the next file",
+    "struck_rods.c": "gaps to other rods",
     "square_systems.c": "linear systems of any size",
     "least_pushes.c": "which of several contacts push",
     "contact_steps.c": "forces and blows of exact contact in a step",
@@ -189,7 +189,8 @@ class FolderContents:
         passages = PASSAGE_FILES if watches_passages(model) else ()
         contact = CONTACT_FILES if self.motion is not None and struck_in_steps(model) else ()
         friction = FRICTION_FILES if self.motion is not None and model.scene.rubs_exactly else ()
-        return (*SHARED, *estimate, *passages, *linear, *motion, *contact, *friction)
+        rods = ROD_FILES if self.motion is not None and model.scene.rods_touch_exactly else ()
+        return (*SHARED, *estimate, *passages, *linear, *motion, *contact, *friction, *rods)
 
     def to_compile(self, names: Names) -> dict[str, str]:
         """Words of the build file for sources and headers that a plain folder does not have."""
@@ -252,21 +253,21 @@ def rendered(
 
     Args:
         words: of the templates.
-        verbatim: files of the folder ``c`` that are written without the lines of simulated motions.
+        verbatim: files of the folder ``c`` that are written without lines that this library never compiles.
         templates: of the first four.
         beside: names of the other files of the folder, for the README.
     """
     header, source, config, demo = (render(template, words) for template in templates)
     name = words["name"]
+    unused = "STRETCHES_ARE_TOLD" if words.get("rods_face_rods") else "STRETCHES_ARE_TOLD|RODS_FACE_RODS"
+    left_out, on_device = re.compile(LINES.format(words=unused)), bool(words.get("on_device"))
     files = {
         f"{name}.h": header,
         f"{name}.c": source,
         f"{name}_config.h": config,
         f"{name}_demo.c": demo,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
-        **{
-            file: SIMULATED.sub(r"\1", resource("c", file, on_device=bool(words.get("on_device")))) for file in verbatim
-        },
+        **{file: left_out.sub(r"\1", resource("c", file, on_device=on_device)) for file in verbatim},
     }
     files["README.md"] = render("README.md.in", {**words, "file_rows": _file_rows(name, {*files, *beside})})
     return files

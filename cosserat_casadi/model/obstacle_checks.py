@@ -73,8 +73,8 @@ def exact_rods(scene: scenes.Scene, what: str) -> Iterator[Problem]:
     """
     for number, contact in enumerate(scene.rod_contacts):
         if contact.exact:
-            problem = f"{what} knows no contact of rods without a width, which simulate alone finds"
-            remedy = "leave exact out, for a contact that is smooth; or simulate the scene"
+            problem = f"{what} knows no contact of rods without a width, which motions alone find"
+            remedy = "leave exact out, for a contact that is smooth; or simulate the scene, or export its motions"
             yield Problem(f"rod_contacts[{number}].exact", problem, remedy)
 
 

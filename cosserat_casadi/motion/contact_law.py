@@ -27,7 +27,10 @@ from cosserat_casadi.scene.accuracy import MOST_NODES
 NAME = "moving_contacts"
 """Name of the library in the cache."""
 
-INCLUDED = ("facings.c", "contact_gaps.c", "square_systems.c", "least_pushes.c", "python_kernels.c")
+INCLUDED = (
+    *("facings.c", "contact_gaps.c", "struck_rods.h", "struck_rods.c"),
+    *("square_systems.c", "least_pushes.c", "python_kernels.c"),
+)
 """Files that other libraries include too."""
 
 MOST_TOUCHES = 64
@@ -101,7 +104,7 @@ class FacingRecord(ctypes.Structure):
         *((name, ctypes.c_double) for name in ("restitution", "stride")),
         ("coefficients", ctypes.c_double * 3),
         *((name, POINTER) for name in ("surface", "distance", "rubbing", "fitted", "gaps_along")),
-        *((name, POINTER) for name in ("other", "seen_from", "looked_at", "balls", "nearest")),
+        *((name, POINTER) for name in ("other", "seen_from", "looked_at", "balls")),
     ]
 
 

@@ -24,7 +24,7 @@ import numpy as np
 from cosserat_casadi.compiling.shared_records import Held
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.contact_gap import STRIDE, Rows, SectionGap
-from cosserat_casadi.motion.contact_law import AT_END, LOOKS, FacingRecord, gap_size
+from cosserat_casadi.motion.contact_law import AT_END, LOOKS, FacingRecord
 from cosserat_casadi.motion.contact_sections import RodFacing
 
 
@@ -106,7 +106,6 @@ class RodsFacing(RodFacing):
             "seen_from": 3,
             "looked_at": 3 * (LOOKS * record.elements + 1),
             "balls": 4 * record.elements,
-            "nearest": gap_size() // 2,
         }
         for name, size in sizes.items():
             held.share(name, np.zeros(size))

@@ -52,7 +52,7 @@ NAME = "rubbing_steps"
 INCLUDED = (
     *("solver.h", "motion.h", "python_kernels.c", "facings.c", "elimination.c", "contact_gaps.c", "contact_ways.c"),
     *("step.c", "contact_steps.c", "contact_friction.c", "square_systems.c", "least_pushes.c", "stage_newton.c"),
-    "motion.c",
+    *("motion.c", "struck_rods.h", "struck_rods.c"),
 )
 """Files that ``rubbing_steps.c`` includes."""
 
@@ -364,7 +364,10 @@ def _words(unknowns: int, inputs: int, most_points: int, most_looks: int) -> dic
         "steps_in_contact": True,
         "contact_rubs": True,
         "has_stops": False,
+        "rods_face_rods": True,
+        "what_is_met": "an obstacle or another rod",
         "numbers_moved": 5,
+        "most_elements": 1,
         "most_touches": MOST_TOUCHES,
         "most_points": most_points,
         "most_looks": most_looks,

@@ -114,13 +114,16 @@ class SurfaceSliding:
 
         The first arguments are those of :attr:`function`. Derivatives by x, X and inputs have 4 + n rows: of the
         velocity, the direction and the generalised force. Those by the rates of the inputs are of the velocity, 2×k.
+        Both abscissae of two rods have a column each, in the change and in the derivatives by X.
         """
         x, inputs, v, rate, section, _ = self._symbols
-        change, force, shift = ca.MX.sym("change", section.shape[0]), ca.MX.sym("force", 2), ca.MX.sym("shift")
-        sliding, along = self._sliding(section + shift * change)
+        sides = section.shape[0] - self.facing.points.count
+        change, force = ca.MX.sym("change", section.shape[0], sides), ca.MX.sym("force", 2)
+        shift = ca.MX.sym("shift", sides)
+        sliding, along = self._sliding(section + change @ shift)
         rows = ca.vertcat(sliding, along, ca.gradient(ca.dot(force, sliding), v))
         parts = [ca.jacobian(rows, x), ca.jacobian(rows, shift), ca.jacobian(rows, inputs), ca.jacobian(sliding, rate)]
-        parts = ca.graph_substitute(parts, [shift], [ca.MX(0)])
+        parts = ca.graph_substitute(parts, [shift], [ca.MX(sides, 1)])
         arguments = [*self._symbols, change, force]
         return ca.Function("rubbing_derivatives", arguments, [ca.densify(part) for part in parts])
 

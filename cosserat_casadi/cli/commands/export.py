@@ -16,6 +16,7 @@ from cosserat_casadi.accuracy.choose import SAMPLES, Choice
 from cosserat_casadi.accuracy.fixing import fixed_by_rod
 from cosserat_casadi.accuracy.models import build
 from cosserat_casadi.accuracy.ranges import Given
+from cosserat_casadi.cli.commands.check import APART
 from cosserat_casadi.cli.commands.tune import choose_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import Ranges, SceneFile, Settings, asked_cases, asked_ranges, check_inputs_stay
@@ -232,8 +233,9 @@ def export(
         cases = spread(ranges, samples or LOAD_CASES, case_layout(read))
     exported_scene = _checked_scene(read, asked)
 
-    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
-    solved_scene = exported_scene.held() if asked.moves else exported_scene
+    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium. Nor is
+    # there one of rods that touch each other exactly.
+    solved_scene = exported_scene.held().without_exact_rods() if asked.moves else exported_scene
     chosen_cases = None
     if given_cases is not None:
         # A library begins at the scene's own inputs.
@@ -247,6 +249,8 @@ def export(
     _write(asked, exported_scene, solution, choice, cases, given_ranges)
     _write_mjcf(of_links, mjcf)
     print_choice(Console(), choice)
+    if exported_scene.rods_touch_exactly:
+        Console().print(APART)
     print_locking(Console(stderr=True), locking_sentence(choice.locked))
     missed = choice.within_tolerance is False
     if missed:

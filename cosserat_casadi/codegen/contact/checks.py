@@ -54,6 +54,7 @@ def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
                 problems.append(Problem(f"--{word}", problem, remedy))
         problems += refused_in_motion(scene)
     else:
+        problems += exact_rods(scene, "an equilibrium in C")
         problems += _refused_parameters(scene)
         problems += _refused_obstacles(scene)
         problems += held_by_contact(scene)
@@ -73,7 +74,6 @@ def refused_in_motion(scene: scenes.Scene) -> Iterator[Problem]:
     """Problems of exact contact in the steps of a motion in C; none of a scene without."""
     if not scene.touches_exactly:
         return
-    yield from exact_rods(scene, "a motion in C")
     yield from _refused_parameters(scene)
     for obstacle in scene.obstacles:
         if obstacle.is_smooth and np.isfinite(obstacle.thickness):

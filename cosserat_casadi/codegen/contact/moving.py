@@ -18,10 +18,11 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_gap import Facing
-from cosserat_casadi.motion.contact_law import LOOKS, MOST_TOUCHES
-from cosserat_casadi.motion.contact_sections import BodyFacing, RodFacing
+from cosserat_casadi.motion.contact_law import AT_END, LOOKS, MOST_TOUCHES, NEXT_TO_NOTHING
+from cosserat_casadi.motion.contact_sections import RodFacing
 from cosserat_casadi.motion.facings import facings, points_of
 from cosserat_casadi.motion.motion_start import equilibrium_start, unloaded_start
+from cosserat_casadi.motion.rods_facing import RodsFacing
 from cosserat_casadi.motion.stops_facing import StopFacing, stop_facings, struck_in_steps
 from cosserat_casadi.motion.surface_sliding import SurfaceSliding
 
@@ -38,6 +39,9 @@ CONTACT_FILES = (
 FRICTION_FILES = ("contact_friction.c", "friction_sensitivity.c")
 """Files of the folder ``c`` that such a library includes where something rubs."""
 
+ROD_FILES = ("struck_rods.h", "struck_rods.c")
+"""Files of the folder ``c`` that such a library includes where rods may touch rods."""
+
 FEWEST_TOUCHES = 8
 """Sections of a rod that slide on an obstacle, at most."""
 
@@ -52,7 +56,7 @@ def contact_functions(model: Model, names: Names) -> dict[str, ca.Function]:
         found[name] = _surface_function(obstacle, name)
         found[names.kernel(f"surface_distance_{number}")] = distance_from(obstacle)
     for number, facing in enumerate(struck_in_steps(model)):
-        if facing.obstacle.rubs:
+        if facing.against.rubs:
             rubbing = SurfaceSliding(facing)
             found[names.kernel(f"rubbing_{number}")] = rubbing.function
             found[names.kernel(f"rubbing_derivatives_{number}")] = rubbing.derivatives
@@ -71,7 +75,8 @@ def contact_words(model: Model, names: Names) -> Words:
         return {"steps_in_contact": False, "contact_rubs": False}
     points = points_of(struck_in_steps(model))
     stops = stop_facings(model)
-    rods = [own for own in faces if isinstance(own, RodFacing)]
+    others = [own.other for own in faces if isinstance(own, RodsFacing)]
+    rods = [*(own for own in faces if isinstance(own, RodFacing)), *others]
     nodes = [own.nodes_of_element for own in rods]
     carried = any(own.carrier is not None for own in faces)
     words: Words = {
@@ -79,16 +84,22 @@ def contact_words(model: Model, names: Names) -> Words:
         "contact_rubs": model.scene.rubs_exactly,
         "friction_words": "with Coulomb's friction" if model.scene.rubs_exactly else "without friction",
         "friction_axes": "axes of the body that carries the obstacle, or of the world" if carried else "world axes",
+        "rods_face_rods": bool(others),
+        "what_is_met": "an obstacle or another rod" if others else "an obstacle",
+        "met_on_other": ", own->other_end_place" if others else "",
         "facings": len(faces),
         "has_stops": bool(stops),
         "points_share": any(own.shares is not None for own in points),
         "barring": len(faces) - len(stops),
         "most_touches": _most_touches(faces),
-        "numbers_moved": 4,
+        "numbers_moved": 5 if others else 4,
         "most_nodes": max([*nodes, 2]),
         "most_points": max(count.count for count in points),
         "looks": LOOKS,
         "most_looks": max([LOOKS * (len(own.ends) - 1) + 1 for own in rods] + [1]),
+        "most_elements": max([len(own.ends) - 1 for own in others], default=0),
+        "at_end": AT_END,
+        "next_to_nothing": NEXT_TO_NOTHING,
         "deepest": repr(float(model.scene.accuracy.tolerance)),
         "pair_words": "; ".join(f"{k} {_words_of(own)}" for k, own in enumerate(faces)),
         "start_shape": numbers(start_shape(model).tolist()),
@@ -116,13 +127,15 @@ def contact_pattern(model: Model) -> ca.Sparsity:
 def _described(facing: Facing) -> dict[str, str]:
     """A pair for the manifest."""
     if isinstance(facing, StopFacing):
-        return {"joint": facing.owner, "stop": facing.obstacle.name}
-    return {"body" if facing.of_body else "rod": facing.owner, "obstacle": facing.obstacle.name}
+        return {"joint": facing.owner, "stop": facing.touched}
+    if isinstance(facing, RodsFacing):
+        return {"rod": facing.owner, "other_rod": facing.touched}
+    return {"body" if facing.of_body else "rod": facing.owner, "obstacle": facing.touched}
 
 
 def _words_of(facing: Facing) -> str:
     """A pair for a comment in C, which its names can not end."""
-    return f"{facing.owner} and {facing.obstacle.name}".replace("*/", "* /").replace("/*", "/ *")
+    return f"{facing.owner} and {facing.touched}".replace("*/", "* /").replace("/*", "/ *")
 
 
 def contact_reals(size: int, inputs: int, words: Words) -> int:
@@ -136,7 +149,7 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
     if not words["steps_in_contact"]:
         return 0
     touches = words["most_touches"]
-    of_touch = 11
+    of_touch = 14 if words["rods_face_rods"] else 11
     friction = 0
     if words["contact_rubs"]:
         # Places of touches have forces of friction, and each three rows in place of one.
@@ -145,6 +158,8 @@ def contact_reals(size: int, inputs: int, words: Words) -> int:
         friction = touches * (26 * size + 20 * inputs + 42) + 3 * rows**2 + 22 * rows
         friction += (6 + size) * (1 + size + inputs) + 3 * words["most_points"]
     records = of_touch * touches * (3 + words["most_step_parts"])
+    if words["rods_face_rods"]:
+        friction += 3 * words["most_points"] + 3 * words["most_looks"] + 4 * words["most_elements"] + size + 10
     vectors = touches * (9 * size + 2 * inputs) + size * (4 + inputs + size) + 12 * words["most_points"]
     return int(friction + records + vectors + 9 * touches**2 + 22 * touches + words["most_looks"] + 8 * inputs)
 
@@ -187,7 +202,7 @@ def _functions(model: Model, names: Names) -> Iterator[str]:
         kernels = {word: names.kernel(f"{word}_{number}") for word in ("surface", "surface_distance")}
         yield render("surface_in_motion.c.in", {"number": number, **kernels})
     for number, facing in enumerate(struck_in_steps(model)):
-        if facing.obstacle.rubs:
+        if facing.against.rubs:
             kernels = {word: names.kernel(f"{word}_{number}") for word in ("rubbing", "rubbing_derivatives")}
             yield render("rubbing_in_motion.c.in", {"number": number, **kernels})
 
@@ -208,61 +223,54 @@ def _tables(model: Model, faces: list[Facing]) -> Iterator[str]:
     obstacles = _obstacles(model)
     records = []
     for number, facing in enumerate(faces):
-        fields = {
-            "points": points.index(facing.points),
-            "is_body": int(facing.of_body),
-            "length": _real(facing.length),
-            "force_unit": _real(facing.force_unit),
-            "restitution": _real(facing.obstacle.restitution),
-            "surface": f"surface_of_{obstacles.index(facing.obstacle)}",
-            "distance": f"surface_distance_of_{obstacles.index(facing.obstacle)}",
-        }
+        # C++ asks for members in the order of their declaration.
+        fields = {"points": points.index(facing.points), "is_body": int(facing.of_body)}
         if isinstance(facing, RodFacing):
-            yield from _rod_tables(facing, number)
-            fields |= _rod_fields(facing, number)
-        elif isinstance(facing, BodyFacing):
-            fields |= _ball_fields(facing)
-        if facing.obstacle.rubs:
+            yield from _rod_tables(facing, str(number))
+            fields |= _rod_fields(facing, str(number))
+            yield reals(f"LAID_{number}", facing.laid_at)
+            fields |= {"laid": f"LAID_{number}", "laid_count": len(facing.laid_at)}
+        else:
+            fields |= {"elements": 1, "nodes": 1}
+        fields |= {"length": _real(facing.length), "force_unit": _real(facing.force_unit)}
+        fields |= _radii(facing)
+        fields |= {"restitution": _real(facing.against.restitution), "stride": _real(facing.stride)}
+        if not isinstance(facing, RodsFacing):
+            own = obstacles.index(facing.obstacle)
+            fields |= {"surface": f"surface_of_{own}", "distance": f"surface_distance_of_{own}"}
+        if facing.against.rubs:
+            fields["coefficients"] = f"{{{numbers(list(facing.against.coefficients))}}}"
             fields |= {f"{word}": f"{word}_of_{number}" for word in ("rubbing", "rubbing_derivatives")}
-            fields["coefficients"] = f"{{{numbers(list(facing.obstacle.coefficients))}}}"
+        if isinstance(facing, RodsFacing):
+            yield from _rod_tables(facing.other, f"OTHER_{number}")
+            other = _rod_fields(facing.other, f"OTHER_{number}") | {"length": _real(facing.other.length)}
+            yield f"static const facing OTHER_{number} = {record(other | _radii(facing.other))};"
+            fields["other"] = f"&OTHER_{number}"
         records.append(record(fields))
     yield record_table("facing", "FACING", "FACINGS", records)
 
 
-def _rod_tables(facing: RodFacing, number: int) -> Iterator[str]:
-    yield reals(f"FACING_ENDS_{number}", np.array(facing.ends))
-    yield reals(f"TO_COEFFICIENTS_{number}", facing.to_coefficients.ravel())
-    yield reals(f"LOOKS_{number}", facing.looks.ravel())
-    yield reals(f"LAID_{number}", facing.laid_at)
+def _rod_tables(rod: RodFacing, name: str) -> Iterator[str]:
+    yield reals(f"FACING_ENDS_{name}", np.array(rod.ends))
+    yield reals(f"TO_COEFFICIENTS_{name}", rod.to_coefficients.ravel())
+    yield reals(f"LOOKS_{name}", rod.looks.ravel())
 
 
-def _rod_fields(facing: RodFacing, number: int) -> dict[str, object]:
+def _rod_fields(rod: RodFacing, name: str) -> dict[str, object]:
+    return {
+        "elements": len(rod.ends) - 1,
+        "nodes": rod.nodes_of_element,
+        "ends": f"FACING_ENDS_{name}",
+        "to_coefficients": f"TO_COEFFICIENTS_{name}",
+        "looks": f"LOOKS_{name}",
+        "watches_base": int(rod.watched_ends[0]),
+        "watches_tip": int(rod.watched_ends[1]),
+    }
+
+
+def _radii(facing: Facing) -> dict[str, str]:
     base, tip = facing.radii
-    return {
-        "elements": len(facing.ends) - 1,
-        "nodes": facing.nodes_of_element,
-        "ends": f"FACING_ENDS_{number}",
-        "to_coefficients": f"TO_COEFFICIENTS_{number}",
-        "looks": f"LOOKS_{number}",
-        "watches_base": int(facing.watched_ends[0]),
-        "watches_tip": int(facing.watched_ends[1]),
-        "laid": f"LAID_{number}",
-        "laid_count": len(facing.laid_at),
-        "radius_at_base": _real(base),
-        "radius_at_tip": _real(tip),
-        "stride": _real(facing.stride),
-    }
-
-
-def _ball_fields(facing: BodyFacing) -> dict[str, object]:
-    radius = facing.radius
-    return {
-        "elements": 1,
-        "nodes": 1,
-        "radius_at_base": _real(radius),
-        "radius_at_tip": _real(radius),
-        "stride": _real(facing.stride),
-    }
+    return {"radius_at_base": _real(base), "radius_at_tip": _real(tip)}
 
 
 def _real(value: float) -> str:
@@ -280,7 +288,7 @@ def _obstacles(model: Model) -> list[scenes.ObstacleRecord]:
     """Obstacles that something may touch."""
     found: list[scenes.ObstacleRecord] = []
     for facing in struck_in_steps(model):
-        if facing.obstacle not in found:
+        if not isinstance(facing, RodsFacing) and facing.obstacle not in found:
             found.append(facing.obstacle)
     return found
 

@@ -104,7 +104,7 @@ static rubbed section_of(const touch *own, const section_gap *gap, const real *x
   memcpy(work->section + gap->first, gap->rows[0], (size_t)gap->nodes * sizeof *work->section);
   work->section[count] = gap->place;
 #ifdef RODS_FACE_RODS
-  put_other_section(FACING + own->facing, work->section);
+  put_other_section(FACING + own->facing, gap, work->section);
 #endif
   return at;
 }
@@ -547,6 +547,19 @@ static real share_to_lift_off(turn_search *search, const workspace *work) {
   return share;
 }
 
+#ifdef RODS_FACE_RODS
+/* A touch as it is, or as the other rod has it: its place there stands for the own one. */
+static touch touch_of_side(const touch *own, int of_other) {
+  touch side = *own;
+  if (!of_other) return side;
+  side.of_other = 1;
+  side.place = own->other_place;
+  side.end_place = own->other_end_place;
+  side.other_end_place = own->end_place;
+  return side;
+}
+
+#endif
 /* Slope of a gap at an end of a rod after a share of a stretch that was solved, inwards: negative while it is less inside. */
 static real slope_at_end(const step_start *start, real share, const touch *own, const real *unknowns, workspace *work) {
   const facing *faces = FACING + own->facing;
@@ -554,6 +567,13 @@ static real slope_at_end(const step_start *start, real share, const touch *own, 
   instant_in(start, share, unknowns, &work->at);
   positions_of(faces, work->at.state, work->at.inputs, work->nodes, work);
   fit_nodes(faces, work->nodes, work);
+#ifdef RODS_FACE_RODS
+  if (own->of_other) {
+    /* The other rod is seen from the section that touches. */
+    look_lowest(faces, own->other_end_place, &gap, work);
+    faces = faces->other;
+  }
+#endif
   look_at(faces, own->end_place, &gap, work);
   return own->end_place > 0 ? -gap.slope : gap.slope;
 }
@@ -562,8 +582,14 @@ static real slope_at_end(const step_start *start, real share, const touch *own, 
    there, and a stretch that goes beyond takes what it has at its own place from the energy. */
 static real share_to_the_end(const step_start *start, const real *unknowns, workspace *work) {
   real share = 1;
+#ifdef RODS_FACE_RODS
+  for (int k = 0; k < 2 * work->touch_count; k++) {
+    const touch side = touch_of_side(work->touches + k / 2, k % 2);
+    const touch *own = &side;
+#else
   for (int k = 0; k < work->touch_count; k++) {
     const touch *own = work->touches + k;
+#endif
     const int is_out = own->end_place == 0 || own->end_place == 1;
     if (!own->presses || !own->slides || FACING[own->facing].is_body || !is_out || own->place == own->end_place) continue;
     const real first = slope_at_end(start, 0, own, unknowns, work), last = slope_at_end(start, 1, own, unknowns, work);

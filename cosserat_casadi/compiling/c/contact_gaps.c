@@ -44,8 +44,21 @@ typedef struct {
   int first;         /* of the nodes of its element */
   int nodes;
   real rows[2][MOST_NODES]; /* their weights for the section, and for the tangent */
+#ifdef RODS_FACE_RODS
+  other_section other; /* of a rod that faces a rod */
+#endif
 } section_gap;
 
+#ifdef RODS_FACE_RODS
+static int surface_of_rod(const facing *own, const real *point, real *distance, section_gap *gap, workspace *work);
+static void fit_other(const facing *own, const real *nodes, workspace *work);
+static void weigh_other(const facing *own, section_gap *gap);
+static void add_other(const facing *own, const section_gap *gap, real times, real *weights);
+static void add_row_of_other(const facing *own, const section_gap *gap, int row, const real *direction, real *weights);
+static void turn_slope_of_other(const facing *own, const section_gap *gap, real *moved);
+static real turning_beside_other(const facing *own, const section_gap *gap, const real *moved, const real *more);
+
+#endif
 static real clipped(real value, real least, real most) { return value < least ? least : value > most ? most : value; }
 
 static real inner(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -54,6 +67,9 @@ static real inner(const real *a, const real *b) { return a[0] * b[0] + a[1] * b[
 static void along_surface(const facing *own, const real *point, const real *second, section_gap *gap, workspace *work) {
   const real taper = own->radius_at_tip - own->radius_at_base;
   real distance;
+#ifdef RODS_FACE_RODS
+  if (!surface_of_rod(own, point, &distance, gap, work))
+#endif
   surface_at(own, point, &distance, gap->normal, gap->curvature, work);
   real turned[3];
   for (int i = 0; i < 3; i++) turned[i] = inner(gap->curvature + 3 * i, gap->tangent);
@@ -88,7 +104,7 @@ static int element_of(const facing *own, real place) {
 static void fit_nodes(const facing *own, const real *nodes, workspace *work) {
   real *coefficients = fitted_of(own, work);
 #ifdef RODS_FACE_RODS
-  fit_other(own, nodes);
+  fit_other(own, nodes, work);
 #endif
   if (own->is_body) {
     memcpy(coefficients, nodes, 3 * sizeof *nodes);
@@ -141,7 +157,7 @@ static void weigh_nodes(const facing *own, section_gap *gap) {
   real values[3][MOST_NODES];
   for (int order = 0; order < 2; order++) memset(gap->rows[order], 0, (size_t)own->nodes * sizeof(real));
 #ifdef RODS_FACE_RODS
-  weigh_other(own);
+  weigh_other(own, gap);
 #endif
   if (own->is_body) {
     gap->rows[0][0] = 1;
@@ -169,7 +185,7 @@ static void add_section(const section_gap *gap, real times, real length, const r
 static void add_weights(const facing *own, const section_gap *gap, real times, real *weights) {
   add_section(gap, times, own->length, gap->normal, weights);
 #ifdef RODS_FACE_RODS
-  add_other(own, times, gap->normal, weights);
+  add_other(own, gap, times, weights);
 #endif
 }
 
@@ -183,7 +199,7 @@ static void row_weights(const facing *own, const section_gap *gap, int row, real
     for (int k = 0; k < 3; k++) weights[3 * (gap->first + i) + k] = gap->rows[is_slope][i] * direction[k];
   }
 #ifdef RODS_FACE_RODS
-  add_row_of_other(own, row, direction, weights);
+  add_row_of_other(own, gap, row, direction, weights);
 #else
   (void)own;
 #endif
@@ -194,7 +210,7 @@ static void turn_slopes(const facing *own, const section_gap *gap, int columns, 
   for (int i = 0; i < columns; i++, moved += MOVED) {
     for (int k = 0; k < 3; k++) moved[3] += inner(gap->curvature + 3 * k, gap->tangent) * moved[k];
 #ifdef RODS_FACE_RODS
-    turn_slope_of_other(own, gap->tangent, moved);
+    turn_slope_of_other(own, gap, moved);
 #else
     (void)own;
 #endif
@@ -206,7 +222,7 @@ static real turning(const facing *own, const section_gap *gap, int slides, const
   real sum = 0;
   for (int k = 0; k < 3; k++) sum += moved[k] * inner(gap->curvature + 3 * k, other);
 #ifdef RODS_FACE_RODS
-  if (own->other) sum = turning_beside_other(own, moved, other);
+  if (own->other) sum = turning_beside_other(own, gap, moved, other);
 #endif
   if (slides && gap->place > 0 && gap->place < 1) sum -= moved[3] * other[3] / (gap->bend * own->length);
   return sum / own->length;

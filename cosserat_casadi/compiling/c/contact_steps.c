@@ -148,7 +148,9 @@ static real rate_of(const touch *own, const instant *at, const section_gap *gap,
   velocities_of(faces, at->state, at->inputs, at->state + N, at->inputs + INPUTS, work->nodes, work);
   for (int i = 0; i < gap->nodes; i++) rate += gap->rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->first + i));
 #ifdef RODS_FACE_RODS
-  rate += rate_of_other(faces, gap->normal, work->nodes);
+  for (int i = 0; faces->other && i < gap->other.nodes; i++) {
+    rate -= gap->other.rows[0][i] * inner(gap->normal, work->nodes + 3 * (gap->other.first + i));
+  }
 #endif
   return rate / faces->length;
 }
@@ -201,6 +203,9 @@ static int gradients_at(const real *x, const real *inputs, workspace *work) {
     gradient_at(own, own->place, x, inputs, &gap, work->gradients[k], work);
     own->place = gap.place;
     own->gap = gap.value;
+#ifdef RODS_FACE_RODS
+    own->other_place = place_on_other(FACING + own->facing, &gap);
+#endif
 #ifdef CONTACT_RUBS
     note_slide(k, &gap, x, inputs, work);
 #endif
@@ -446,6 +451,9 @@ static int choose_pressing(const step_start *start, const real *unknowns, worksp
     follow_touch(own, own->presses ? own->places[1] : own->place, work->at.state, work->at.inputs, &gap, work);
     own->gap = gap.value;
     own->end_place = gap.place;
+#ifdef RODS_FACE_RODS
+    own->other_end_place = place_on_other(FACING + own->facing, &gap);
+#endif
     own->force = own->presses ? STAGE_MATRIX[1][0] * own->forces[0] + STAGE_MATRIX[1][1] * own->forces[1] : 0;
     closed &= !own->presses || ABSOLUTE(gap.value - own->height) <= TOUCHING;
     holds &= own->presses ? own->force >= 0 : gap.value - own->height >= -open;

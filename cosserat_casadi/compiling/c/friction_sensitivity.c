@@ -40,6 +40,37 @@ static void shifts_of(const touch *own, const section_gap *gap, const real *move
   }
 }
 
+#ifdef RODS_FACE_RODS
+/* Writes the change of a section with the abscissa on the other rod behind that with the own one, as functions of friction
+   take both. */
+static void put_other_change(const facing *own, const section_gap *gap, real *change) {
+  const other_section *other = &gap->other;
+  const int count = point_count(own) + 2;
+  if (!own->other) return;
+  change[count - 1] = 0;
+  change += count;
+  memset(change, 0, (size_t)count * sizeof *change);
+  memcpy(change + other->first, other->rows[1], (size_t)other->nodes * sizeof *change);
+  change[count - 1] = 1;
+}
+
+/* Adds to derivatives of friction by numbers that move both sections, of 4 + N rows, what the section of the other rod adds
+   as it slides with them. Follows turn_slopes and shifts_of, the second of which say how the own section slides. */
+static void slide_other(const facing *own, const section_gap *gap, const real *moved, const real *shift, int columns,
+                        real *derivatives, const workspace *work) {
+  const other_section *other = &gap->other;
+  const real *by_other = work->rubbing_by_place + 4 + N;
+  real turned[3];
+  if (!own->other || is_at_end(other)) return;
+  turned_by_sliding(other, turned);
+  for (int j = 0; j < columns; j++) {
+    const real slope = moved[MOVED * j + OTHER_SLOPE] + inner(turned, gap->tangent) * shift[j];
+    const real slid = slope / (other->bend * own->other->length);
+    for (int i = 0; i < 4 + N; i++) derivatives[(4 + N) * j + i] += slid * by_other[i];
+  }
+}
+
+#endif
 /* Takes the change of the friction of a section that presses from the matrices of a stage, and notes that of its slide and
    the rows of the law. Follows the matrices of the gap, which say how the section moves. */
 static void curve_friction(int stage, int m, const section_gap *gap, int by_inputs, workspace *work) {
@@ -60,10 +91,16 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
   memset(work->section_change, 0, (size_t)count * sizeof *work->section_change);
   memcpy(work->section_change + gap->first, gap->rows[1], (size_t)gap->nodes * sizeof *work->section_change);
   work->section_change[count] = 1;
+#ifdef RODS_FACE_RODS
+  put_other_change(faces, gap, work->section_change);
+#endif
   const rubbed at = section_of(own, gap, work->at.state, work->at.inputs, work);
   faces->rubbing_derivatives(&at, work->section_change, force, work->rubbing_by_x, work->rubbing_by_place,
                              work->rubbing_by_inputs, work->rubbing_by_rates, work);
   shifts_of(own, gap, work->moved, N, work->shift);
+#ifdef RODS_FACE_RODS
+  slide_other(faces, gap, work->moved, work->shift, N, work->rubbing_by_x, work);
+#endif
   take_friction(stage, m, work->rubbing_by_x, work->rubbing_by_place, work->shift, N, work->friction_entries, work);
   for (int k = 0; k < STAGE_ENTRIES; k++) {
     const int i = ENTRY_ROWS[k];
@@ -77,6 +114,9 @@ static void curve_friction(int stage, int m, const section_gap *gap, int by_inpu
   if (by_inputs_of(faces)) {
     move_by_inputs(own, gap, work->moved_by_inputs, work);
     shifts_of(own, gap, work->moved_by_inputs, INPUTS, work->shift);
+#ifdef RODS_FACE_RODS
+    slide_other(faces, gap, work->moved_by_inputs, work->shift, INPUTS, work->rubbing_by_inputs, work);
+#endif
   }
   take_friction(stage, m, work->rubbing_by_inputs, work->rubbing_by_place, work->shift, INPUTS, work->friction_entries, work);
   for (int j = 0; j < INPUTS; j++) {

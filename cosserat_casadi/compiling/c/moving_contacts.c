@@ -50,19 +50,6 @@ static int all_finite(const real *a, int count) {
 #include "square_systems.c"
 #include "least_pushes.c"
 
-/* A gap, and the section of the other rod that is nearest, where there is one, with its nodes among all points. */
-typedef struct {
-  section_gap own;
-  section_gap other;
-} met_gap;
-
-static void meet(const facing *own, met_gap *gap) {
-  weigh_nodes(own, &gap->own);
-  if (!own->other) return;
-  gap->other = *other_section(own);
-  gap->other.first = first_of_other(own);
-}
-
 /* ---- Gaps of a pair, at positions of its points ---- */
 
 /* The element that a section is looked at in, or that of the section itself where it is farther beyond that one's ends. */
@@ -120,10 +107,10 @@ static real place_near(const facing *own, const real *nodes, real near, int elem
 }
 
 /* The gap at a place, by the polynomials of an element next to it, with the weights of the nodes. */
-void gap_at(const facing *own, const real *nodes, real place, int element, met_gap *gap) {
+void gap_at(const facing *own, const real *nodes, real place, int element, section_gap *gap) {
   fit_nodes(own, nodes, 0);
-  look_in(own, own->is_body ? 0 : element_near(own, place, element), place, &gap->own, 0);
-  meet(own, gap);
+  look_in(own, own->is_body ? 0 : element_near(own, place, element), place, gap, 0);
+  weigh_nodes(own, gap);
 }
 
 /* The place next to another where the gap is least. */
@@ -214,23 +201,23 @@ void lowest_gap(const facing *own, const real *nodes, int all, const real *but, 
 void known_positions(moving_points *points, const real *x, const real *inputs) { positions_at(points, x, inputs); }
 
 /* Gaps of contacts where they are. */
-void touched_gaps(const touch *touches, int count, const real *x, const real *inputs, met_gap *gaps) {
+void touched_gaps(const touch *touches, int count, const real *x, const real *inputs, section_gap *gaps) {
   for (int k = 0; k < count; k++) {
     const facing *own = touches[k].facing;
     const real *nodes = positions_at(own->points, x, inputs);
     real place = touches[k].place;
     fit_nodes(own, nodes, 0);
     if (touches[k].slides && !own->is_body) place = place_near(own, nodes, place, touches[k].element);
-    look_in(own, own->is_body ? 0 : element_near(own, place, touches[k].element), place, &gaps[k].own, 0);
-    gaps[k].own.place = place;
-    meet(own, gaps + k);
+    look_in(own, own->is_body ? 0 : element_near(own, place, touches[k].element), place, gaps + k, 0);
+    gaps[k].place = place;
+    weigh_nodes(own, gaps + k);
   }
 }
 
 /* Takes forces of contacts from equations of motion, and writes how far gaps are open behind them. */
 void push_touches(const touch *touches, int count, int unknowns, const real *x, const real *inputs, const real *forces,
                   real *rows, real *open) {
-  met_gap gap;
+  section_gap gap;
   for (int k = 0; k < count; k++) {
     kernel *gradient = touches[k].facing->points->gradient;
     memset(gradient->arguments[2], 0, (size_t)gradient->counts[2] * sizeof(real));
@@ -239,8 +226,8 @@ void push_touches(const touch *touches, int count, int unknowns, const real *x, 
     const facing *own = touches[k].facing;
     real *weights = own->points->gradient->arguments[2];
     touched_gaps(touches + k, 1, x, inputs, &gap);
-    open[k] = gap.own.value - touches[k].height;
-    add_weights(own, &gap.own, forces[k], weights);
+    open[k] = gap.value - touches[k].height;
+    add_weights(own, &gap, forces[k], weights);
   }
   for (int k = 0; k < count; k++) {
     moving_points *points = touches[k].facing->points;
@@ -297,6 +284,6 @@ int settle_pushes(const real *compliance, const real *rates, int count, real tol
 /* Sizes of the records, by which Python tells that it has the same. */
 int contact_records(int number) {
   const size_t sizes[] = {sizeof(kernel), sizeof(moving_points), sizeof(facing), sizeof(touch),
-                          sizeof(step_contacts), sizeof(met_gap)};
+                          sizeof(step_contacts), sizeof(section_gap)};
   return (int)sizes[number];
 }

@@ -61,8 +61,6 @@ static model *AT; /* the model of the present step */
 #define DEEPEST AT->deepest
 #define FARTHEST AT->farthest
 
-static int point_count(const facing *own) { return own->points->count; }
-
 static void positions_of(const facing *own, const real *x, const real *inputs, real *positions, workspace *work) {
   (void)work;
   memcpy(positions, positions_at(own->points, x, inputs), (size_t)(3 * own->points->count) * sizeof *positions);
