@@ -1,7 +1,7 @@
-"""Positions between the ends of steps put back on the constraints: supports, joints and cables are closed all along.
+"""Projection of positions between the ends of steps onto the constraints: supports, joints and cables stay closed.
 
-The polynomial of a step leaves the constraints by as much as it is inexact. The smallest displacement that closes them
-is far below the tolerance of the motion.
+The polynomial of a step violates the constraints by its own error. The smallest displacement that closes them is far
+below the tolerance of the motion.
 """
 
 from __future__ import annotations
@@ -25,20 +25,20 @@ from cosserat_casadi.numerics.consistent_start import regular_inverse
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
 CLOSED = 1e-12
-"""Largest row of a constraint, without unit, that counts as closed."""
+"""Largest dimensionless constraint residual that counts as closed."""
 
 MOST_CORRECTIONS = 12
-"""Most corrections of a state."""
+"""Largest number of corrections of a state."""
 
 INDEPENDENT = 1e-8
-"""Eigenvalue of the normal equations of constraints, over the largest, from which they are clearly independent."""
+"""Least eigenvalue of the normal equations, over the largest, at which constraints count as independent."""
 
 CONTRACTED = 0.2
-"""Share of the gaps that a correction may leave before the next one has a new Jacobian."""
+"""Largest ratio of constraint residuals after and before a correction at which the Jacobian is kept."""
 
 
 GAPS = "motion_gaps"
-"""Name of the rows of the constraints in C."""
+"""Name of the function of constraint residuals in C."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Closing:
 
     Attributes:
         model: the model.
-        library: shared object that has :func:`functions_of_closing`; None without one.
+        library: shared object that contains :func:`functions_of_closing`; None without one.
     """
 
     model: Model
@@ -66,14 +66,14 @@ class Closing:
         equations: MotionEquations,
         steps: npt.NDArray[np.intp],
     ) -> FloatArray:
-        """Unknowns at T times, moved by the smallest displacements that close the constraints, shape (T, size).
+        """Return the unknowns at T times after the smallest displacements that close the constraints, shape (T, size).
 
         Args:
-            times: of the motion, shape (T,), s.
+            times: times of the motion, shape (T,), s.
             states: x, v and a at these times, in the unknowns of the model, shape (T, size) each.
             inputs: inputs at these times, shape (T, model.inputs.size).
-            equations: of motion, of which some rows are the constraints.
-            steps: number of the step that holds each time, shape (T,); one Jacobian serves a step at first.
+            equations: equations of motion, of which some rows are the constraints.
+            steps: index of the step that contains each time, shape (T,); at first, a step has one Jacobian.
         """
         x = np.array(states[0])
         best = x.copy()
@@ -112,7 +112,7 @@ class Closing:
         return x
 
     def _gaps(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """The rows of the constraints at T states, shape (T, rows): the rest of the equations is not computed."""
+        """Constraint residuals at T states, shape (T, rows), without the other rows of the equations."""
         if self.library is None:
             function = kept_with(self.model, "_gaps", lambda: functions_of_closing(self.model)[0])
         else:
@@ -121,7 +121,7 @@ class Closing:
         return gaps[:, :, 0].copy()
 
     def _answer(self, stiffness: FloatArray) -> FloatArray:
-        """Changes of the coordinates that move, smallest by displacements, for gaps of one, shape (size, rows)."""
+        """Changes of the coordinates, of smallest displacement, for constraint residuals of one, shape (size, rows)."""
         moves = self.model.discrete.unknowns.differential
         weighted = np.where(moves, stiffness[self.rows] / self._sizes, 0.0)
         # Constraints that are clearly independent: by the normal equations, which a correction solves well enough.
@@ -148,7 +148,7 @@ def constraint_rows(model: Model) -> npt.NDArray[np.int64]:
 
 
 def functions_of_closing(model: Model) -> list[ca.Function]:
-    """The function (x, inputs) ↦ the rows of the constraints; none where nothing is held."""
+    """The function (x, inputs) ↦ constraint residuals, as a list; it is empty for a scene without constraints."""
     rows = constraint_rows(model)
     if not len(rows):
         return []

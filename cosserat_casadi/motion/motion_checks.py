@@ -1,4 +1,4 @@
-"""Scenes that cannot be simulated: refused with all their problems, before any work is done."""
+"""Checks before a simulation: a scene that cannot be simulated is refused with all its problems."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cosserat_casadi.scene.simulation import Simulation
 
 
 def check_simulation(model: Model, simulation: Simulation | None) -> None:
-    """Refuse what cannot be simulated.
+    """Refuse a model or settings that cannot be simulated.
 
     Raises:
         SceneError: with all that is wrong.

@@ -1,8 +1,8 @@
-"""The equations of motion in machine code, where that pays.
+"""The equations of motion in machine code, if compiling saves time.
 
 A motion calls inverse dynamics and its derivatives thousands of times. In C they take a twentieth to a fifth of the
-time of CasADi's virtual machine; to write and to compile them takes seconds, once: a later motion of the same rods, on
-the same modes, takes them from the cache, whatever moves them and to whatever tolerance. The two differ by rounding.
+time of CasADi's virtual machine. To write and compile them takes seconds, once: a later motion of equal rods on equal
+modes takes them from the cache, for any inputs and any tolerance. The results of both differ by rounding.
 """
 
 from __future__ import annotations
@@ -50,56 +50,56 @@ from cosserat_casadi.numerics.time_steps import Stepper
 
 RESIDUAL = "motion_residual"
 JACOBIANS = "motion_jacobians"
-"""Names of the functions in C, and of their files in the cache."""
+"""Name of the derivatives of inverse dynamics in C, and of their file in the cache."""
 
 MARGINS = "motion_margins"
 RESOLUTION = "motion_resolution"
-"""Names in C of the margins of strains, and of the index that tells whether nodes resolve the rods."""
+"""Names in C of the margins of strains, and of the index that tells whether the nodes resolve the rods."""
 
 PROGRAM = "motion_program"
-"""Inverse dynamics as a program of scalars, three stages at once."""
+"""Name of inverse dynamics as a scalar program, for three stages at once."""
 
 INSTRUCTION = 7e-9
-"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: 5e-9 of few to 11e-9 of many."""
+"""Time of an instruction of inverse dynamics in CasADi's virtual machine, s: from 5e-9 for few to 11e-9 for many."""
 
 AS_MANY_RESIDUALS = 10.0
-"""Time of derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 in robots of one to six rods."""
+"""Time of the derivatives of inverse dynamics there, over inverse dynamics: 6 to 15 for robots of one to six rods."""
 
 SAVED = {PROGRAM: 0.75, RESIDUAL: 0.2, JACOBIANS: 0.9}
-"""Share of the virtual machine's time that a program saves, machine code beyond a program, and machine code."""
+"""Share of the virtual machine's time saved by a program, by machine code beyond a program, and by machine code."""
 
 TO_COMPILE = {PROGRAM: (0.0, 4e-6), RESIDUAL: (0.3, 7e-5), JACOBIANS: (0.3, 3.3e-4)}
-"""Processor time for writing and compiling a function, s, and for each instruction of inverse dynamics more."""
+"""Processor time for writing and compiling a function, s, and the further time for each instruction, s."""
 
 ITERATION = 2e-4
-"""Time of an iteration of Newton's method in Python beyond that in C, s: 1.7e-4 to 6.5e-4, equations left out."""
+"""Extra time of a Newton iteration in Python over one in C, without the equations, s: 1.7e-4 to 6.5e-4."""
 
 TO_COMPILE_STEPS = 0.3
 """Processor time for compiling the steps, s; once for all models."""
 
 MOTIONS_TO_COME = 2.0
-"""Motions of which each takes as many steps as the last one: the next, and one that tells the error of its steps."""
+"""Expected motions with as many steps as the last one: the next, and one that tells the error of its steps."""
 
 MOTIONS_AFTER_FIRST = 4.0
 """Work of a search after its first motion, over the work of that motion: 2.3 to 5.2 in searches for modes."""
 
 TELLING_SHARE = 0.1
-"""Share of a piece of its inputs after which the work so far tells the work of a motion."""
+"""Share of a piece of the inputs after which the work so far foretells the work of the motion."""
 
 TO_BEGIN = 40
-"""Iterations of the first steps, which are short, beyond the usual number: they foretell nothing."""
+"""Extra iterations of the first, short steps, which are left out of the forecast."""
 
 
 @dataclass
 class MotionCompiler:
-    """Chooses the kernels for the motions of one simulation: machine code where it is at hand or pays.
+    """Selector of kernels for the motions of one simulation: machine code if it is cached or saves time.
 
     Attributes:
-        always: whether to compile even where that takes longer than it saves.
-        last: the work of the motion before; None before the first.
-        asked: for each function the model that it was looked for, and its machine code, None where there was none.
-        saved_by_steps: time that steps in C would have saved of the first motion, s.
-        steps_fail: whether a compiler has failed on the steps, which every step of Python may ask for.
+        always: whether to compile even if that takes longer than it saves.
+        last: work of the previous motion; None before the first.
+        asked: for each function, the model of the last search and the machine code that was found, else None.
+        saved_by_steps: time that steps in C would have saved in the first motion, s.
+        steps_fail: whether the compiler has failed on the steps; every step in Python may ask.
     """
 
     always: bool = False
@@ -110,11 +110,11 @@ class MotionCompiler:
 
     @cached_property
     def _compiler(self) -> str:
-        """Command of the C compiler; an ExportError is raised where there is none."""
+        """Command of the C compiler; without a compiler it raises ExportError."""
         return find_compiler()
 
     def learn(self, statistics: StepStatistics) -> None:
-        """Take note of the work of the motion for which kernels were asked last."""
+        """Record the work of the motion for which kernels were requested last."""
         saved_by_steps = self._saved_by_steps(statistics)
         for name, (model, found) in self.asked.items():
             if found is None:
@@ -128,7 +128,7 @@ class MotionCompiler:
             tally(stem_of_steps(), saved_by_steps)
 
     def _saved_by_steps(self, work: StepStatistics) -> float:
-        """Time that steps in C save of a motion whose kernels were asked for last, s."""
+        """Time that steps in C save in the motion for which kernels were requested last, s."""
         saved = ITERATION * work.iterations
         model, found = self.asked.get(RESIDUAL, (None, None))
         if model is not None and found is None and not can_be_centred(model):
@@ -137,10 +137,10 @@ class MotionCompiler:
         return saved
 
     def kernels(self, model: Model) -> StepKernels:
-        """The kernels for the next motion of a model.
+        """Choose the kernels for the next motion of a model.
 
         Raises:
-            ExportError: machine code is asked for in any case, and there is no compiler, or it fails.
+            ExportError: machine code is required, but there is no compiler, or it fails.
         """
         residual = self._compiled(model, RESIDUAL)
         jacobians = self._compiled(model, JACOBIANS)
