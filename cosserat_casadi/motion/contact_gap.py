@@ -300,7 +300,7 @@ class Facing(ABC):
         Args:
             by_nodes: derivative of the points with respect to the unknowns, shape (M, 3, n), m.
             gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
+            slides: whether its place is where the gap is least; else it is fixed.
         """
         moved = np.tensordot(gap.rows.value, by_nodes, 1)
         second = moved.T @ gap.curvature @ moved
@@ -320,7 +320,7 @@ class Facing(ABC):
             v: rates of the unknowns, shape (n,), 1/s.
             inputs: the stacked inputs, their rates and their accelerations, shape (m,) each.
             gap: the gap.
-            slides: whether its place is where the gap is least, and not a given one.
+            slides: whether its place is where the gap is least; else it is fixed.
         """
         value, rate, acceleration = inputs
         velocities, accelerations = self.points.straight_on(x, value, v, rate)

@@ -56,7 +56,7 @@ class ContactEvent:
 
 @dataclass(frozen=True)
 class Restart(Generic[HeldPhases]):
-    """How a motion goes on after an event, or begins.
+    """The state from which a motion goes on after an event, or begins.
 
     Attributes:
         start: state after the event, with accelerations, and tensions or contact forces.
@@ -90,4 +90,4 @@ class Switching(Protocol[Phases]):
     def restarted(
         self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, guard: int | None, interval: float
     ) -> Restart[Phases]:
-        """How a motion goes on, or begins."""
+        """Restart a motion after an event, or start it."""

@@ -149,7 +149,7 @@ class ExactContacts:
         *,
         jerked: bool = False,
     ) -> Restart[ContactPhase]:
-        """How a motion goes on, or begins.
+        """Restart a motion after an event, or start it.
 
         Args:
             plain: equations of the model.

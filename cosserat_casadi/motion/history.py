@@ -333,7 +333,7 @@ class History:
         return x, inputs
 
     def _held(self, times: FloatArray) -> Iterator[tuple[Leg, npt.NDArray[np.bool_], HeldTimes | None]]:
-        """Legs that contain some of T times, with a mask of these, shape (T,), and their places in steps; None without."""
+        """Legs that contain some of T times, with the mask of these, shape (T,), and their places in steps if any."""
         if not self.end_times:
             yield self.legs[0], np.ones(len(times), dtype=bool), None
             return

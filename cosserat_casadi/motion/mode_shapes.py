@@ -157,7 +157,7 @@ def _is_real(entries: NumberArray) -> bool:
 
 
 def _directions(shapes: FloatArray) -> FloatArray:
-    """Matrix that combines p shapes by direction, shape (p, p): the first moves along x, the next along y, then the rest."""
+    """Matrix that combines p shapes by direction, shape (p, p): the first along x, the next along y, then the rest."""
     part = len(shapes) // 6
     # The first axis counts most, so that it is settled before the others; what bends towards x turns about y.
     weights = np.repeat([4.0, 2.0, 1.0, 0.25, 0.5, 0.125], part)

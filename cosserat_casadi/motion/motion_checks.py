@@ -13,7 +13,7 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
     """Refuse a model or settings that cannot be simulated.
 
     Raises:
-        SceneError: with all that is wrong.
+        SceneError: the model or the settings have problems, all of which the error lists.
     """
     problems = []
     if simulation is None:
@@ -32,7 +32,7 @@ def check_movable(model: Model) -> None:
     """Refuse a model that has no motion.
 
     Raises:
-        SceneError: with all that is wrong.
+        SceneError: the model has problems, all of which the error lists.
     """
     refuse(immovable(model))
 
