@@ -52,7 +52,7 @@ class Assembled:
 
     @property
     def kernels(self) -> list[Kernel]:
-        """All functions; those of the residual compute four intervals at a time."""
+        """All functions; functions of the residual compute four intervals at a time."""
         of_residual = map(with_calls_in_fours, self.residual.kernels)
         return [*of_residual, *self.jacobian.kernels, *self.input_jacobian.kernels]
 

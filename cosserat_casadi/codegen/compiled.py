@@ -243,7 +243,7 @@ class Compiled(CompiledMotion):
     def _sensitivities(
         self, inputs: ArgumentValues, x: npt.ArrayLike, parameters: ArgumentValues
     ) -> tuple[Sensitivity, Sensitivity] | None:
-        """Return derivatives by inputs and by parameters; without parameters the latter have no columns."""
+        """Return derivatives by inputs and by parameters; without parameters the second ones have no columns."""
         given = *self._given(inputs, parameters), pointer(vector(x, self.size, "x"))
         rods, bodies = self._names.rods, self._names.bodies
         d_x = [np.zeros((count, self.size)) for count in (self.inputs.size, self.parameters.size)]

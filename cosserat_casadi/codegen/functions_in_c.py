@@ -102,7 +102,7 @@ class FunctionInC:
 
     @property
     def description(self) -> str:
-        """Sentence on the function, its arguments besides unknowns and inputs, and its results, with sizes and units."""
+        """Sentence on the function, its arguments other than unknowns and inputs, its results, with sizes and units."""
         sentence = self.spec.header.format(owner=self.owner)
         results = ", ".join(self._described(i, output) for i, output in enumerate(self.outputs))
         given = ", ".join(self._given())

@@ -101,7 +101,7 @@ class ListedParameters(ListedValues):
     several = "parameters"
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
-        """Stack the parameters, with the scene's values for those that are not named.
+        """Stack the parameters, with the scene's values for parameters that are not named.
 
         Raises:
             SceneError: a name is unknown, a value has another shape, or the scene refuses it.

@@ -204,7 +204,7 @@ def _literal(model: Model) -> bool:
 
 
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
-    """Make a function with its name in C: in scalars up to so many instructions, else in matrices, which become loops."""
+    """Make a function with its name in C: in scalars up to so many instructions, else in matrices that become loops."""
     if not _literal(model) and not chooses(function):
         straight = scalar(function, name, straight_within)
         if straight is not None:

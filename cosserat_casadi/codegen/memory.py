@@ -34,7 +34,7 @@ def _rooms(generated: Mapping[str, str], kind: str) -> dict[str, int]:
 
 
 def stack_bytes(generated: Mapping[str, str], without_workspace: Collection[str] = ()) -> int:
-    """Stack of a call in double precision, bytes: that of the kernel which needs most.
+    """Stack of a call in double precision, bytes: the need of the kernel with the largest one.
 
     A kernel of straight-line code keeps its values in local variables. Without optimisation all of them are on the
     stack, above the variables of the functions that it calls. The work memory of a kernel that is called without a

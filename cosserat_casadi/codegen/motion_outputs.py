@@ -50,7 +50,7 @@ class MotionOutputs:
 
 
 def motion_outputs(model: Model) -> MotionOutputs:
-    """Make the outputs: poses and velocities of tips and bodies, then efforts of actuators and joints and their conjugates.
+    """Make the outputs: poses and velocities of tips and bodies, then efforts and conjugates of actuators and joints.
 
     Args:
         model: a model that was built with its motion.

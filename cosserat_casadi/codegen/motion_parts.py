@@ -158,7 +158,7 @@ def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
 
 
 def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca.MX], name: str) -> Parted:
-    """Make the entries of stiffness, damping and mass in parts; those of one owner are together."""
+    """Make the entries of stiffness, damping and mass in parts; entries of one owner are together."""
     number = {entry: k for k, entry in enumerate(zip(*partition.pattern.get_triplet(), strict=True))}
     owner_of = partition.entry_parts
     places = list[int]()

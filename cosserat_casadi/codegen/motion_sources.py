@@ -70,8 +70,8 @@ def motion_entry(model: Model) -> dict[str, Any]:
     """Entry of the manifest on motions.
 
     Returns:
-        the method and its tolerance, the unknowns with rates and accelerations, and the energies, J, by which entries of
-        the residual are multiplied.
+        the method and its tolerance, the unknowns with rates and accelerations, and the energies, J, by which entries
+        of the residual are multiplied.
     """
     unknowns = model.discrete.unknowns
     return {

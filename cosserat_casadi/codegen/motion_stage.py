@@ -107,7 +107,7 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> Itera
 
 
 def poses_functions(stage: MotionStage, name: str, curvature: bool) -> Iterator[ca.Function]:
-    """Make the poses of tips and bodies, their Jacobian, adjoint and its Jacobian, as in :func:`equations_functions`."""
+    """Make the poses of tips and bodies, with their derivatives as in :func:`equations_functions`."""
     model = stage.model
     state, _, inputs, *_ = stage.symbols
     given = [inputs]
