@@ -247,7 +247,7 @@ class ArrowStep:
         return triangles
 
     def eliminated(self, damping: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
-        """Eliminate the unknowns of blocks; return the rows of [shared, residual], and for each block rows for its unknowns.
+        """Eliminate the unknowns of blocks; return the rows of [shared, residual], and rows for each block's unknowns.
 
         Args:
             damping: damping of the unknowns, of which that of the blocks counts here, shape (N,).
@@ -419,7 +419,7 @@ class BoundedStep:
         return strongest if pull[strongest] > 0.0 else None
 
     def _to_first_end(self, present: FloatArray, wanted: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-        """Move towards wanted unknowns until the first one meets its bound; also return the mask of those that do."""
+        """Move towards wanted unknowns until the first one meets its bound; also return the mask of unknowns that do."""
         ends = np.where(wanted > present, self.box.upper, self.box.lower)
         beyond = (wanted > self.box.upper) | (wanted < self.box.lower)
         shares = np.full(present.shape, np.inf)

@@ -58,7 +58,7 @@ class UpdatedJacobian:
             residual: residual g at the iterate after the last step, shape (n,).
 
         Returns:
-            the step, shape (n,); None where it is not finite.
+            the step, shape (n,); None if it is not finite.
         """
         step = self._apply_inverse(residual, self.steps)
         if step is None or not self.steps:
@@ -115,7 +115,7 @@ def newton_step(jacobian: Jacobian, residual: FloatArray, factors: SparseFactors
         factors: factorisation of a sparse Jacobian by :func:`sparse_factors`, if it serves several steps.
 
     Returns:
-        the step, shape (n,); None where it is not finite.
+        the step, shape (n,); None if it is not finite.
     """
     if not len(residual):
         return np.zeros(0)
@@ -167,7 +167,7 @@ def dense(jacobian: Jacobian) -> FloatArray:
 def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
     """Solve with a regular Jacobian; None if it is singular up to rounding.
 
-    The factors also solve for a probe with components in all directions, whose solution a small singular value lengthens.
+    The factors also solve for a probe with components in all directions: small singular values lengthen its solution.
     """
     # cos k² has no regularity, so that no singular vector of a regular structure is orthogonal to it.
     numbers = np.arange(1.0, len(residual) + 1.0)

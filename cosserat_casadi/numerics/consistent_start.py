@@ -123,7 +123,7 @@ def consistent_start(
         time: time of the start, s.
         x: positions, and a guess of the algebraic entries, shape (n,).
         v: velocities, shape (n,), 1/s.
-        interval: time after the start, s, in which the equations are smooth and accelerations change little; constraints
+        interval: time after the start in which the equations are smooth and the motion bends little, s; constraints
             are differentiated in it.
         saddle: the linear system there, if it is known.
     """
