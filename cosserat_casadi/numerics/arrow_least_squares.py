@@ -419,7 +419,7 @@ class BoundedStep:
         return strongest if pull[strongest] > 0.0 else None
 
     def _to_first_end(self, present: FloatArray, wanted: FloatArray) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-        """Move towards wanted unknowns until the first one meets its bound; also return the mask of unknowns that do."""
+        """Move towards wanted unknowns until the first one meets its bound; also return the mask of bounded ones."""
         ends = np.where(wanted > present, self.box.upper, self.box.lower)
         beyond = (wanted > self.box.upper) | (wanted < self.box.lower)
         shares = np.full(present.shape, np.inf)

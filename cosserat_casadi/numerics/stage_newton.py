@@ -150,8 +150,8 @@ class SecantUpdates:
     Each update makes the inverse B⁻¹ agree with the change of F by the last correction, and does not change it
     orthogonally to that correction: B₊⁻¹ = (1 + s₊ ŝᵀ) B⁻¹ with the correction s, the next one s₊, and the dual ŝ of s.
     Orthogonality refers to weighted changes of velocity, so that units do not matter. The updates are never formed.
-    C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3; :mod:`broyden` has them
-    for equilibria.
+    C. T. Kelley, *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3; :mod:`broyden` is for
+    equilibria.
 
     Attributes:
         matrix: matrix A of the collocation method, from changes of h² a to changes of h v, shape (s, s).
