@@ -56,7 +56,7 @@ class TargetMiss:
 
 
 def length_of(model: SystemFunctions, target: TargetRecord) -> float:
-    """Length by which the distance of a target is divided, m: its rod's length; for bodies and tubes the longest one."""
+    """Length by which the distance of a target is divided, m: its rod's length; for bodies and tubes the longest."""
     lengths = model.lengths
     rod = getattr(target, "rod", None)
     if rod is None:

@@ -1,8 +1,8 @@
 """Equilibria of all cases in exact contact, each with its contacts, and the differences from their measurements.
 
 For constant contacts, a case is one system in z = (x, f, p): unknowns, forces and places of contact, with inputs and
-parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed, judged at each step, and
-solved anew where a contact opens, closes or changes its kind. The misfit is continuous over such a change, but its
+parameters as arguments (equilibrium/contact/contact_equations.py). Its equilibrium is followed, judged at each step,
+and solved anew where a contact opens, closes or changes its kind. The misfit is continuous over such a change, but its
 derivatives jump: derivatives for the contacts on this side are returned.
 """
 
@@ -187,7 +187,7 @@ class ContactEquilibria(Equilibria):
             return None
 
     def _alike(self, case: CaseInContact, start: FloatArray, inputs: FloatArray, p: FloatArray) -> CaseInContact | None:
-        """Solve for the equilibrium near another one with equal contacts, from a start z; None if they are not valid."""
+        """Solve for the equilibrium near another one with equal contacts, from a start z; None if these do not hold."""
         alike = self._judged(case.equations.at(inputs, p), start)
         if alike is None:
             return None

@@ -115,8 +115,7 @@ class Motions:
     """The motions of a model.
 
     Attributes:
-        model: model with its parameters, with flows appended to the unknowns if stress relaxes; of rods if there are
-            times.
+        model: model with its parameters, and with flows as unknowns if stress relaxes; of rods if there are times.
         unknowns: number of unknowns of an equilibrium.
         start: inputs at the start.
         times: times at which each case was measured, by index of the case, ascending, s.
@@ -251,7 +250,7 @@ class Motions:
         ]
 
     def _linearised(self, count: int, numbers: int) -> ca.Function:
-        """Make (x, v, a, inputs, their rates, their accelerations, p, p by numbers, inputs by numbers) ↦ derivatives of F.
+        """Make (x, v, a, inputs, their rates and accelerations, p, p by numbers, inputs by numbers) ↦ derivatives of F.
 
         The derivatives are by x, v, a, and by the numbers that determine inputs and parameters, at ``count`` instants.
         """

@@ -213,7 +213,7 @@ class Ending:
 
 
 def _on_own_unknowns(found: Identification) -> list[str]:
-    """Remarks on unknowns of single cases: those that data leave undetermined, and the effect on held-out cases."""
+    """Remarks on unknowns of single cases that their data leave undetermined, and the effect on held-out cases."""
     remarks = []
     for label, deviations in zip(found.layout.own_labels, found.statistics.own.T, strict=True):
         open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]

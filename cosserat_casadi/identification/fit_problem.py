@@ -112,7 +112,7 @@ class Task:
         return ending.concluded(rows, warnings, (self.starts, ended_here), step_error)
 
     def _first(self, cases: Sequence[Case], shared: FloatArray) -> tuple[_Started | None, _Missing]:
-        """Make the misfit of the cases that have an equilibrium or a motion at the start; also return the other cases."""
+        """Make the misfit of the cases that have an equilibrium or a motion at the start; also return the others."""
         _, own = self.layout.start(len(cases))
         moves = moving(cases)
         start = StartInputs(self.model)

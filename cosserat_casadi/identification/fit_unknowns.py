@@ -268,7 +268,7 @@ def unknown_layout(model: AnyModel) -> UnknownLayout:
 
 
 def refuse_row_parameters(scene: scenes.Scene) -> None:
-    """Refuse parameters with a value of their own in each case; an identification has inputs for that.
+    """Refuse parameters with a separate unknown value in each case; an identification has inputs for that.
 
     Raises:
         SceneError: there are such unknowns; the error lists all of them.
