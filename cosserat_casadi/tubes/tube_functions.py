@@ -260,7 +260,7 @@ class TubeFunctions(WithParameters, Shown):
 
     @cached_property
     def equilibrium(self) -> ca.Function:
-        """(start, inputs) ↦ unknowns by Newton's method, and the sum of the angles by which drives are missed, 1×1, rad.
+        """(start, inputs) ↦ unknowns by Newton's method, and the sum of the angles that drives are missed by, 1×1, rad.
 
         It is an expression like any other: CasADi differentiates it exactly, by the implicit function theorem, and
         writes it in C. It takes full steps from the start, at most NEWTON_STEPS. If the missed angle is not small, or
